@@ -129,6 +129,28 @@ def smoothed(quads: Array, count: int, times: int) -> list[dict[int, float]]:
     ]
 
 
+def halved(rows: list[dict[int, float]], triangles: Array) -> tuple[list[dict[int, float]], Array]:
+    """Each triangle as four, by the middles of its edges."""
+    rows, known = list(rows), {}
+
+    def middle(a: int, b: int) -> int:
+        key = (min(a, b), max(a, b))
+        if key not in known:
+            known[key] = len(rows)
+            row: dict[int, float] = defaultdict(float)
+            for end in key:
+                for vertex, weight in rows[end].items():
+                    row[vertex] += weight / 2
+            rows.append(dict(row))
+        return known[key]
+
+    found: list[tuple[int, int, int]] = []
+    for a, b, c in triangles.tolist():
+        ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+        found += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return rows, np.array(found)
+
+
 def cut(rows: list[dict[int, float]], triangles: Array, offsets: Array, field: Array, slot: int) -> Part:
     """The part of a surface where `field` is at most 0, with edges cut where it is 0."""
     rows, more = list(rows), list(offsets)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from body_hair import hair_of
 from body_meshes import Part, applied, compact, cut, normals_of, smoothed, thinned, triangles_of
 from body_source import Array, Fields, Source, along
 
@@ -11,7 +12,7 @@ SLOTS = ("skin", "lips", "white", "iris", "pupil", "brow", "hair", "top", "botto
 
 def parts_of(source: Source, fields: Fields) -> dict[str, Part]:
     """All surfaces by name."""
-    return {**_skin(source, fields), **_eyes(source), **_garments(source, fields), **_hair(source, fields)}
+    return {**_skin(source, fields), **_eyes(source), **_garments(source, fields), **hair_of(source, fields, SLOTS)}
 
 
 def _single(count: int) -> list[dict[int, float]]:
@@ -134,65 +135,3 @@ def _shoes(source: Source, fields: Fields, tri: Array, smooth: list[dict[int, fl
     low = applied(part.rows, source.mean)[:, 1]
     sole = low[part.triangles].mean(axis=1) < source.mean[:, 1].min() + 0.016
     return part._replace(slots=np.where(sole, SLOTS.index("sole"), part.slots))
-
-
-def _hair(source: Source, fields: Fields) -> dict[str, Part]:
-    """Caps of hair on the head, hair that falls, and brows."""
-    v, quads = source.mean, source.quads
-    eye = v[np.unique(quads[source.groups == "helper-l-eye"])].mean(axis=0)
-    body = source.groups == "body"
-    top = v[np.unique(quads[body])][:, 1].max()
-    tall = top - eye[1]
-    up, back = (v[:, 1] - eye[1]) / tall, (v[:, 2] - eye[2]) / tall
-    ears = np.zeros(len(v))
-    np.maximum.at(ears, quads[(source.mask("ears") > 0.5) & body].ravel(), 1.0)
-    scalp = quads[body & (fields.head[quads].mean(axis=1) > 0.9) & (ears[quads].max(axis=1) < 0.5)]
-    rows = smoothed(scalp, len(v), 2)
-    tri = thinned(v, triangles_of(scalp), 1500, np.ones(len(v)))
-    line = np.interp(back, [-1.75, -1.35, -1.12, -1.0, -0.82, -0.72, -0.5, -0.25, 0.2],
-                     [-0.75, -0.75, -0.55, -0.1, 0.0, 0.08, 0.36, 0.52, 0.56])  # fmt: skip
-    field = (line - up) * tall
-    rising = np.clip(-field / 0.045, 0, 1) ** 0.6
-    found = {}
-    for name, depth in (("buzz", 0.004), ("short", 0.014), ("full", 0.024)):
-        found[name] = cut(rows, tri, 0.0015 + depth * rising, field, SLOTS.index("hair"))
-    bald = np.maximum(field, (up - 0.5) * tall)
-    found["bald"] = cut(rows, tri, 0.0015 + 0.004 * np.clip(-bald / 0.03, 0, 1), bald, SLOTS.index("hair"))
-    nape, blades = source.joint("neck_01"), source.joint("spine_03")
-    for name, low, wide in (("long", blades[1] - 0.0, 0.1), ("bob", nape[1] + 0.005, 0.1)):
-        found[name] = _falling(v, quads[body & (ears[quads].max(axis=1) < 0.5)], (up, back), field, low, wide)
-    found["brows"] = _brows(source, fields)
-    return found
-
-
-def _falling(v: Array, quads: Array, at: tuple[Array, Array], cap: Array, low: float, wide: float) -> Part:
-    """Hair behind the ears down to a height: a sheet over nape and back, as straight as hair hangs."""
-    up, back = at
-    here = quads[(v[quads][:, :, 1].min(axis=1) > low - 0.05) & (v[quads][:, :, 2].mean(axis=1) < v[:, 2].max() - 0.11)]
-    rows = smoothed(here, len(v), 6)
-    tri = thinned(v, triangles_of(here), 900, np.ones(len(v)))
-    head = back < -1.3
-    behind = v[head & (cap < -0.05)][:, 2].min()
-    bottom = v[(np.abs(v[:, 1] - low) < 0.03) & (np.abs(v[:, 0]) < 0.05)][:, 2].min()
-    height = v[head & (cap < -0.05)][:, 1].mean()
-    goal = np.interp(v[:, 1], [low, height], [min(bottom, behind + 0.02), behind]) - 0.02
-    most = np.interp(up, [-0.9, -0.2, 0.1], [0.06, 0.03, 0.012])
-    hollow = np.clip(v[:, 2] - goal, 0.012, most)
-    outer = np.clip(1.25 - np.abs(v[:, 0]) / wide, 0.3, 1.0)
-    edge = np.maximum.reduce([(back + 0.8) * 0.1, low - v[:, 1], np.abs(v[:, 0]) - wide, (up - 0.15) * 0.1])
-    return cut(rows, tri, 0.008 + hollow * outer, edge, SLOTS.index("hair"))
-
-
-def _brows(source: Source, fields: Fields) -> Part:
-    """An arc above each eye."""
-    v, quads = source.mean, source.quads
-    face = quads[(source.groups == "body") & (source.mask("face") > 0.2)]
-    field = np.full(len(v), 1.0)
-    for side, sign in (("l", 1), ("r", -1)):
-        points = v[np.unique(quads[source.groups == f"helper-{side}-eye"])]
-        middle, radius = (points.min(axis=0) + points.max(axis=0)) / 2, np.ptp(points[:, 1]) / 2
-        x, y = sign * (v[:, 0] - middle[0]) / radius, (v[:, 1] - middle[1]) / radius
-        height = np.interp(x, [-1.2, -0.8, 0.6, 1.8], [0.15, 0.24, 0.19, 0.05])
-        arc = np.maximum(np.abs(y - 1.42 + 0.1 * (x - 0.5) ** 2) - height, np.maximum(-1.2 - x, x - 1.8))
-        field = np.minimum(field, np.maximum(arc * radius, middle[2] - 0.01 - v[:, 2]))
-    return cut(_single(len(v)), triangles_of(face), np.full(len(v), 0.0018), field, SLOTS.index("brow"))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import PlanLine, header, is_step, ordered, plan_line
+from hearth.kb.language.plan_lines import PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.understanding import Candidate, understand
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -46,7 +46,7 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge) -> ParsedS
     is_ordered = ordered(lines)
     for number, line in enumerate(lines):
         parser.take(line, raw[number], before + number + 1, is_step(line, is_ordered))
-    top = header(text)
+    top = header_of(lines)
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
@@ -88,18 +88,23 @@ class _StepParser:
         if line.bracketed:
             return self._written(line.text, raw, number)
         words = line.text
-        for each in dict.fromkeys((words, _EXPLAINED.split(words, 1)[0] or words)):
-            parts = self._parts(each)
-            if parts:
-                self.warnings += [self._fuzzy(parts[0], raw, words, number)] if each != words else []
-                break
-        whole = understand(self.known, self._resolved(words))
-        if not parts and whole.meant and not words.endswith(":"):
-            parts = [whole.meant]
-            self.warnings.append(self._fuzzy(whole.meant, raw, words, number))
+        parts = self._parts(words)
+        if not parts and (shorter := _EXPLAINED.split(words, 1)[0]) not in ("", words):
+            parts = self._parts(shorter)
+            self.warnings += [self._fuzzy(parts[0], raw, words, number)] if parts else []
+        fault = [] if parts else self._nearest(words, raw, number)
         for part in parts:
             self._add(part, number)
-        return [] if parts else [self._fault(whole.candidates, whole.ambiguous, raw, words, number)]
+        return fault
+
+    def _nearest(self, words: str, raw: str, number: int) -> list[Diagnostic]:
+        """Add the step that a line most resembles; the fault of one that resembles none."""
+        whole = understand(self.known, self._resolved(words))
+        if not whole.meant or words.endswith(":"):
+            return [self._fault(whole.candidates, whole.ambiguous, raw, words, number)]
+        self._add(whole.meant, number)
+        self.warnings.append(self._fuzzy(whole.meant, raw, words, number))
+        return []
 
     def _written(self, text: str, raw: str, number: int) -> list[Diagnostic]:
         """Add the steps of a line in the syntax of programs."""
@@ -136,7 +141,7 @@ class _StepParser:
         return next((step.objects[0].name.replace("_", " ") for step in reversed(self.steps) if step.objects), "")
 
     def _resolved(self, words: str) -> str:
-        about = self._about()
+        about = self._about() if _PRONOUN.search(words) else ""
         return _PRONOUN.sub(about, words) if about else words
 
     def _add(self, meant: Candidate, number: int) -> None:

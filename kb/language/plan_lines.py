@@ -9,6 +9,9 @@ from hearth.schemas.blocks import is_sentence
 _NUMBERED = re.compile(
     r"(?:[-*+•–]\s+)?(?:step\s*\d{1,4}\s*[.:)\]–-]?|\(?\d{1,4}\s*[.:)\]])\s+(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE
 )
+_PLAIN = re.compile(r"([ \t]*)(?:[Ss]tep )?(\d{1,4})[.:)] +([A-Za-z][A-Za-z0-9 ,.;()'-]*)")
+"""A numbered step of plain words, of which nothing has to be undone."""
+
 _SYMBOLS = re.compile(r"(?:[^\w\s\[\]<>(){}|*+•'\"’“‘…–-])+\s*")
 _KEYCAP = str.maketrans({"\ufe0f": "", "\u20e3": "."})
 _BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
@@ -55,6 +58,9 @@ class PlanLine(NamedTuple):
 
 def plan_line(raw: str) -> PlanLine:
     """Read a line; one of layout alone, or a heading such as `Steps:`, is empty."""
+    plain = _PLAIN.fullmatch(raw)
+    if plain:  # as most lines are: without what Markdown could mean
+        return PlanLine(" ".join(plain[3].split()), int(plain[2]), len(plain[1]))
     if _LAYOUT.match(raw):
         return PlanLine("")
     quote = _QUOTE.match(raw)
@@ -87,7 +93,11 @@ def header(text: str) -> Header:
     The title is the line after `Task:`, else the first heading, else the first line that is not a sentence, else the
     first; lines before it belong to no description. `Here is my plan:` is not a title.
     """
-    lines = list(map(plan_line, text.split("\n")))
+    return header_of(list(map(plan_line, text.split("\n"))))
+
+
+def header_of(lines: Sequence[PlanLine]) -> Header:
+    """`header` of lines that are read already."""
     is_ordered = ordered(lines)
     first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
     found = [line for line in lines[:first] if line.text]

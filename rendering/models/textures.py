@@ -114,6 +114,7 @@ TILES: dict[str, Callable[[], Floats]] = {
     "checks": _checks,
     "dots": _dots,
     "grime": _grime,
+    "hair": lambda: _grey(1 + noise(26, (24.0, 0.8)) * 0.1 + noise(27, (90.0, 1.0)) * 0.08),
     "water": lambda: _grey(1 + noise(25, (6.0, 6.0)) * 0.12),
 }
 """Repeating textures that modulate the colour; linear values about 1."""

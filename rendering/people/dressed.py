@@ -38,7 +38,7 @@ HAIR = {
     "full": ("full",),
     "bob": ("full", "bob"),
     "long": ("full", "long"),
-    "bun": ("full",),
+    "bun": ("full", "bun"),
 }
 """The surfaces of each style of hair."""
 
@@ -122,7 +122,7 @@ def _painted(body: Body, data: BodyData, slots: NDArray[np.int64]) -> tuple[Floa
         "iris": Paint(body.iris, shine=0.3),
         "pupil": Paint("#15110f", shine=0.3),
         "brow": Paint(_mixed(body.hair, "#201812", 0.35)),
-        "hair": Paint(body.hair, "brushed", 6.0),
+        "hair": Paint(body.hair, "hair", 6.0),
         "top": Paint(body.top, body.weave, 6.0),
         "bottom": Paint(body.bottom, "fabric", 5.0),
         "shoes": Paint(body.shoes, shine=0.15),

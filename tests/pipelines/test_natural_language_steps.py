@@ -1,9 +1,14 @@
 """Steps in words through validate: mapped, kept with their score, or refused with candidates."""
 
 import json
+import re
+from unittest.mock import patch
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from hearth.kb.language import plan_lines
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
@@ -154,3 +159,10 @@ def test_a_step_in_brackets_is_checked_by_the_grammar(knowledge):
     found = parse_steps("1. [Walk] <bed> (2)\n2. [Fly] <bed> (1)\n3. [Walk] <bed>\n", 4, "a.txt", knowledge)
     assert list(print_lines(found.program)) == ["[Walk] <bed> (2)"]
     assert [(f.code, f.line, f.column) for f in found.faults] == [("UNKNOWN_ACTION", 6, 5), ("SYNTAX", 7, 11)]
+
+
+@given(st.sampled_from(("1. ", "Step 2: ", "\t12)  ", "step 3. ")), st.text("ab C1.:)(-,;'", max_size=12))
+def test_a_plain_line_is_read_as_one_with_markdown_would_be(start, words):
+    plain = plan_lines.plan_line(start + words)
+    with patch.object(plan_lines, "_PLAIN", re.compile("(?!)")):
+        assert plan_lines.plan_line(start + words) == plain
