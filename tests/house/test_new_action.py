@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from checkouts import copied, done
 
-ROOT = Path(__file__).resolve().parents[2]
 PAGE = "docs/examples/new-action.md"
 BASH = re.compile(r"^```bash\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 TITLED = re.compile(r'^```text title="([^"]+)"\n(.*?)^```$', re.DOTALL | re.MULTILINE)
@@ -41,18 +37,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
     """The checkout with the action, committed before it: `git status` says what the page has changed."""
-    place = tmp_path_factory.mktemp("new-action")
-    copy = place / "hearth"
-    names = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    for name in names.strip("\0").split("\0"):
-        target = copy / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(ROOT / name, target, follow_symlinks=False)
-    (place / "site").mkdir()
-    (place / "site/hearth").symlink_to(copy)
-    (place / "bin").mkdir()
-    (place / "bin/python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
-    (place / "bin/python").chmod(0o755)
+    copy = copied(tmp_path_factory.mktemp("new-action"))
     who = ("-c", "user.name=test", "-c", "user.email=test@example.org")
     done(copy, "git", "init", "-q")
     done(copy, "git", "add", "-A", "-f")
@@ -63,18 +48,6 @@ def copy(tmp_path_factory):
     for script in BASH.findall(text):
         done(copy, "bash", "-euo", "pipefail", "-c", script)
     return copy
-
-
-def done(copy: Path, *command: str) -> str:
-    """Run something in the copy, whose package is the copy; its output."""
-    place = copy.parent
-    path = f"{place / 'bin'}:{os.environ['PATH']}"
-    environment = {**os.environ, "PATH": path, "PYTHONPATH": str(place / "site")}
-    for name in [name for name in environment if name.startswith(("PYTEST_", "HEARTH_"))]:
-        del environment[name]
-    ran = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, f"{ran.stdout[-8000:]}\n{ran.stderr[-4000:]}"
-    return ran.stdout
 
 
 def test_it_touches_the_files_that_contributing_names(copy):
