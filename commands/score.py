@@ -249,7 +249,7 @@ def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_js
         return
     output.table([name.replace("_", " ") for name in Result._fields], [*found, *THESIS])
     if not found:
-        print(f"\nsplit `{split}` has no original programs to learn from, or none to test on: build from more activities")
+        print(f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities")
 
 
 @app.command("graphs")
