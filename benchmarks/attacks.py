@@ -23,8 +23,10 @@ sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Pa
 from attack import Attack, Ground  # noqa: E402
 from attacks_on_challenges import clients, results, task_files  # noqa: E402
 from attacks_on_episodes import episodes  # noqa: E402
-from attacks_on_models import checkpoints  # noqa: E402
+from attacks_on_films import films  # noqa: E402
+from attacks_on_models import checkpoints, kinds  # noqa: E402
 from attacks_on_studies import studies  # noqa: E402
+from attacks_on_trainings import trainings  # noqa: E402
 from attacks_on_ways import ways  # noqa: E402
 from attacks_on_web import web  # noqa: E402
 from hostile import rename, replace_texts  # noqa: E402
@@ -331,8 +333,8 @@ def terminals() -> Iterator[Attack]:
 
 
 GROUPS = (
-    queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals, checkpoints, task_files, results,
-    clients, episodes, studies, ways, web,
+    queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals, checkpoints, kinds, trainings,
+    task_files, results, clients, episodes, films, studies, ways, web,
 )  # fmt: skip
 
 
