@@ -92,7 +92,7 @@ MEMBERS = {
 
 def _packed(members: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
     held = BytesIO()
-    with zipfile.ZipFile(held, "w", method) as archive:
+    with zipfile.ZipFile(held, "w", method, compresslevel=1) as archive:
         for name, data in members.items():
             archive.writestr(name, data)
     return held.getvalue()
@@ -172,19 +172,30 @@ def _arrays() -> Iterator[Attack]:
 
 
 def _taken(ground: Ground, data: bytes) -> Any:
+    return named(ground.folder / "given.npz", data)
+
+
+def named(path: Path, data: bytes) -> Any:
     """Read a film as `model show` does, and name its clips."""
     from hearth.models.films.film_shown import cut
 
-    path = ground.folder / "given.npz"
     path.write_bytes(data)
-    return restore(folder_of("clips-seen"))[1].named(cut(film_input.read_masks(path)))
+    return _trained("clips-seen").named(cut(film_input.read_masks(path)))
+
+
+@cache
+def _trained(kind: str) -> Any:
+    return restore(folder_of(kind))[1]
 
 
 def _shown(ground: Ground, data: bytes) -> Any:
+    return sketched(ground.folder / "above.npz", data)
+
+
+def sketched(path: Path, data: bytes) -> Any:
     """Read a demonstration as `model show` does, and write its sketch."""
-    path = ground.folder / "above.npz"
     path.write_bytes(data)
-    trained = restore(folder_of("demo2sketch"))[1]
+    trained = _trained("demo2sketch")
     return trained.sketches([trained.see(read_pictures(path))])
 
 
@@ -237,7 +248,7 @@ def _from_table(dataset: Dataset, table: str) -> Any:
     found: list[Any] = []
     if table == "clips":
         clips = Clips.of(dataset, "train")
-        trained = restore(folder_of("clips-seen"))[1]
+        trained = _trained("clips-seen")
         readers: list[Callable[[], Any]] = [lambda: [trained.named(each) for each in clips.by_film()], clips.__len__]
     else:
         there = Demonstrations.of(dataset)

@@ -27,6 +27,9 @@ FILE = "above.npz"
 MOST_PICTURES = 2_000
 """Of a demonstration, which has one for each tick: programs of people have less than a hundred."""
 
+MOST_CLASSES = 2_048
+"""That pictures show: each is looked at by itself. The knowledge has some hundreds."""
+
 
 class Pictures(NamedTuple):
     """T pictures from above, at the start and after each tick.
@@ -113,6 +116,11 @@ def arrays(data: bytes, file: str) -> Pictures:
     if changes.shape != (*masks.shape, 3):
         message = f"its {CHANGES} have the form {changes.shape}, its {MASKS} {masks.shape}"
         raise damaged(file, message)
+    shown = np.zeros(1 << 16, np.bool_)
+    for mask in masks:
+        shown[mask] = True
+    if (count := np.count_nonzero(shown)) > MOST_CLASSES:
+        raise damaged(file, f"its {MASKS} have {count:,} classes, more than {MOST_CLASSES:,}")
     return Pictures(masks, np.cumsum(changes, axis=0, dtype=np.uint8))
 
 

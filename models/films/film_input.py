@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hearth.models.films.film_arrays import LARGEST, film_array
 from hearth.rendering.film.clips import FILE, RATE, SIZE
+from hearth.rendering.film.quiet import quiet
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
@@ -86,16 +87,17 @@ def read_pictures(path: Path) -> NDArray[np.uint8]:
     at, head = HEADS.get(path.suffix, (0, b"a video"))
     if read_start(path, at + len(head))[at:] != head:
         raise _unread(path)
-    video = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
-    try:
-        found = [cv2.resize(each, SIZE, interpolation=cv2.INTER_AREA)[..., ::-1] for each in _retrieved(video, path)]
-    except cv2.error as error:
-        raise _unread(path) from error
-    finally:
-        video.release()
+    with quiet():
+        video = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
+        try:
+            found = [cv2.resize(each, SIZE, interpolation=cv2.INTER_AREA) for each in _retrieved(video, path)]
+        except cv2.error as error:
+            raise _unread(path) from error
+        finally:
+            video.release()
     if not found:
         raise _unread(path)
-    return np.stack(found)
+    return np.stack([each[..., ::-1] for each in found])
 
 
 def _retrieved(video: Any, path: Path) -> Iterator[Any]:

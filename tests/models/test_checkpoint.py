@@ -155,7 +155,8 @@ def rewritten(folder, change):
 
 @pytest.mark.parametrize("facts", [
     {"minutes": "x"}, {"minutes": True}, {"seed": "0"}, {"seed": 1.5}, {"curves": []}, {"curves": {"score": 1}},
-    {"curves": {"score": [None]}}, {"imitation": 7}, {"imitation": {"curves": {"score": ["x"]}}}, {"return_imitated": {}},
+    {"curves": {"score": [None]}}, {"imitation": 7}, {"imitation": {"curves": {"score": ["x"]}}},
+    {"return_imitated": {}},
 ])  # fmt: skip
 def test_what_is_computed_with_of_a_training_is_numbers(folder, facts):
     assert rewritten(folder, lambda document: document["trained"].update(facts)) == Code.DAMAGED_FILE

@@ -115,3 +115,11 @@ def test_rows_of_demonstrations_without_a_value_are_refused(row):
     with pytest.raises(HearthError) as found:
         Demonstrations.of(SimpleNamespace(rows=lambda *_: ([], [row])))
     assert found.value.diagnostics[0].code == Code.DAMAGED_FILE
+
+
+def test_pictures_show_so_many_classes_at_most():
+    masks, changes = np.arange(4096, dtype=np.uint16).reshape(1, 64, 64), np.zeros((1, 64, 64, 3), np.uint8)
+    with pytest.raises(HearthError, match="4,096 classes"):
+        arrays(packed(**{MASKS: array(masks), CHANGES: array(changes)}).getvalue(), "above.npz")
+    few = packed(**{MASKS: array(masks % 600), CHANGES: array(changes)}).getvalue()
+    assert arrays(few, "above.npz").masks.max() == 599

@@ -167,7 +167,8 @@ def test_a_state_with_other_epochs_is_not_continued(tmp_path, epochs):
 
 
 @pytest.mark.parametrize("change", [
-    lambda found: {}, lambda found: dict([*found.items()][:1]), lambda found: {f"x{name}": found[name] for name in found},
+    lambda found: {}, lambda found: dict([*found.items()][:1]),
+    lambda found: {f"x{name}": found[name] for name in found},
     lambda found: {name: value.reshape(-1)[:1] for name, value in found.items()},
     lambda found: {**found, "optimiser/x/exp_avg": found["now/1.bias"]},
 ])  # fmt: skip
