@@ -81,7 +81,7 @@ MEMBERS = {
     "long header": _member(_header("(3, 2, 2)") + " " * 60_000, bytes(24)),
     "longer header": _member(_header("(3, 2, 2)") + " " * 5_000_000, bytes(24), b"\x02\x00"),
     "deep header": _member("(" * 9_000), "minus": _member("-" * 9_000 + "1"), "open": _member("{'descr': '"),
-    "no text": _member(b"\xff\xfe" * 50), "indented": _member("  {\n 'a'\n:  L5 "),
+    "not text": _member(b"\xff\xfe" * 50), "indented": _member("  {\n 'a'\n:  L5 "),
     "calls": _member("__import__('os')"),
     "rows of columns": _member(_header("(3, 2, 2)", "'<u2'", "True"), bytes(24)),
     "more bytes": _member(_header("(3, 2, 2)"), bytes(9_000)),

@@ -72,12 +72,12 @@ def _video(ground: Ground, data: bytes) -> Any:
 
 
 def _another(ground: Ground, suffix: str, data: bytes) -> None:
-    """A file that is no film itself gives no pictures, least of all those of the one beside it."""
+    """A file that is not a film gives no pictures, least of all those of the one beside it."""
     (ground.folder / "other.webm").write_bytes(video())
     path = ground.folder / f"given{suffix}"
     path.write_bytes(data.replace(b"{guard}", str(ground.guard).encode()))
     found = watched(path)
-    raise AssertionError(f"pictures {found} of what is no film")
+    raise AssertionError(f"pictures {found} of what is not a film")
 
 
 def _called(ground: Ground, name: str) -> Any:

@@ -89,7 +89,7 @@ def texts(values: Any) -> tuple[str, ...]:
     """A list of a checkpoint that should be of different texts, and may be a stranger's.
 
     Raises:
-        TypeError: it is no list.
+        TypeError: it is not a list.
         ValueError: it is of something else, or says a text twice.
     """
     found = tuple(values)

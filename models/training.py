@@ -204,7 +204,7 @@ class _State:
         try:
             with safe_open(self.folder / STATE, "pt") as file:
                 run = json.loads((file.metadata() or {}).get(RUN, "null"))
-                tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118  (it is no mapping)
+                tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118  (it is not a mapping)
         except (OSError, SafetensorError, ValueError, RecursionError):
             return []
         if not isinstance(run, dict) or run.get("key") != self.key:

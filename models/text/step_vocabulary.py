@@ -88,7 +88,7 @@ class StepVocabulary:
         """A closed list of steps as numbers, which may be a stranger's.
 
         Raises:
-            TypeError, ValueError: a row is no step of this vocabulary.
+            TypeError, ValueError: a row is not a step of this vocabulary.
         """
         found = tuple((int(action), int(first), int(second)) for action, first, second in document)
         for action, *numbers in found:
