@@ -145,7 +145,7 @@ WEIGHT_CHANGES: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
     "no number": _of_all(lambda array: np.full_like(array, np.nan)),
     "infinite": _of_all(lambda array: np.full_like(array, np.inf)),
     "huge": _of_all(lambda array: np.full_like(array, 6e4)),
-    "largest": _of_all(lambda array: np.full_like(array, np.finfo(array.dtype).max)),
+    "largest": _of_all(lambda array: np.full_like(array, np.finfo(array.dtype).max if array.dtype.kind == "f" else 1)),
     "whole": _of_all(lambda array: np.full(array.shape, -1, np.int64)),
     "true": _of_all(lambda array: np.ones(array.shape, np.bool_)),
     "double": _of_all(lambda array: array.astype(np.float64)),
