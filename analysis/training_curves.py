@@ -51,8 +51,8 @@ def runs(folders: Iterable[Path]) -> list[Run]:
         practice = list(trained.get("curves", {}).get("score", ()))
         scores = {"practice": [trained["return_imitated"], *practice] if "return_imitated" in trained else practice}
         if "imitation" in trained:
-            scores = {"imitation": list(trained["imitation"]["curves"]["score"]), **scores}
-        found.append(Run(checkpoint.model, int(trained.get("seed", 0)), {k: v for k, v in scores.items() if v}))
+            scores = {"imitation": list(trained["imitation"].get("curves", {}).get("score", ())), **scores}
+        found.append(Run(checkpoint.model, trained.get("seed", 0), {k: v for k, v in scores.items() if v}))
     return found
 
 

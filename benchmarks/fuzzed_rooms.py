@@ -178,6 +178,117 @@ def _signed_description(data: bytes) -> bytes:
     return data
 
 
+def _kind(kind: str) -> Room:
+    """The description of a checkpoint of a kind, with a digest that fits; the model is asked what its kind is asked."""
+
+    def example() -> bytes:
+        from asked_models import folder_of
+
+        return (folder_of(kind) / "model.json").read_bytes()
+
+    def reader(scratch: Path) -> One:
+        from asked_models import ask, folder_of
+
+        folder = Path(shutil.copytree(folder_of(kind), scratch / "checkpoint"))
+
+        def one(data: bytes) -> Any:
+            (folder / "model.json").write_bytes(_signed_description(data))
+            return ask(folder, kind)
+
+        return one
+
+    return Room(example, reader)
+
+
+def _place(kind: str) -> Room:
+    """The same of kinds with long descriptions: two bytes say in which place the value is that follows them."""
+
+    def reader(scratch: Path) -> One:
+        from asked_models import ask, folder_of
+        from attacks_on_models import _document_of, _places, _put
+
+        document = _document_of(kind)
+        places = [place for part in ("settings", "content") for place in _places(document, part, 6)]
+        folder = Path(shutil.copytree(folder_of(kind), scratch / "checkpoint"))
+
+        def one(data: bytes) -> Any:
+            changed = json.loads(json.dumps(document))
+            try:
+                value = json.loads(data[2:])
+            except (ValueError, RecursionError):
+                value = data[2:].decode("latin-1")
+            _put(places[int.from_bytes(data[:2]) % len(places)], value)(changed)
+            (folder / "model.json").write_bytes(_signed_description(json.dumps(changed).encode()))
+            return ask(folder, kind)
+
+        return one
+
+    return Room(lambda: b'\x00\x00[["Walk", 1, -1, 0.5, null, [], {}], 0]', reader)
+
+
+def _array() -> bytes:
+    from asked_models import film
+    from attacks_on_films import _array
+
+    return _array(film()[:9, ::3, ::3])
+
+
+def _film(scratch: Path) -> One:
+    """The bytes of an array, packed as they should be: its clips are named."""
+    from attacks_on_films import _packed, named
+
+    return lambda data: named(scratch / "given.npz", _packed({"class_ids.npy": data}))
+
+
+def _archive() -> bytes:
+    from attacks_on_films import above
+
+    return above()
+
+
+def _demonstration(scratch: Path) -> One:
+    from attacks_on_films import sketched
+
+    return lambda data: sketched(scratch / "above.npz", data)
+
+
+def _video() -> bytes:
+    from attacks_on_videos import video
+
+    return video()
+
+
+def _watched(path: Path) -> Any:
+    from attacks_on_videos import watched
+
+    return watched(path)
+
+
+def _state() -> bytes:
+    from tempfile import TemporaryDirectory
+
+    from attacks_on_trainings import _line
+
+    from hearth.models.training import STATE
+
+    with TemporaryDirectory() as folder:
+        _line(Path(folder))
+        return Path(folder, STATE).read_bytes()
+
+
+def _continued(scratch: Path) -> One:
+    """A state of a training: it is taken up, or not."""
+    from attacks_on_trainings import _line
+
+    from hearth.models.training import STATE
+
+    def one(data: bytes) -> Any:
+        (scratch / STATE).write_bytes(data)
+        return _line(scratch)
+
+    return one
+
+
 def _answers(scratch: Path) -> One:
     """A line of an agent, and the text in it, in the middle of nothing."""
     from hearth.challenges.answers import by_number, by_text
@@ -237,6 +348,15 @@ ROOMS: dict[str, Room] = {
     "films-list": Room(lambda: _FILM, _by_file("films.json", _read_films)),
     "checkpoint": _checkpoint(SMALL, "model.json"),
     "weights": _checkpoint(EMPTY, "weights.safetensors"),
+    **{f"model-{kind}": _kind(kind) for kind in ("clips-rgb", "masks", "resactgraph", "nearest", "helping-actions")},
+    **{
+        f"model-{kind}": _place(kind)
+        for kind in ("demo2sketch", "films-mle", "clips-seen", "consensus", "mle", "chooser")
+    },
+    "film-array": Room(_array, _film),
+    "film-archive": Room(_archive, _demonstration),
+    "film-video": Room(_video, _by_file("film.webm", _watched)),
+    "training-state": Room(_state, _continued),
     "agent-answer": Room(lambda: _ANSWER, _answers),
     "page-steps": Room(lambda: _STEPS, _messages),
 }

@@ -44,19 +44,68 @@ questions: [{name: helpful, text: How was it, scale: {from: 1, to: 7}}]
 
 MINI = ("build", "--tier", "mini", "--pictures", "1", "--workers", "2", "--out")
 
+DEMOS = ("build", "--tier", "demos", "--demonstrations", "4", "--limit", "12", "--workers", "2", "--out")
+
 JOBS: dict[str, tuple[str, ...]] = {
     "build": (*MINI, "{out}"),
     "clips": ("build", "--tier", "clips", "--clips", "3", "--limit", "40", "--workers", "2", "--out", "{out}"),
+    "demos": (*DEMOS, "{out}"),
     "run": ("challenge", "run", "{given}/tasks.json", "--helper", "hp_true", "--seeds", "2", "--out", "{out}/r.jsonl"),
     "challenge": ("challenge", "build", "wah", "--limit", "40", "--workers", "2", "--out", "{out}"),
     "train": ("model", "train", "unaries", "{given}/dataset", "--epochs", "4", "--out", "{out}"),
+    "demo2sketch": (
+        "model",
+        "train",
+        "demo2sketch",
+        "{given}/dataset",
+        "--epochs",
+        "3",
+        "--set",
+        "hidden=32",
+        "--out",
+        "{out}",
+    ),
+    "learn": ("challenge", "learn", "wah", "--limit", "24", "--epochs", "4", "--workers", "2", "--out", "{out}"),
+    "help": (
+        "challenge",
+        "learn",
+        "wah",
+        "--what",
+        "subgoals",
+        "--limit",
+        "6",
+        "--epochs",
+        "1",
+        "--workers",
+        "2",
+        "--out",
+        "{out}",
+    ),
+    "tables": (
+        "model",
+        "tables",
+        "{given}/dataset",
+        "--table",
+        "5.4",
+        "--seeds",
+        "1",
+        "--minutes",
+        "0.0001",
+        "--most",
+        "8",
+        "--out",
+        "{out}",
+    ),
     "study": ("study", "simulate", "{given}/study.yaml", "--workers", "2", "--out", "{out}"),
 }
 """Commands, by the names of jobs; `{given}` is a folder with what they read, `{out}` the one that they write to."""
 
 GIVEN: dict[str, tuple[str, ...]] = {
+    "demos": (*DEMOS, "{out}"),
     "run": ("challenge", "tasks", "wah", "--limit", "20", "--out", "{given}/tasks.json"),
     "train": (*MINI, "{given}/dataset"),
+    "tables": (*MINI, "{given}/dataset"),
+    "demo2sketch": (*DEMOS, "{given}/dataset"),
 }
 """Commands that make what a job reads."""
 

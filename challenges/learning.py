@@ -39,7 +39,7 @@ def train(
     seen: Seen = unseen,
     trained: Seen = unseen,
 ) -> Mapping[str, Any]:
-    """Train, and write a checkpoint; how it was trained.
+    """Train, and write a checkpoint; how it was trained. One that was stopped is continued.
 
     Args:
         name: of the challenge.
@@ -56,7 +56,10 @@ def train(
     Raises:
         HearthError: BAD_ARGUMENT: nothing of that name is learnt; MISSING_FILE: the extra `models` is not installed.
     """
+    import shutil
+
     from hearth.models.checkpoint import save
+    from hearth.models.fit_model import STATE
 
     if what not in WHAT:
         raise HearthError.of(Code.BAD_ARGUMENT, f"nobody learns `{what[:40]}`", suggestion=", ".join(WHAT))
@@ -64,19 +67,22 @@ def train(
     if what in GOALS:
         from hearth.challenges import learning_to_watch
 
-        how = Training(seed=seed, epochs=epochs or PASSES, patience=0)
+        how = Training(seed=seed, epochs=epochs or PASSES, patience=0, folder=out / STATE)
         found = learning_to_watch.learn(name, known, how, limit, rate, workers, seen, trained, GOALS[what])
     elif what in PROPOSALS:
         from hearth.challenges import learning_to_propose
 
-        how = Training(seed, epochs or 300, rate=learning_to_propose.RATE, patience=0, halve_after=0)
+        how = Training(seed, epochs or 300, rate=learning_to_propose.RATE, patience=0, halve_after=0,
+                       folder=out / STATE)  # fmt: skip
         found = learning_to_propose.learn(name, PROPOSALS[what], known, how, limit, workers, seen, trained)
     else:
         from hearth.challenges import learning_to_help
 
         effort = learning_to_help.EFFORTS[what]
         effort = effort if epochs is None else replace(effort, epochs=epochs)
-        found = learning_to_help.learn(name, what, known, Training(seed=seed), effort, limit, workers, seen, trained)
+        how = Training(seed=seed, folder=out / STATE)
+        found = learning_to_help.learn(name, what, known, how, effort, limit, workers, seen, trained)
     save(found.checkpoint(), out)
+    shutil.rmtree(out / STATE, ignore_errors=True)
     facts: Mapping[str, Any] = found.facts
     return facts

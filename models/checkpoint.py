@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
-from hearth.storage.files import file_digest, value_digest, write_bytes, write_json
+from hearth.storage.files import drop_temporary, file_digest, value_digest, write_bytes, write_json
 from hearth.storage.input_files import read_input
 from hearth.version import ACTION_SET, VERSION
 
@@ -58,6 +59,7 @@ def save(checkpoint: Checkpoint, folder: Path) -> None:
     """
     safetensors = library("safetensors.numpy")
     folder.mkdir(parents=True, exist_ok=True)
+    drop_temporary(folder.glob(".*"))
     weights = {name: _contiguous(array) for name, array in sorted(checkpoint.weights.items())}
     write_bytes(folder / WEIGHTS, safetensors.save(weights))
     document = {
@@ -73,8 +75,8 @@ def save(checkpoint: Checkpoint, folder: Path) -> None:
         "digest": value_digest(dict(checkpoint.content)),
         "content": dict(checkpoint.content),
     }
-    write_json(folder / NAME, document)
     write_bytes(folder / CARD, _card(checkpoint).encode())
+    write_json(folder / NAME, document)  # last: a folder that has it is whole
 
 
 def load(folder: Path) -> Checkpoint:
@@ -94,11 +96,30 @@ def load(folder: Path) -> Checkpoint:
         message = f"a checkpoint of format {document['format']}; this version of Hearth reads {FORMAT}"
         raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(folder), suggestion="train the model again")
     parts = {name: document.get(name) for name in ("settings", "content", "trained")}
-    if not isinstance(document.get("model"), str) or not all(isinstance(part, dict) for part in parts.values()):
+    model = document.get("model")
+    named = isinstance(model, str) and model.isprintable()
+    if not named or not all(isinstance(part, dict) for part in parts.values()):
         raise _damaged(folder / NAME, "it lacks the model, its settings or its content")
+    if not _facts_fit(document["trained"]):
+        raise _damaged(folder / NAME, "minutes, seed or curves of its training are not numbers")
     if value_digest(parts["content"]) != document.get("digest"):
         raise _damaged(folder / NAME, "its content is not what was written")
-    return Checkpoint(document["model"], weights=_weights(folder / WEIGHTS, document.get("weights")), **parts)  # type: ignore[arg-type]
+    return Checkpoint(model, weights=_weights(folder / WEIGHTS, document.get("weights")), **parts)  # type: ignore[arg-type]
+
+
+def _facts_fit(trained: Mapping[str, Any]) -> bool:
+    """Whether what is computed with, or drawn, of how a model was trained is numbers."""
+    phases = [trained, trained.get("imitation", {})]
+    return all(isinstance(phase, dict) and _phase_fits(phase) for phase in phases)
+
+
+def _phase_fits(phase: Mapping[str, Any]) -> bool:
+    curves = phase.get("curves", {})
+    if not isinstance(curves, dict) or not all(isinstance(values, list) for values in curves.values()):
+        return False
+    drawn = [number for values in curves.values() for number in values]
+    numbers = [phase.get("minutes", 0), phase.get("return_imitated", 0), *drawn]
+    return type(phase.get("seed", 0)) is int and all(type(each) in (int, float) and isfinite(each) for each in numbers)
 
 
 def _document(path: Path) -> Any:

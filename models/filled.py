@@ -17,7 +17,7 @@ def filled(make: Callable[[], Network], weights: Mapping[str, np.ndarray]) -> Ne
     It is first made without memory: settings that ask for a network larger than its weights cost nothing.
 
     Raises:
-        ValueError: its weights have other names or shapes.
+        ValueError: its weights have other names or shapes, or are not numbers.
     """
     with torch.device("meta"):
         wanted = {name: _shape(value) for name, value in make().state_dict().items()}
@@ -25,6 +25,8 @@ def filled(make: Callable[[], Network], weights: Mapping[str, np.ndarray]) -> Ne
     if wanted != given:
         differ = sorted({name for name, _ in wanted.items() ^ given.items()})
         raise ValueError(f"weights differ from those of the network in {', '.join(differ[:3])}")
+    if wrong := next((name for name, value in sorted(weights.items()) if not np.isfinite(value).all()), None):
+        raise ValueError(f"the weights {wrong} are not all numbers")
     network = make()
     network.load_state_dict({name: torch.tensor(value) for name, value in weights.items()})
     network.eval()

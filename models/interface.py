@@ -85,6 +85,19 @@ class Settings:
         return cls(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})
 
 
+def texts(values: Any) -> tuple[str, ...]:
+    """A list of a checkpoint that should be of different texts, and may be a stranger's.
+
+    Raises:
+        TypeError: it is not a list.
+        ValueError: it is of something else, or says a text twice.
+    """
+    found = tuple(values)
+    if not all(isinstance(each, str) for each in found) or len({*found}) < len(found):
+        raise ValueError("a list of names has something else, or a name twice")
+    return found
+
+
 def _like(value: Any, default: Any) -> bool:
     """Whether a value is of the kind of a default; without a default, or with None, all JSON values are."""
     if not isinstance(default, int | float | str):

@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple
 from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import NAME, load
 from hearth.models.data import facts_of
-from hearth.models.fit_model import fit
+from hearth.models.fit_model import STATE, fit
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.names import inside
@@ -173,6 +173,7 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
     digest = facts_of(Dataset.open(dataset))["digest"]
     if (folder / NAME).exists():
         if load(folder).trained.get("digest") == digest:
+            rmtree(folder / STATE, ignore_errors=True)  # of a training that was stopped at its very end
             return False
         rmtree(folder)  # of a dataset that was built anew since
     before = needed.before

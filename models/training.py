@@ -6,30 +6,37 @@ epoch are derived from the seed and its number: a run that was stopped and conti
 
 from __future__ import annotations
 
+import json
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from random import Random
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import torch
-from safetensors import SafetensorError
-from safetensors.torch import load_file, save_file
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
 
 from hearth.models.devices import device
 from hearth.models.interface import Training
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive, rng
-from hearth.storage.files import read_json, replacing, value_digest, write_json
+from hearth.storage.files import replacing, value_digest
 from hearth.storage.parallel import Seen, unseen
 
 B = TypeVar("B")
 
 STATE = "state.safetensors"
-RUN = "run.json"
+"""The file of a training that is not finished: weights, the optimiser's numbers, and in its head the epochs."""
+
+RUN = "run"
+"""The place in its head."""
+
+_OPTIMISER = "optimiser/"
+"""Before the names of the optimiser's numbers: of each weight, by its number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,42 +184,75 @@ class _State:
             self.module.load_state_dict(self.best)
 
     def keep(self, epochs: Sequence[Epoch]) -> None:
+        """One file, so that whoever is stopped has the weights of the epochs that it says, or those before."""
         if self.folder is None:
             return
         self.folder.mkdir(parents=True, exist_ok=True)
         parts = {"now": self.module.state_dict(), "best": self.best}
         tensors = {f"{part}/{name}": value for part, found in parts.items() for name, value in found.items()}
         for number, values in self.optimiser.state_dict()["state"].items():
-            tensors |= {f"optimiser/{number}/{name}": value for name, value in values.items()}
+            tensors |= {f"{_OPTIMISER}{number}/{name}": value for name, value in values.items()}
+        said = json.dumps({"key": self.key, "epochs": [list(epoch) for epoch in epochs]})
         with replacing(self.folder / STATE) as path:
-            save_file({name: value.detach().cpu().contiguous().clone() for name, value in tensors.items()}, path)
-        write_json(self.folder / RUN, {"key": self.key, "epochs": [list(epoch) for epoch in epochs]})
+            whole = {name: value.detach().cpu().contiguous().clone() for name, value in tensors.items()}
+            save_file(whole, path, {RUN: said})
 
     def restore(self) -> list[Epoch]:
         """Take up a kept state of the same task; its epochs, none if there is no such state."""
-        run = read_json(self.folder / RUN) if self.folder else None
-        if self.folder is None or not isinstance(run, dict) or run.get("key") != self.key:
+        if self.folder is None or not kept(self.folder):
             return []
         try:
-            tensors = load_file(self.folder / STATE)
-        except (OSError, SafetensorError):
+            with safe_open(self.folder / STATE, "pt") as file:
+                run = json.loads((file.metadata() or {}).get(RUN, "null"))
+                tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118  (it is not a mapping)
+        except (OSError, SafetensorError, ValueError, RecursionError):
             return []
-        epochs = [Epoch(*row) for row in run["epochs"]]
+        if not isinstance(run, dict) or run.get("key") != self.key:
+            return []
+        epochs = _epochs(run.get("epochs"))
+        if not epochs or not self._fits(tensors):
+            return []
+        self._take_up(tensors)
+        return epochs
+
+    def _fits(self, tensors: Mapping[str, torch.Tensor]) -> bool:
+        """Whether these are weights of the module, now and at their best, and numbers of the optimiser for them."""
+        own = {name: value.shape for name, value in self.module.state_dict().items()}
+        wanted = {f"{part}/{name}": shape for part in ("now", "best") for name, shape in own.items()}
+        given = {name: value.shape for name, value in tensors.items() if not name.startswith(_OPTIMISER)}
+        trained = [each.shape for group in self.optimiser.param_groups for each in group["params"]]
+        numbers = {
+            f"{_OPTIMISER}{number}/{name}": shape
+            for number, of_weight in enumerate(trained)
+            for name, shape in (("step", ()), ("exp_avg", of_weight), ("exp_avg_sq", of_weight))
+        }
+        others = {name: value.shape for name, value in tensors.items() if name.startswith(_OPTIMISER)}
+        return given == wanted and all(numbers.get(name) == tuple(shape) for name, shape in others.items())
+
+    def _take_up(self, tensors: Mapping[str, torch.Tensor]) -> None:
         state = self.optimiser.state_dict()
         state["state"] = {}
         now: dict[str, torch.Tensor] = {}
         for key, value in tensors.items():
             part, name = key.split("/", 1)
-            if part == "optimiser":
+            if part == _OPTIMISER[:-1]:
                 number, name = name.split("/", 1)
                 state["state"].setdefault(int(number), {})[name] = value
             else:
                 (now if part == "now" else self.best)[name] = value
         self.module.load_state_dict(now)
         self.optimiser.load_state_dict(state)
-        return epochs
+
+
+def _epochs(rows: Any) -> list[Epoch]:
+    """The epochs of a kept state; none if these are not epochs."""
+    kinds = (int, float, float, float, float)
+    if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == len(kinds) for row in rows):
+        return []
+    fits = (isinstance(value, kind) for row in rows for value, kind in zip(row, kinds, strict=True))
+    return [Epoch(*row) for row in rows] if all(fits) else []
 
 
 def kept(folder: Path) -> bool:
     """Whether a folder has the state of a training."""
-    return (folder / RUN).is_file()
+    return (folder / STATE).is_file()

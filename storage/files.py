@@ -49,6 +49,12 @@ def sync_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
+def drop_temporary(files: Iterable[Path]) -> None:
+    """Remove those of some files that somebody who was stopped had written in part."""
+    for leftover in [path for path in files if is_temporary(path.name)]:
+        leftover.unlink(missing_ok=True)
+
+
 def write_bytes(path: Path, data: bytes) -> None:
     """Write a whole file, or none."""
     with replacing(path) as temporary:

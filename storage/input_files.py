@@ -39,6 +39,16 @@ def read_input(path: Path, largest: int = LARGEST) -> bytes:
         return _limited(file.read(largest + 1), str(path), largest)
 
 
+def read_start(path: Path, count: int) -> bytes:
+    """The first bytes of a file, or all that it has.
+
+    Raises:
+        HearthError: MISSING_FILE or UNSUPPORTED_FILE, as of `read_input`.
+    """
+    with _opened(path) as file:
+        return file.read(count)
+
+
 def read_lines(path: Path, longest: int = LARGEST) -> Iterator[bytes]:
     """The lines of a file with their ends, of which one is in memory at a time.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.models.films.clip_data import CHANGES, LARGEST, MASKS, film_array
+from hearth.models.films.film_arrays import CHANGES, LARGEST, MASKS, damaged, film_array
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.input_files import read_input
@@ -23,6 +23,12 @@ if TYPE_CHECKING:
 
 FILE = "above.npz"
 """Name of a demonstration's arrays in its folder."""
+
+MOST_PICTURES = 2_000
+"""Of a demonstration, which has one for each tick: programs of people have less than a hundred."""
+
+MOST_CLASSES = 2_048
+"""That pictures show: each is looked at by itself. The knowledge has some hundreds."""
 
 
 class Pictures(NamedTuple):
@@ -63,6 +69,8 @@ class Demonstrations:
             message = "the dataset has no demonstrations"
             raise HearthError.of(Code.UNKNOWN_ID, message, file=str(dataset.folder),
                                  suggestion="`make demos`, or `build --demonstrations N`, makes some")  # fmt: skip
+        if any(None in row for row in rows):
+            raise damaged("demonstration_frames", "a row lacks its execution or its file")
         return cls(dataset, dict(rows), dataset.knowledge.objects["character"].id)
 
     def of_example(self, example: Example) -> str:
@@ -102,13 +110,17 @@ def arrays(data: bytes, file: str) -> Pictures:
     """The pictures of an .npz file as `rendering.film.pictures_from_above` stores them.
 
     Raises:
-        HearthError: DAMAGED_FILE, if it is something else.
+        HearthError: as of `film_array`.
     """
-    masks = film_array(BytesIO(data), file, MASKS)
-    changes = film_array(BytesIO(data), file, CHANGES)
+    masks, changes = (film_array(BytesIO(data), file, array, MOST_PICTURES) for array in (MASKS, CHANGES))
     if changes.shape != (*masks.shape, 3):
         message = f"its {CHANGES} have the form {changes.shape}, its {MASKS} {masks.shape}"
-        raise HearthError.of(Code.DAMAGED_FILE, message, file=file, suggestion="fetch the dataset again")
+        raise damaged(file, message)
+    shown = np.zeros(1 << 16, np.bool_)
+    for mask in masks:
+        shown[mask] = True
+    if (count := np.count_nonzero(shown)) > MOST_CLASSES:
+        raise damaged(file, f"its {MASKS} have {count:,} classes, more than {MOST_CLASSES:,}")
     return Pictures(masks, np.cumsum(changes, axis=0, dtype=np.uint8))
 
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import sys
-import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from itertools import groupby
-from typing import IO, TYPE_CHECKING, Any, NamedTuple, overload
-from zipfile import BadZipFile
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
-import numpy as np
 from numpy.typing import NDArray
 
+from hearth.models.films.film_arrays import COLOURS, LARGEST, MASKS, damaged, film_array
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.input_files import read_input
@@ -24,23 +22,6 @@ if TYPE_CHECKING:
 
 NOTHING = 0
 """Number of no object."""
-
-MASKS, COLOURS, CHANGES = "class_ids", "rgb", "rgb_changes"
-"""Names of a film's arrays: class masks, which every film has, and colours; those of demonstrations are changes from
-picture to picture."""
-
-FORMS: Mapping[str, tuple[int, type[np.generic]]] = {
-    MASKS: (3, np.uint16),
-    COLOURS: (4, np.uint8),
-    CHANGES: (4, np.uint8),
-}
-"""Dimensions and kind of numbers of a film's arrays."""
-
-LARGEST = 64 << 20
-"""Bytes of a film's file."""
-
-MOST_BYTES = 1 << 29
-"""Bytes of an array of a film in memory."""
 
 
 class Instruction(NamedTuple):
@@ -106,6 +87,8 @@ class Clips:
         if not rows:
             message = f"the dataset has no clips with `{array}` of the part `{part}`"
             raise HearthError.of(Code.UNKNOWN_ID, message, suggestion="`make clips` makes some")
+        if any(None in row or row[3] < 1 or None in row[5] for row in rows):
+            raise damaged("clips", "a row lacks a value, or has no frames")
         files = list(dict.fromkeys((row[0], row[1]) for row in rows))[: most or None]
         numbers = {execution: number for number, (execution, _) in enumerate(files)}
         found, least = [], [0] * len(files)
@@ -152,31 +135,8 @@ class Films(Sequence[NDArray[Any]]):
         file, least = self.files[number]
         found = film_array(BytesIO(read_input(inside(self.dataset.folder, file), LARGEST)), file, self.array)
         if len(found) < least:
-            raise _damaged(file, "a clip is outside of its film")
+            raise damaged(file, "a clip is outside of its film")
         return found
-
-
-def film_array(data: IO[bytes], file: str, array: str = MASKS) -> NDArray[Any]:
-    """An array of a film, as `rendering.film.clips` stores them, in the form of `FORMS`; `file` names it in errors.
-
-    Raises:
-        HearthError: DAMAGED_FILE, if it is something else.
-    """
-    dimensions, kind = FORMS[array]
-    try:
-        with np.load(data, allow_pickle=False) as arrays:
-            if arrays.zip.getinfo(f"{array}.npy").file_size > MOST_BYTES:
-                raise ValueError(f"its {array} are too large")
-            found: NDArray[Any] = arrays[array]
-    except (ValueError, KeyError, AttributeError, OSError, EOFError, BadZipFile, zlib.error) as error:
-        raise _damaged(file, str(error)[:100]) from error
-    if found.ndim != dimensions or found.dtype != kind or not found.size:
-        raise _damaged(file, f"its {array} have the form {found.shape} of {found.dtype}")
-    return found
-
-
-def _damaged(file: str, message: str) -> HearthError:
-    return HearthError.of(Code.DAMAGED_FILE, message, file=file, suggestion="fetch the dataset again")
 
 
 def no_programs(model: str) -> HearthError:

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import COLOURS, Clips, Instruction, no_programs
+from hearth.models.films.clip_data import Clips, Instruction, no_programs
 from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
+from hearth.models.films.film_arrays import COLOURS
 from hearth.models.films.film_readings import Reading
 from hearth.models.films.frame_data import Labels, Pictures, frames_of, pictures_of
 from hearth.models.interface import Request, Settings, Steps, Training

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import COLOURS, MASKS, Clips, Instruction
+from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.clip_model import TrainedClipModel
+from hearth.models.films.film_arrays import COLOURS, MASKS
 from hearth.models.films.mask_model import TrainedMaskModel
 from hearth.models.films.predicted_masks import PredictedMasks
 from hearth.models.films.seen_model import TrainedSeenModel

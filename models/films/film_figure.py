@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.models.films.clip_data import COLOURS, FORMS, Clips
+from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_tables import classifier
+from hearth.models.films.film_arrays import COLOURS, FORMS
 from hearth.models.films.film_executions import shown_films
 from hearth.models.films.film_programs import followed
 from hearth.models.films.film_shown import cut

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -9,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.models.films.clip_data import LARGEST, film_array
+from hearth.models.films.film_arrays import LARGEST, film_array
 from hearth.rendering.film.clips import FILE, RATE, SIZE
+from hearth.rendering.film.quiet import quiet
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
-from hearth.storage.input_files import read_input
+from hearth.storage.input_files import read_input, read_start
 
 VIDEOS = (".webm", ".mp4")
 """Suffixes of videos."""
@@ -22,8 +24,18 @@ VIDEOS = (".webm", ".mp4")
 ARRAYS = ".npz"
 """The suffix of a film of a dataset of clips."""
 
+HEADS = {".webm": (0, b"\x1a\x45\xdf\xa3"), ".mp4": (4, b"ftyp")}
+"""What videos begin with, and where. Anything else is not given to FFmpeg, which goes by what a file holds: a list of
+other films would have it read those."""
+
 LONGEST = 20 * 60
 """Seconds of a video at most."""
+
+MOST_RATE = 240
+"""Pictures a second of a video at most."""
+
+MOST_PIXELS = 4096 * 2304
+"""Of a picture of a video."""
 
 
 def is_film(text: str) -> bool:
@@ -69,23 +81,51 @@ def read_pictures(path: Path) -> NDArray[np.uint8]:
 
     Raises:
         HearthError: MISSING_FILE, without OpenCV; DAMAGED_FILE, if it is another file; BAD_ARGUMENT, if it is
-            too long.
+            too long; FILE_TOO_LARGE, if its pictures are.
     """
     cv2 = library("cv2")
-    video = cv2.VideoCapture(str(path))
-    rate = video.get(cv2.CAP_PROP_FPS)
-    found: list[Any] = []
-    number = 0
+    at, head = HEADS.get(path.suffix, (0, b"a video"))
+    if read_start(path, at + len(head))[at:] != head:
+        raise _unread(path)
+    with quiet():
+        video = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
+        try:
+            found = [cv2.resize(each, SIZE, interpolation=cv2.INTER_AREA) for each in _retrieved(video, path)]
+        except cv2.error as error:
+            raise _unread(path) from error
+        finally:
+            video.release()
+    if not found:
+        raise _unread(path)
+    return np.stack([each[..., ::-1] for each in found])
+
+
+def _retrieved(video: Any, path: Path) -> Iterator[Any]:
+    """`RATE` pictures a second."""
+    import cv2
+
+    rate, pixels = (
+        video.get(cv2.CAP_PROP_FPS),
+        video.get(cv2.CAP_PROP_FRAME_WIDTH) * video.get(cv2.CAP_PROP_FRAME_HEIGHT),
+    )
+    if pixels > MOST_PIXELS or rate > MOST_RATE:
+        message = f"pictures of {pixels:,.0f} pixels, {rate:,.0f} a second"
+        remedy = f"at most {MOST_PIXELS:,} pixels, {MOST_RATE} a second"
+        raise HearthError.of(Code.FILE_TOO_LARGE, message, file=str(path), suggestion=remedy)
+    number = taken = 0
     while rate > 0 and video.grab():
-        if number >= rate * len(found) / RATE:
-            picture = video.retrieve()[1]
-            found.append(cv2.resize(picture, SIZE, interpolation=cv2.INTER_AREA)[..., ::-1])
+        if number >= rate * taken / RATE:
+            done, picture = video.retrieve()
+            if not done:
+                return
+            yield picture
+            taken += 1
         number += 1
         if number > rate * LONGEST:
             message = f"a film of more than {LONGEST // 60} minutes"
             raise HearthError.of(Code.BAD_ARGUMENT, message, file=str(path), suggestion="cut it into parts")
-    video.release()
-    if not found:
-        message = "no pictures can be read from it"
-        raise HearthError.of(Code.DAMAGED_FILE, message, file=str(path), suggestion="a *.webm or *.mp4 that plays")
-    return np.stack(found)
+
+
+def _unread(path: Path) -> HearthError:
+    message = "no pictures can be read from it"
+    return HearthError.of(Code.DAMAGED_FILE, message, file=str(path), suggestion="a *.webm or *.mp4 that plays")

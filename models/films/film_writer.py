@@ -129,7 +129,7 @@ class FilmWriter(Settings):
         facts = dict(checkpoint.trained.get("classifier", {}))
         reader = SeenModel.restored(Checkpoint("", content["classifier"], content, others, facts))
         vocabulary = StepVocabulary.read(content["vocabulary"])
-        closed = tuple((int(a), int(b), int(c)) for a, b, c in content["closed"])
+        closed = vocabulary.read_closed(content["closed"])
         writer = filled(lambda: settings.network(vocabulary, closed, reader), own).to(device())
         return TrainedFilmWriter(settings, reader, vocabulary, closed, writer, dict(checkpoint.trained))
 

@@ -14,7 +14,8 @@ from torch.nn import functional
 
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.filled import filled
-from hearth.models.films.clip_data import COLOURS, MASKS, Clips, no_programs
+from hearth.models.films.clip_data import Clips, no_programs
+from hearth.models.films.film_arrays import COLOURS, MASKS
 from hearth.models.films.mask_network import MaskNetwork
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train

@@ -16,7 +16,7 @@ from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.devices import device
 from hearth.models.filled import filled
-from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.interface import Request, Settings, Steps, Training, texts
 from hearth.models.sketches.graph_inputs import NO_NODE, Batch, GraphInput, batched, graph_input, targets
 from hearth.models.sketches.graph_network import GraphNetwork, Memory, loss_of
 from hearth.models.sketches.grounded import grounded
@@ -88,9 +88,10 @@ class GraphModel(Settings):
         """The model of a checkpoint."""
         device()
         settings, content = cls.of(checkpoint.settings), checkpoint.content
-        words = Words(content["classes"], content["actions"])
-        network = filled(lambda: settings.network(words, content["written"]), checkpoint.weights)
-        return TrainedGraphModel(settings, words, tuple(content["written"]), network, dict(checkpoint.trained))
+        classes, actions, written = (texts(content[name]) for name in ("classes", "actions", "written"))
+        words = Words(classes, actions)
+        network = filled(lambda: settings.network(words, written), checkpoint.weights)
+        return TrainedGraphModel(settings, words, written, network, dict(checkpoint.trained))
 
 
 def _batches(rows: Sequence[Row], size: int) -> Iterator[Batch]:

@@ -10,6 +10,8 @@ from torch import nn
 from torch.nn import functional
 
 from hearth.models.text.step_vocabulary import END, StepVocabulary
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 NEVER = -1e9
 """Score of what is never chosen."""
@@ -209,7 +211,11 @@ class ClosedHead(nn.Module):
 
 def _drawn(scores: torch.Tensor, generator: torch.Generator) -> torch.Tensor:
     """(N,) a number for each row of logarithms, drawn on the processor: the same on every device."""
-    drawn = torch.multinomial(scores.detach().exp().cpu(), 1, generator=generator)
+    probabilities = scores.detach().exp().cpu()
+    if not probabilities.isfinite().all():  # of weights so large that their products are no numbers
+        message = "the network's probabilities are not numbers"
+        raise HearthError.of(Code.DAMAGED_FILE, message, suggestion="train the model again")
+    drawn = torch.multinomial(probabilities, 1, generator=generator)
     return drawn[:, 0].to(scores.device)
 
 

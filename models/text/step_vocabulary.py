@@ -84,6 +84,21 @@ class StepVocabulary:
             raise ValueError(f"the vocabulary's {wrong[0]} does not fit the rest of it")
         return found
 
+    def read_closed(self, document: Iterable[Iterable[Any]]) -> tuple[tuple[int, int, int], ...]:
+        """A closed list of steps as numbers, which may be a stranger's.
+
+        Raises:
+            TypeError, ValueError: a row is not a step of this vocabulary.
+        """
+        found = tuple((int(action), int(first), int(second)) for action, first, second in document)
+        for action, *numbers in found:
+            takes = self.arity[action - 1] if 0 < action <= len(self.actions) else -1
+            if [number > 0 for number in numbers] != [place < takes for place in range(2)] or takes < 0:
+                raise ValueError("a step of the closed list is none of the vocabulary")
+            if max(numbers) > len(self.classes) or min(numbers) < 0:
+                raise ValueError("a step of the closed list has an object that the vocabulary lacks")
+        return found
+
     def _fits(self) -> dict[str, bool]:
         """Whether each part is what the others need it to be."""
         last = len(self.classes)

@@ -97,7 +97,7 @@ class TextModel(Settings):
         """The model of a checkpoint."""
         settings = cls.of(checkpoint.settings)
         vocabulary = StepVocabulary.read(checkpoint.content["vocabulary"])
-        closed = tuple((int(a), int(b), int(c)) for a, b, c in checkpoint.content["closed"])
+        closed = vocabulary.read_closed(checkpoint.content["closed"])
         writer = filled(lambda: settings.network(vocabulary, closed, None), checkpoint.weights).to(device())
         return TrainedTextModel(settings, vocabulary, closed, writer, dict(checkpoint.trained))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from hearth.models.interface import Settings, Training
+from hearth.models.interface import Settings, Training, texts
 from hearth.models.watching.goal_decoding import PossibleGoals, possible_goals
 from hearth.models.watching.sightings import Layout, Predicate, sightings
 from hearth.models.watching.watched_batches import Counts, Joining, Watched, epoch, in_batches, packed
@@ -115,8 +115,11 @@ class GoalInference(Settings):
         settings = cls.of(checkpoint.settings)
         content = checkpoint.content
         layout = Layout(content["kinds"], content["places"], tuple((a, b) for a, b in content["cells"]))
+        predicates = texts(content["predicates"])
+        if len(predicates) != len(layout.cells):
+            raise ValueError(f"{len(predicates)} predicates, but {len(layout.cells)} cells")
         network = filled(lambda: settings.network(layout), checkpoint.weights)
-        return TrainedGoalInference(settings, tuple(content["predicates"]), network, layout, dict(checkpoint.trained))
+        return TrainedGoalInference(settings, predicates, network, layout, dict(checkpoint.trained))
 
 
 def _parted(examples: Sequence[Watched]) -> tuple[list[Watched], list[Watched]]:
@@ -176,7 +179,8 @@ class TrainedGoalInference:
         Raises:
             HearthError: BAD_ARGUMENT, if the network was trained for other predicates.
         """
-        if Layout.of(predicates) != self.layout:
+        wanted = {str(each) for goal in goals for each, _ in goal}
+        if Layout.of(predicates) != self.layout or not wanted <= {*self.predicates}:
             remedy = "challenge learn CHALLENGE --out FOLDER"
             raise HearthError.of(Code.BAD_ARGUMENT, "the network knows other predicates", suggestion=remedy)
         possible = possible_goals(goals, self.predicates)

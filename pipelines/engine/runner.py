@@ -20,7 +20,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import REJECTED
 from hearth.storage.exchange import put_in_place, recover, start_from, tidy
-from hearth.storage.files import is_temporary, value_digest, write_json
+from hearth.storage.files import drop_temporary, value_digest, write_json
 from hearth.storage.lock import locked
 from hearth.storage.manifest import NAME, TIMING, Manifest, describe, read_manifest
 from hearth.storage.partitions import Counts, part_path, part_state, rejects_path, write_table
@@ -157,8 +157,7 @@ def _drop_gathered(folder: Path) -> None:
 
 def _drop_leftovers(folder: Path) -> None:
     """Remove files that lost workers wrote in part."""
-    for leftover in [path for path in folder.rglob(".*") if is_temporary(path.name)]:
-        leftover.unlink(missing_ok=True)
+    drop_temporary(folder.rglob(".*"))
 
 
 def input_partitions(job: Job) -> Iterator[Partition]:

@@ -205,3 +205,43 @@ def test_other_predicates_and_models_of_other_readers_are_refused(tmp_path):
         list(inferred(FEW, "actions", default, model="goal-inference"))
     with pytest.raises(HearthError):
         list(inferred(FEW, "states", default, model=str(tmp_path)))
+
+
+@pytest.mark.parametrize("predicates", [[], ["x"], [[[]]] * 30, ["x"] * 30, [*TEXTS[:-1], "x"]])
+def test_a_checkpoint_of_a_stranger_knows_the_predicates_that_it_says(tmp_path, predicates):
+    from hearth.models.checkpoint import load, save
+    from hearth.models.model_registry import TRAINED
+
+    found = load(TRAINED / "goal-inference")
+    save(replace(found, content={**found.content, "predicates": predicates}), tmp_path)
+    with pytest.raises(HearthError):
+        restored(str(tmp_path)).infer((), GRAMMAR.predicates, tuple(GRAMMAR.goals))
+
+
+@pytest.mark.parametrize("what", ["goals", "subgoals"])
+def test_what_was_stopped_is_learnt_on_and_gives_the_same_bytes(tmp_path, what, monkeypatch):
+    from hearth.challenges import learning, learning_to_help
+    from hearth.models.checkpoint import WEIGHTS
+    from hearth.models.fit_model import STATE
+
+    small = learning_to_help.Effort(imitation=2, epochs=1, updates=1, episodes=1)
+    monkeypatch.setattr(learning_to_help, "EFFORTS", {what: small})
+    monkeypatch.setattr(learning_to_help, "VALIDATION", 1)
+    monkeypatch.setattr(learning, "PASSES", 3)
+    limit = 12 if what == "goals" else 2
+    learning.train("wah", what, tmp_path / "whole", default, limit=limit)
+    told = []
+
+    def stopping(number, _):
+        told.append(number)
+        if len(told) == 1:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        learning.train("wah", what, tmp_path / "again", default, limit=limit, trained=stopping)
+    assert (tmp_path / "again" / STATE).is_dir()
+    learning.train("wah", what, tmp_path / "again", default, limit=limit, trained=stopping)
+    assert told[1] == 2, "it began again"
+    names = sorted(path.name for path in (tmp_path / "whole").iterdir())
+    assert names == sorted(path.name for path in (tmp_path / "again").iterdir())
+    assert (tmp_path / "whole" / WEIGHTS).read_bytes() == (tmp_path / "again" / WEIGHTS).read_bytes()

@@ -144,3 +144,75 @@ def test_heads_that_do_not_divide_the_width(tmp_path):
     with pytest.raises(HearthError) as caught:
         restore_any(folder)
     assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE and "num_heads" in str(caught.value)
+
+
+def rewritten(folder, change):
+    document = json.loads((folder / NAME).read_text())
+    change(document)
+    (folder / NAME).write_text(json.dumps(document))
+    return code(folder)
+
+
+@pytest.mark.parametrize("facts", [
+    {"minutes": "x"}, {"minutes": True}, {"seed": "0"}, {"seed": 1.5}, {"curves": []}, {"curves": {"score": 1}},
+    {"curves": {"score": [None]}}, {"imitation": 7}, {"imitation": {"curves": {"score": ["x"]}}},
+    {"return_imitated": {}},
+])  # fmt: skip
+def test_what_is_computed_with_of_a_training_is_numbers(folder, facts):
+    assert rewritten(folder, lambda document: document["trained"].update(facts)) == Code.DAMAGED_FILE
+
+
+def test_a_model_has_a_name_that_can_be_printed(folder):
+    assert rewritten(folder, lambda document: document.update(model="\x1b[2J")) == Code.DAMAGED_FILE
+
+
+def test_a_folder_with_the_description_is_whole(tmp_path, monkeypatch):
+    from hearth.models import checkpoint
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(checkpoint, "write_json", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        save(MADE, tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted((CARD, WEIGHTS))
+    (tmp_path / f".{WEIGHTS}.1234.tmp").write_bytes(b"half")
+    monkeypatch.undo()
+    save(MADE, tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted((CARD, NAME, WEIGHTS))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_weights_are_numbers(bad):
+    weights = {"weight": np.full((1, 2), bad, np.float32), "bias": np.zeros(1, np.float32)}
+    with pytest.raises(ValueError, match="weights weight are not all numbers"):
+        filled(lambda: torch.nn.Linear(2, 1), weights)
+
+
+@pytest.mark.parametrize(
+    "row", [(-1, 1, 0), (10**9, 1, 0), (0, 0, 0), (1, 0, 0), (1, 1, 1), (1, 99_999, 0), (1, -1, 0)]
+)
+def test_a_strangers_closed_list_has_steps_of_its_vocabulary(row):
+    vocabulary = StepVocabulary((), ("Walk", "Sleep"), (1, 0), ("sofa", "bed"), (((1, 2),), ()), {})
+    assert vocabulary.read_closed([[1, 2, 0], [2, 0, 0]]) == ((1, 2, 0), (2, 0, 0))
+    with pytest.raises(ValueError, match="closed list"):
+        vocabulary.read_closed([row])
+
+
+def test_a_draw_from_no_probabilities_is_refused():
+    from hearth.models.text.step_heads import _drawn
+
+    generator = torch.Generator().manual_seed(0)
+    assert _drawn(torch.zeros(1, 1), generator).tolist() == [0]
+    with pytest.raises(HearthError) as raised:
+        _drawn(torch.tensor([[np.nan, 0.0]]), generator)
+    assert raised.value.diagnostics[0].code == Code.DAMAGED_FILE
+
+
+@pytest.mark.parametrize("bad", [["a", "a"], [[]], [1], [None]])
+def test_names_are_different_texts(bad):
+    from hearth.models.interface import texts
+
+    assert texts(["a", "b"]) == ("a", "b")
+    with pytest.raises(ValueError, match="list of names"):
+        texts(bad)

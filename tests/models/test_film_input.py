@@ -53,3 +53,33 @@ def test_files_that_are_refused(tmp_path):
     with pytest.raises(HearthError) as found:
         read_pictures(tmp_path / "a.mp4")
     assert found.value.diagnostics[0].code == Code.DAMAGED_FILE
+
+
+@pytest.mark.parametrize("suffix", [".webm", ".mp4"])
+@pytest.mark.parametrize("text", ["ffconcat version 1.0\nfile auto.webm\n", "#EXTM3U\n#EXTINF:9,\nauto.webm\n", ""])
+def test_a_list_of_films_is_no_film(video, tmp_path, text, suffix):
+    given = tmp_path / f"given{suffix}"
+    given.write_text(text)
+    with pytest.raises(HearthError) as found:
+        read_pictures(given)
+    assert found.value.diagnostics[0].code == Code.DAMAGED_FILE
+
+
+@pytest.mark.parametrize("changed", [{"MOST_PIXELS": 64 * 48 - 1}, {"MOST_RATE": 14}])
+def test_pictures_that_are_too_large_or_too_many_are_refused(video, monkeypatch, changed):
+    from hearth.models.films import film_input
+
+    for name, value in changed.items():
+        monkeypatch.setattr(film_input, name, value)
+    with pytest.raises(HearthError) as found:
+        read_pictures(video)
+    assert found.value.diagnostics[0].code == Code.FILE_TOO_LARGE
+
+
+def test_a_pipe_is_not_waited_for(tmp_path):
+    import os
+
+    os.mkfifo(tmp_path / "film.webm")
+    with pytest.raises(HearthError) as found:
+        read_pictures(tmp_path / "film.webm")
+    assert found.value.diagnostics[0].code == Code.UNSUPPORTED_FILE

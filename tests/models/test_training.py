@@ -116,3 +116,74 @@ def test_a_loss_that_is_not_a_number_is_an_error_with_a_remedy():
     task = line()
     with pytest.raises(HearthError, match="lower rate"):
         train(replace(task, loss=lambda rows: task.loss(rows) * float("nan")), HOW)
+
+
+def test_a_state_is_one_file_so_that_its_weights_are_of_the_epochs_that_it_says(tmp_path):
+    from safetensors import safe_open
+
+    from hearth.models.training import RUN, STATE, train
+
+    task = line()
+    train(task, replace(HOW, epochs=2, folder=tmp_path))
+    assert [path.name for path in tmp_path.iterdir()] == [STATE]
+    with safe_open(tmp_path / STATE, "pt") as file:
+        assert len(json.loads(file.metadata()[RUN])["epochs"]) == 2
+
+
+def test_whoever_is_stopped_while_a_state_is_written_continues_from_the_one_before(tmp_path, monkeypatch):
+    from hearth.models import training
+
+    whole, other = line(), line()
+    training.train(whole, HOW)
+    keep, stored = training.save_file, []
+
+    def stopped(tensors, path, said):
+        if len(stored) == 2:
+            path.write_bytes(b"half")
+            raise KeyboardInterrupt
+        stored.append(keep(tensors, path, said))
+
+    monkeypatch.setattr(training, "save_file", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        training.train(line(), replace(HOW, folder=tmp_path))
+    monkeypatch.undo()
+    training.train(other, replace(HOW, folder=tmp_path))
+    assert weights(other) == weights(whole)
+
+
+@pytest.mark.parametrize("epochs", [None, "x", [1], [[]], [["x"] * 5], [[1, 2.0, 3.0, 4.0, 5.0, 6.0]]])
+def test_a_state_with_other_epochs_is_not_continued(tmp_path, epochs):
+    from safetensors.torch import load_file, save_file
+
+    from hearth.models.training import RUN, STATE, _State, train
+
+    train(line(), replace(HOW, epochs=2, folder=tmp_path))
+    key = _State(line(), HOW, None).key
+    save_file(load_file(tmp_path / STATE), tmp_path / STATE, {RUN: json.dumps({"key": key, "epochs": epochs})})
+    whole, other = line(), line()
+    train(whole, HOW)
+    train(other, replace(HOW, folder=tmp_path))
+    assert weights(other) == weights(whole)
+
+
+@pytest.mark.parametrize("change", [
+    lambda found: {}, lambda found: dict([*found.items()][:1]),
+    lambda found: {f"x{name}": found[name] for name in found},
+    lambda found: {name: value.reshape(-1)[:1] for name, value in found.items()},
+    lambda found: {**found, "optimiser/x/exp_avg": found["now/1.bias"]},
+])  # fmt: skip
+def test_a_state_with_other_weights_is_not_continued(tmp_path, change):
+    from safetensors import safe_open
+    from safetensors.torch import load_file, save_file
+
+    from hearth.models.training import STATE, train
+
+    train(line(), replace(HOW, epochs=2, folder=tmp_path))
+    with safe_open(tmp_path / STATE, "pt") as file:
+        said = file.metadata()
+    changed = {name: value.clone() for name, value in change(load_file(tmp_path / STATE)).items()}
+    save_file(changed, tmp_path / STATE, said)
+    whole, other = line(), line()
+    train(whole, HOW)
+    train(other, replace(HOW, folder=tmp_path))
+    assert weights(other) == weights(whole)

@@ -100,7 +100,8 @@ def test_clips_are_read_as_arrays(filmed):
     import numpy as np
 
     import hearth
-    from hearth.models.films.clip_data import COLOURS, Clips
+    from hearth.models.films.clip_data import Clips
+    from hearth.models.films.film_arrays import COLOURS
     from hearth.schemas.diagnostics import HearthError
 
     ds = hearth.load(filmed.out)

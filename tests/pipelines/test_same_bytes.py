@@ -21,6 +21,16 @@ if __name__ == "__main__":
 """
 
 
+FILM = """
+import sys
+from hearth.pipelines.build import build
+
+if __name__ == "__main__":
+    out, workers, *sources = sys.argv[1:]
+    build(sources, out, workers=int(workers), homes=("maple",), clips=3, demonstrations=3, pictures=0, variants=0)
+"""
+
+
 @pytest.fixture(scope="module")
 def kills(module):
     """Kills builds, and compares the results."""
@@ -43,6 +53,22 @@ def test_for_any_number_of_workers_and_any_hash_seed(made, kills, tmp_path, work
     out = tmp_path / "again"
     assert started(out, made, tmp_path, workers, hash_seed).wait(timeout=900) == 0
     assert kills.differing(made.out, out) == []
+
+
+@pytest.mark.slow
+def test_clips_and_demonstrations_are_the_same_for_any_number_of_workers(kills, tmp_path):
+    pytest.importorskip("open3d", exc_type=ImportError)
+    (tmp_path / "film.py").write_text(FILM)
+    sources = [tmp_path / f"{name}.txt" for name in ("bed", "sofa", "fridge")]
+    for source, (action, thing) in zip(sources, (("Lie", "bed"), ("Sit", "sofa"), ("Open", "fridge")), strict=True):
+        source.write_text(f"Do\n{action} it.\n\n[Walk] <{thing}> (1)\n[{action}] <{thing}> (1)\n")
+    for workers in (1, 2):
+        asked = [str(tmp_path / "film.py"), str(tmp_path / str(workers)), str(workers), *map(str, sources)]
+        subprocess.run([sys.executable, *asked], check=True, timeout=900)
+    found = kills.contents(tmp_path / "2")
+    for name in ("clips.npz", "above.npz"):
+        assert sum(path.endswith(f"/{name}") for path in found) >= 3
+    assert kills.differing(tmp_path / "1", tmp_path / "2") == []
 
 
 @pytest.mark.tools
