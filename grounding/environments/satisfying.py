@@ -8,7 +8,7 @@ from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Edge
 from hearth.schemas.literals import CHARACTER, HANDS, STATE_OF, Key
-from hearth.simulation.world.affordance import of_kind
+from hearth.simulation.world.affordance import is_of_kind
 from hearth.simulation.world.bits import indices
 
 Fulfil = Callable[[PartialEnvironment, Condition], None]
@@ -109,7 +109,7 @@ def _occupied(partial: PartialEnvironment, condition: Condition) -> None:
     kind = home.classes[i] if i >= 0 else name
     limit = max(knowledge.seat_limit(kind), knowledge.bed_limit(kind))
     is_bed = knowledge.has(kind, "LIEABLE")
-    aside = sum(_is_bedding(each, knowledge) for each in partial.classes_on(seat)) if is_bed else 0
+    aside = sum(is_of_kind(each, "bedding", knowledge) for each in partial.classes_on(seat)) if is_bed else 0
     small = _takeable(knowledge, name, is_bed)
     for _ in range(limit - partial.crowd(seat) + fixed + aside):
         node_id = partial.add(partial.rng.choice(small), partial.room_of(seat))
@@ -120,13 +120,7 @@ def _takeable(knowledge: Knowledge, seat: str, is_bed: bool) -> list[str]:
     """The classes that belong on a seat, can be taken off it and take room there; on a bed, bedding does not."""
     belongs = [p.object for p in knowledge.holds(seat) if p.relation == "ON"] or ["book", "cat", "pillow"]
     found = [name for name in belongs if knowledge.has(name, "GRABBABLE")]
-    return [name for name in found if not (is_bed and _is_bedding(name, knowledge))] or ["book"]
-
-
-def _is_bedding(name: str, knowledge: Knowledge) -> bool:
-    thing = knowledge.object_class(name)
-    properties = dict.fromkeys(thing.properties if thing else (), 1)
-    return bool(of_kind(knowledge.derived["bedding"][1], properties, {name: 1}, 1))
+    return [name for name in found if not (is_bed and is_of_kind(name, "bedding", knowledge))] or ["book"]
 
 
 def _resting(partial: PartialEnvironment, condition: Condition) -> None:

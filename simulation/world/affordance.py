@@ -5,6 +5,7 @@ from functools import reduce
 from operator import and_, or_
 
 from hearth.kb.formula import And, Formula, Not, Or
+from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Requirement
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -62,3 +63,10 @@ def of_kind(formula: Formula, properties: Mapping[str, int], classes: Mapping[st
     else:
         found = (classes if formula.name == "class" else properties).get(word, 0)
     return every & ~found if formula.negated else every & found
+
+
+def is_of_kind(name: str, kind: str, knowledge: Knowledge) -> bool:
+    """Whether things of a class are of a kind of derived.yaml, such as `bedding` (see `of_kind`)."""
+    thing = knowledge.object_class(name)
+    properties = dict.fromkeys(thing.properties if thing else (), 1)
+    return bool(of_kind(knowledge.derived[kind][1], properties, {name: 1}, 1))
