@@ -5,6 +5,8 @@ import pytest
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Condition
 from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.postconditions import achieved
+from hearth.repair.circumstances import circumstances
 from hearth.repair.loop import repair
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -59,3 +61,17 @@ def test_who_lies_at_the_start_may_lie_in_a_made_bed(maple):
     resting = program(("WakeUp",), ("StandUp",))
     places = [sample(resting, maple, seed)[0].world.agents[0].on for seed in range(12)]
     assert any(place & maple.by_class["bed"] for place in places)
+
+
+@pytest.mark.parametrize("rules", [DEFAULT, COUNTED])
+def test_a_blanket_that_is_brought_is_put_on_the_bed(rules, maple, knowledge):
+    resting = program(("Walk", "bed"), ("Lie", "bed"), ("Pull", "blanket"))
+    conditions = infer(resting, knowledge, rules)
+    near = [each for each in conditions if ("blanket", 1) in each.objects]
+    far = conditions.without(*near).plus(Condition(Literal("not_near", (("blanket", 1), BED)), 2))
+    environment, _ = sample(resting, maple, 1, conditions=far, must_run=False, rules=rules)
+    _, original = sample(resting, maple, 1, rules=rules)
+    wanted = circumstances(original)
+    done = repair(environment.program, environment.world, achieved(original), knowledge, rules, wanted=wanted)
+    put = [[ref.name for ref in step.objects] for step in done.program.steps if step.action == "PutBack"]
+    assert done.failure is None and (["blanket", "bed"] in put) is rules.made_bed, done.program.steps
