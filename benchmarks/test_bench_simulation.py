@@ -33,7 +33,10 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 ENDS = ("init_graph", "final_graph")
-OPTIONS = {"release": (REPLAY, Options(doors=False, watch_needs_on=False)), "own homes": (DEFAULT, Options())}
+OPTIONS = {
+    "release": (REPLAY, Options(doors=False, watch_needs_on=False, made_bed=False)),
+    "own homes": (DEFAULT, Options()),
+}
 
 
 def started(corpus: str) -> list[tuple[World, Any]]:

@@ -6,6 +6,7 @@ A formula is one of
     not F, F & F, F | F, (F)   as usual; `not` binds tightest, then `&`, then `|`
     some x: F                  for at least one thing x; reaches as far right as it can
     count x: F < limit(o)      fewer things than a number known of o
+    option(name)               the engine goes by the rule of that name
 
 and an effect is
 
@@ -31,12 +32,15 @@ FUNCTIONS = frozenset({"room", "origin", "place"})
 """Terms that find a thing from a thing; they may find nothing."""
 
 BUILT_IN = frozenset(
-    {"affords", "came_from", "class", "class_contains", "is_room", "property", "REMEMBERS", "same", "state"}
+    {"affords", "came_from", "class", "class_contains", "is_room", "option", "property", "REMEMBERS", "same", "state"}
 )
 """Predicates that are neither relations nor derived."""
 
 NAMED = frozenset({"state", "property", "class", "class_contains", "came_from"})
 """Predicates whose second argument is a name, not a thing."""
+
+OPTION = "option"
+"""The predicate whose only argument is the name of a rule."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +128,7 @@ class Effect:
 def free(formula: Formula) -> set[str]:
     """The variables a formula mentions and does not bind itself; names (of states, classes) are none."""
     if isinstance(formula, Literal):
-        terms = formula.terms[:1] if formula.name in NAMED else formula.terms
+        terms = () if formula.name == OPTION else formula.terms[:1] if formula.name in NAMED else formula.terms
         return {term.name for term in terms}
     if isinstance(formula, Not):
         return free(formula.part)

@@ -132,7 +132,7 @@ def augment(
     for number, perturbed in enumerate(distinct(Case(program, conditions, base), chances, generator, 2 * wished)):
         if number == wished:
             break
-        drawn = _drawn(program, base, perturbed, seed, f"{record_id}/{number}")
+        drawn = _drawn(program, base, perturbed, seed, f"{record_id}/{number}", options.rules)
         pairs.append(_judged(_pair(number, perturbed, drawn, (goal, wanted), options), seen))
         wished += _is_refused(pairs[-1])
     return Augmented(execution, goal, tuple(pairs))
@@ -144,11 +144,11 @@ def _is_refused(pair: Pair) -> bool:
 
 
 def _drawn(
-    program: Program, base: Base, perturbed: Perturbed, seed: int, record_id: str
+    program: Program, base: Base, perturbed: Perturbed, seed: int, record_id: str, rules: Rules
 ) -> Environment | tuple[Environment, Condition]:
     """An environment in which the perturbed conditions hold, or the last one drawn and what does not hold there."""
     for attempt in range(DRAWS):
-        environment = draw(program, base, perturbed.conditions, seed, record_id, attempt, Size())
+        environment = draw(program, base, perturbed.conditions, seed, record_id, attempt, Size(), rules)
         nodes = {ref.key: ref.node for ref in environment.program.objects() if ref.node is not None}
         missing = unmet(perturbed.conditions, environment.world, nodes)
         if not missing:

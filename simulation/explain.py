@@ -25,12 +25,13 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class _Cast:
-    """A world and a binding of the variables."""
+    """A world, a binding of the variables, and whether the rule `made_bed` is on."""
 
     world: World
     agent: Agent
     o: int
     s: int
+    made_bed: bool
 
     def index(self, term: Term) -> int:
         """Index of what a term names, or -1."""
@@ -58,7 +59,8 @@ def checks(world: World, step: Step, rules: Rules) -> Iterator[Check]:
     """
     home = world.home
     index = [home.index[ref.node] for ref in step.objects if ref.node is not None]
-    cast = _Cast(world, world.agents[step.agent], *([*index, -1, -1][:2]))
+    o, s = [*index, -1, -1][:2]
+    cast = _Cast(world, world.agents[step.agent], o, s, rules.made_bed)
     for condition in home.knowledge.actions[step.action].preconditions:
         if condition.option and not getattr(rules, condition.option, False):
             continue
@@ -136,8 +138,10 @@ def _room(atom: Literal[Term], cast: _Cast) -> str:
 
 
 def _seat(atom: Literal[Term], cast: _Cast) -> str:
-    on = [cast.name(i) for i in indices(rows.bearing(cast.world, cast.o))]
-    return f"on it: {', '.join(on) or 'nothing'}"
+    world = cast.world
+    on, aside = rows.taking_room(world, cast.o, cast.made_bed), rows.turned_back(world, cast.o) * cast.made_bed
+    bedding = f"; turned back: {', '.join(map(cast.name, indices(aside)))}" if aside else ""
+    return f"on it: {', '.join(map(cast.name, indices(on))) or 'nothing'}{bedding}"
 
 
 def _same_room(atom: Literal[Term], cast: _Cast) -> str:

@@ -194,10 +194,10 @@ def _state(name: str) -> Unary:
 
 
 def _free(world: World, i: int) -> bool:
-    """One more fits on the seat or bed."""
+    """One more fits on the seat or bed, which may be made: bedding does not count."""
     home = world.home
     limit = max(home.limit(i), home.limit(i, lying=True))
-    return rows.bearing(world, i).bit_count() < limit
+    return rows.taking_room(world, i).bit_count() < limit
 
 
 def _occupied(world: World, i: int) -> bool:

@@ -21,6 +21,8 @@ class Rules(NamedTuple):
         doors: a closed door on the only way between two rooms stops a walk; the release ignores doors.
         bodies: characters at places do not walk by metres through each other.
         one_grip: what one holds is not grabbed again. The release takes it into the other hand, too.
+        made_bed: bedding on what one can lie on takes no room there: it is turned back. The release counts it, so that
+            a made bed is occupied.
     """
 
     origin: Origin = "sensible"
@@ -28,9 +30,10 @@ class Rules(NamedTuple):
     doors: bool = True
     bodies: bool = False
     one_grip: bool = False
+    made_bed: bool = False
 
 
-DEFAULT = Rules()
+DEFAULT = Rules(made_bed=True)
 """For inference, sampling, augmenting and people's own programs."""
 
 REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
@@ -39,12 +42,19 @@ REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
 WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
 """For programs that watch what they themselves keep off (see `suited`)."""
 
-RULES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY, "watching_off": WATCHING_OFF}
-"""The options by the names that published executions give them."""
+RULES: dict[str, Rules] = {
+    "made_bed": DEFAULT,
+    "made_bed_watching_off": WATCHING_OFF,
+    "replay": REPLAY,
+    "default": DEFAULT._replace(made_bed=False),
+    "watching_off": WATCHING_OFF._replace(made_bed=False),
+}
+"""The options by the names that published executions give them. The last two are of datasets from before `made_bed`;
+what a name stands for never changes."""
 
 
 def read(given: Mapping[str, Any]) -> Rules:
-    """Options by name, as `Rules._asdict` gives them; what is not named is as usual.
+    """Options by name, as `Rules._asdict` gives them; what is not named is as it was before there was a choice.
 
     Raises:
         TypeError: one of them is unknown.

@@ -17,7 +17,7 @@ from itertools import count
 from hearth.kb.formula import Effect, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
-from hearth.kb.tools.pddl import Names, Writer, dashed, unary_predicates
+from hearth.kb.tools.pddl import Names, Writer, dashed, option_predicate, options, unary_predicates
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS
 
@@ -45,6 +45,7 @@ def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bo
         "  (:requirements :adl)",
         "  (:types agent - object)",
         "  (:predicates",
+        *(f"    ({option_predicate(name)})" for name in options(knowledge)),
         *(f"    ({name} ?x - object)" for name in unary_predicates(knowledge, PROPERTIES)),
         *(f"    ({relation_predicate(name)} ?x - object ?y - object)" for name in RELATIONS),
         "    (blocks ?d - object ?r - object ?q - object)",

@@ -20,10 +20,11 @@ from hearth.datasets.export.batches import Wanted, runs, write
 from hearth.datasets.export.planning_domain import planning_domain, relation_predicate
 from hearth.datasets.format.codecs import change_of
 from hearth.datasets.verify import StoredHomes
-from hearth.kb.tools.pddl import LIMITS, limit_predicate, predicate, unary_predicates
+from hearth.kb.tools.pddl import LIMITS, limit_predicate, option_predicate, options, predicate, unary_predicates
 from hearth.schemas.change import compose
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATE_ID, STATES
+from hearth.simulation.rules import DEFAULT, RULES, Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
@@ -45,6 +46,7 @@ class Task:
         states: (node, state, whether it shall hold).
         edges: (edge, whether it shall hold).
         program_id: of the executed program.
+        rules: of the execution.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Task:
     states: tuple[tuple[int, str, bool], ...]
     edges: tuple[tuple[Edge, bool], ...]
     program_id: str = ""
+    rules: Rules = DEFAULT
 
     def reached(self, final: World) -> bool:
         """Whether a world satisfies the goal."""
@@ -87,7 +90,8 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
             world = start_of(run.row["environment"], run.home, homes)
             named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
             objects = tuple(_objects(world, named))
-            yield Task(run.row["execution_id"], world, objects, states, edges, run.row["program_id"])
+            of, rules = run.row["program_id"], RULES[run.row["rules"]]
+            yield Task(run.row["execution_id"], world, objects, states, edges, of, rules)
 
 
 def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
@@ -176,6 +180,7 @@ def _facts(task: Task, names: dict[int, str]) -> Iterator[str]:
     home = world.home
     mask = mask_of(home.index[node] for node in task.objects)
     known = set(unary_predicates(home.knowledge))
+    yield from (f"({option_predicate(name)})" for name in options(home.knowledge) if getattr(task.rules, name))
     for node, name in names.items():
         yield from (f"({kind} {name})" for kind in _kinds(world, home.index[node], known))
     for edge in sorted(world.edges(mask)):

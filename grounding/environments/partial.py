@@ -25,11 +25,13 @@ class PartialEnvironment:
         room: room's node id by node id, for what is not where the base has it.
         where: (relation, node id) a node stands ON or INSIDE, for what was placed here.
         movable: the random things, which come last.
+        made_bed: whether beds stay made, as by the rule of that name.
     """
 
-    def __init__(self, base: Base, rng: Random) -> None:
+    def __init__(self, base: Base, rng: Random, made_bed: bool = True) -> None:
         self.base = base
         self.rng = rng
+        self.made_bed = made_bed
         self.nodes: list[Node] = []
         self.added: list[Edge] = []
         self.removed: list[Edge] = []
@@ -126,3 +128,16 @@ class PartialEnvironment:
         i = self.base.home.index.get(node_id)
         standing = self.base.home.bears[i].bit_count() if i is not None else 0
         return standing + self.load.get(node_id, 0)
+
+    def classes_on(self, node_id: int) -> list[str]:
+        """The classes of what `crowd` counts."""
+        home, new = self.base.home, self.new
+        i = home.index.get(node_id)
+        put = [other for other, place in self.where.items() if place == ("ON", node_id)]
+        found = [new[other].class_name if other in new else home.classes[home.index[other]] for other in put]
+        return found + ([home.classes[j] for j in indices(home.bears[i])] if i is not None else [])
+
+    def turned_back(self, i: int) -> int:
+        """The bedding that the base has ON what one can lie on: it takes no room there."""
+        home = self.base.home
+        return home.bears[i] & home.bedding if home.properties["LIEABLE"] >> i & 1 else 0

@@ -149,7 +149,7 @@ def sample(
     if failure is not None:
         return failure
     for attempt in range(TRIES):
-        environment = draw(program, base, found, seed, record_id, attempt, size)
+        environment = draw(program, base, found, seed, record_id, attempt, size, rules)
         execution = run(environment.world, environment.program, rules)
         missing = unmet(environment.conditions, environment.world, _nodes(environment.program))
         fault = unsound(environment.world)
@@ -179,11 +179,18 @@ def _nodes(program: Program) -> dict[Key, int]:
 
 
 def draw(
-    program: Program, base: Base, conditions: Preconditions, seed: int, record_id: str, attempt: int, size: Size
+    program: Program,
+    base: Base,
+    conditions: Preconditions,
+    seed: int,
+    record_id: str,
+    attempt: int,
+    size: Size,
+    rules: Rules = DEFAULT,
 ) -> Environment:
     """One environment in which the conditions hold; the program was not run in it yet."""
     generator = rng(seed, "sample", base.home.name, record_id, attempt)
-    partial = PartialEnvironment(base, generator)
+    partial = PartialEnvironment(base, generator, rules.made_bed)
     bind(partial, requirements_of(program, conditions, base.knowledge))
     fulfil(partial, conditions)
     settle_character(partial, program, conditions)

@@ -5,8 +5,10 @@ from collections.abc import Callable
 from hearth.grounding.environments import violating
 from hearth.grounding.environments.partial import PartialEnvironment
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Edge
 from hearth.schemas.literals import CHARACTER, HANDS, STATE_OF, Key
+from hearth.simulation.world.affordance import is_of_kind
 from hearth.simulation.world.bits import indices
 
 Fulfil = Callable[[PartialEnvironment, Condition], None]
@@ -74,8 +76,10 @@ def _stands(relation: str) -> Fulfil:
 
 
 def _free(partial: PartialEnvironment, condition: Condition) -> None:
-    """Move what is on the seat to the floor of its room, until one more fits."""
-    _cleared(partial, _node(partial, condition.objects[0]), -1)
+    """Move what is on the seat to the floor of its room; a bed stays made."""
+    seat = _node(partial, condition.objects[0])
+    i = partial.base.home.index.get(seat, -1)
+    _cleared(partial, seat, ~partial.turned_back(i) if partial.made_bed and i >= 0 else -1)
 
 
 def _cleared(partial: PartialEnvironment, seat: int, which: int) -> int:
@@ -96,7 +100,7 @@ def _cleared(partial: PartialEnvironment, seat: int, which: int) -> int:
 
 
 def _occupied(partial: PartialEnvironment, condition: Condition) -> None:
-    """Fill the seat to its limit with what belongs there and can be taken off it."""
+    """Fill the seat to its limit with what belongs there, takes room and can be taken off it."""
     knowledge = partial.base.knowledge
     seat = _node(partial, condition.objects[0])
     name = condition.objects[0][0]
@@ -104,11 +108,19 @@ def _occupied(partial: PartialEnvironment, condition: Condition) -> None:
     home, i = partial.base.home, partial.base.home.index.get(seat, -1)
     kind = home.classes[i] if i >= 0 else name
     limit = max(knowledge.seat_limit(kind), knowledge.bed_limit(kind))
-    belongs = [p.object for p in knowledge.holds(name) if p.relation == "ON"] or ["book", "cat", "pillow"]
-    small = [n for n in belongs if knowledge.has(n, "GRABBABLE")] or ["book"]
-    for _ in range(limit - partial.crowd(seat) + fixed):
+    is_bed = knowledge.has(kind, "LIEABLE")
+    aside = sum(is_of_kind(each, "bedding", knowledge) for each in partial.classes_on(seat)) if is_bed else 0
+    small = _takeable(knowledge, name, is_bed)
+    for _ in range(limit - partial.crowd(seat) + fixed + aside):
         node_id = partial.add(partial.rng.choice(small), partial.room_of(seat))
         partial.put(node_id, "ON", seat)
+
+
+def _takeable(knowledge: Knowledge, seat: str, is_bed: bool) -> list[str]:
+    """The classes that belong on a seat, can be taken off it and take room there; on a bed, bedding does not."""
+    belongs = [p.object for p in knowledge.holds(seat) if p.relation == "ON"] or ["book", "cat", "pillow"]
+    found = [name for name in belongs if knowledge.has(name, "GRABBABLE")]
+    return [name for name in found if not (is_bed and is_of_kind(name, "bedding", knowledge))] or ["book"]
 
 
 def _resting(partial: PartialEnvironment, condition: Condition) -> None:
@@ -117,7 +129,8 @@ def _resting(partial: PartialEnvironment, condition: Condition) -> None:
     partial.set_state(me, condition.name.upper())
     home = partial.base.home
     wanted = "SITTABLE" if condition.name == "sitting" else "LIEABLE"
-    seats = [i for i in indices(home.properties[wanted]) if home.ids[i] not in partial.taken and not home.bears[i]]
+    seats = [i for i in indices(home.properties[wanted]) if home.ids[i] not in partial.taken
+             and not home.bears[i] & ~partial.turned_back(i)]  # fmt: skip
     if seats:
         seat = home.ids[partial.rng.choice(seats)]
         partial.added.append(Edge(me, "ON", seat))

@@ -2,7 +2,8 @@
 
 In that domain places, states and properties become predicates; derived predicates become axioms; what depends on a
 found thing (`room(o)`) is stated for every such thing. Where a Grab would remember one of several places, the
-domain remembers all of them, its only difference from the engine.
+domain remembers all of them, its only difference from the engine. A rule that a derived predicate asks for (`option`)
+is a predicate without arguments, such as `(option-made-bed)`: problems in which the rule is on state it.
 """
 
 from abc import ABC, abstractmethod
@@ -10,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 
-from hearth.kb.formula import TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
+from hearth.kb.formula import OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action, Requirement
 from hearth.schemas.literals import Literal
@@ -56,6 +57,25 @@ def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> li
     words.update(pair for formula in formulas for pair in _named(formula))
     limits = {limit_predicate(kind, limit) for kind in LIMITS for limit in _limits(knowledge, kind)}
     return sorted({"is-room", *limits, *(predicate(*pair) for pair in words)})
+
+
+def option_predicate(name: str) -> str:
+    """`made_bed` -> `option-made-bed`: a fact of a problem whose executions go by that rule."""
+    return f"{OPTION}-{dashed(name)}"
+
+
+def options(knowledge: Knowledge) -> list[str]:
+    """The names of the rules that derived predicates ask for, sorted."""
+    return sorted({name for _, body in knowledge.derived.values() for name in _asked(body)})
+
+
+def _asked(formula: Formula) -> Iterator[str]:
+    if isinstance(formula, Literal):
+        if formula.name == OPTION:
+            yield formula.terms[0].name
+        return
+    for part in formula.parts if isinstance(formula, And | Or) else (formula.part,):
+        yield from _asked(part)
 
 
 def _named(formula: Formula) -> Iterator[tuple[str, str]]:
@@ -176,6 +196,8 @@ class Writer(ABC):
     def plain(self, literal: Literal[Term], names: Names) -> str:
         """A literal about things that have names."""
         first, *second = literal.terms
+        if literal.name == OPTION:
+            return f"({option_predicate(first.name)})"
         if literal.name in _PREFIXES:
             return f"({predicate(literal.name, second[0].name)} {names[first.name]})"
         word = "=" if literal.name == "same" else self.relation(literal.name)
@@ -237,6 +259,7 @@ def domain(knowledge: Knowledge, name: str = "hearth") -> str:
         f"(define (domain {name})",
         "  (:requirements :adl :derived-predicates)",
         "  (:predicates",
+        *(f"    ({option_predicate(name)})" for name in options(knowledge)),
         *(f"    ({name} ?x)" for name in unary_predicates(knowledge)),
         *(f"    ({name} ?x ?y)" for name in sorted({*map(dashed, RELATIONS), "remembers"})),
         "    (came-from-inside ?x)",

@@ -11,6 +11,7 @@ from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at, 
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
 from hearth.rendering.people.acting import Actor, initial_actors
+from hearth.rendering.people.bedding import turned_back
 from hearth.rendering.people.reaching import posed
 from hearth.rendering.scene.added_furniture import furnished
 from hearth.rendering.scene.places import Places
@@ -102,4 +103,5 @@ class CameraSensor:
         self.places = furnished(start, graph, self.floors).settled(graph)
         actors = initial_actors(graph, self.floors.at(self.places.nodes()), self.places, self.seed)
         self.actors = standing((posed(actor, graph, self.places, None) for actor in actors), env.world)
+        self.places = turned_back(self.places, self.actors)
         self._ticks, self._world, self._scene = len(env.ticks), env.world, None

@@ -13,6 +13,7 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.acting import Actor, elsewhere, initial_actors, moved, outermost
+from hearth.rendering.people.bedding import turned_back
 from hearth.rendering.people.clearance import faults
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.holding import held_things
@@ -198,6 +199,7 @@ def _keyframes(
             actors = _wandered(actors, floor, variation) if variation.wander else actors
             actors = tuple(posed(actor, graph, places, None) for actor in actors)
             actors = standing(actors, execution.worlds[0])
+            places = turned_back(places, actors)
         else:
             actors, places = advanced(actors, places, graph, floor, steps, execution.worlds[tick])
             floor = floors.at(places.nodes())
@@ -251,7 +253,7 @@ def advanced(
             there = _with_room(there, actors, places, graph, step, elsewhere(there, graph, known, within, step, others))
         after.append(there)
     after = list(standing(after, world))
-    settled = slid(_settled(places, graph, after, steps), after, steps)
+    settled = turned_back(slid(_settled(places, graph, after, steps), after, steps), after)
     return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled
 
 

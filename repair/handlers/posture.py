@@ -82,4 +82,5 @@ def places_to_rest(context: RepairContext) -> Iterator[tuple[str, int]]:
 
 
 def _has_room(context: RepairContext, i: int, action: str) -> bool:
-    return rows.bearing(context.world, i).bit_count() < context.world.home.limit(i, action == "Lie")
+    taken = rows.taking_room(context.world, i, context.rules.made_bed)
+    return taken.bit_count() < context.world.home.limit(i, action == "Lie")

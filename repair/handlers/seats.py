@@ -124,6 +124,15 @@ def _stands_beside(context: RepairContext, taken: int) -> ObjectRef | None:
     return None
 
 
+def _bed_for(context: RepairContext, thing: ObjectRef) -> int:
+    """The bed that is lain or sat on, where the thing is bedding that may stay on it; else nothing."""
+    home, seat = context.world.home, context.seat_taken()
+    if not context.rules.made_bed or seat is None or seat[2].node is None or thing.node is None:
+        return 0
+    bed = 1 << home.index[seat[2].node]
+    return bed & home.properties["LIEABLE"] if home.bedding >> home.index[thing.node] & 1 else 0
+
+
 def _tables(world: World) -> int:
     """Furniture to put things on."""
     home = world.home
@@ -132,10 +141,13 @@ def _tables(world: World) -> int:
 
 
 def _put_down(context: RepairContext, thing: ObjectRef, at: int) -> Step:
-    """Put a thing on the furniture that is close before a step, what the program names first; else let it go."""
+    """Put a thing on the furniture that is close before a step, what the program names first; else let it go.
+
+    Bedding goes on the bed, if it takes no room there.
+    """
     world = context.world_before(at)
     home, agent = world.home, world.agents[context.failure.agent]
     named = {ref.node for ref in context.program.objects()}
-    near = (i for i in indices(_tables(world)) if rows.is_close(world, agent, i))
+    near = [i for i in indices(_bed_for(context, thing) or _tables(world)) if rows.is_close(world, agent, i)]
     place = min(near, key=lambda i: (home.ids[i] not in named, i), default=None)
     return context.does("Release", thing) if place is None else context.does("PutBack", thing, context.ref(place))

@@ -4,6 +4,7 @@ A check is made for one object by the engine and for all nodes at once by `legal
 """
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import NamedTuple
 
 from hearth.schemas.failures import Code, Failure
@@ -85,6 +86,26 @@ def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
         return (found,)
 
     return Action(name, rule, mask)
+
+
+def by_rule(name: str, on: Action, off: Action) -> Action:
+    """The action that is `on` where a rule is on, else `off`.
+
+    So a check need not know the rules: those that a rule replaces or adds stand in another list of checks.
+
+    Args:
+        name: of the rule, a switch of `Rules`.
+        on, off: the action by either value of it, both of the same name.
+    """
+    is_on: Callable[[Rules], bool] = attrgetter(name)
+
+    def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+        return (on if is_on(rules) else off).rule(world, number, o, s, rules)
+
+    def mask(situation: Situation) -> Masks:
+        return (on if is_on(situation.rules) else off).mask(situation)
+
+    return Action(on.name, rule, mask)
 
 
 def refuse(world: World, code: Code, expected: str, actual: str, *objects: int) -> Failure:

@@ -7,6 +7,7 @@ from hearth.simulation.actions.common import (
     Check,
     Masks,
     able,
+    by_rule,
     checked,
     close,
     free_hand,
@@ -175,24 +176,21 @@ def _returnable(s: Situation) -> Masks:
     return some(mask)
 
 
-def _grip(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
-    """Grab o, which the rules may refuse where a hand holds it already."""
-    if rules.one_grip and world.agents[number].held >> o & 1:
-        return refuse(world, Code.HELD_ALREADY, "in neither hand", "held already", o)
-    return _GRAB.rule(world, number, o, s, rules)
-
-
-def _graspable(s: Situation) -> Masks:
-    masks = _GRAB.mask(s)
-    return some(masks[0] & ~s.held) if masks and s.rules.one_grip else masks
+def _need_another_grip(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+    """Refuse what a hand holds already."""
+    if not agent.held >> o & 1:
+        return None
+    return refuse(world, Code.HELD_ALREADY, "in neither hand", "held already", o)
 
 
 _nobody_else = Check(_need_nobody_else, lambda s, _: ~s.held_by_others)
 
-_GRAB = checked("Grab", able, close, reachable, free_hand, _nobody_else, effect=_grab)
+_another_grip = Check(_need_another_grip, lambda s, _: ~s.held)
+
+_GRAB = (able, close, reachable, free_hand, _nobody_else)
 
 ACTIONS = (
-    Action("Grab", _grip, _graspable),
+    by_rule("one_grip", checked("Grab", _another_grip, *_GRAB, effect=_grab), checked("Grab", *_GRAB, effect=_grab)),
     Action("PutBack", put_back, _putable_on),
     Action("PutIn", put_in, _putable_in),
     Action("PutObjBack", put_obj_back, _returnable),

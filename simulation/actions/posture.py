@@ -1,7 +1,7 @@
 """Sit, Lie, StandUp, Sleep, WakeUp."""
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation.actions.common import Action, Check, Masks, able, checked, close, refuse
+from hearth.simulation.actions.common import Action, Check, Effect, Masks, able, by_rule, checked, close, refuse
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
@@ -61,21 +61,30 @@ def _not_already(state: int, code: Code, name: str) -> Check:
     return Check(refusal, lambda s, _: 0 if s.states[state] & s.me.bit else -1)
 
 
-def _unoccupied(lying: bool) -> Check:
-    """Fewer things are on the seat or bed than its limit."""
+def _unoccupied(lying: bool, made_bed: bool) -> Check:
+    """Fewer things are on the seat or bed than its limit; by the rule `made_bed`, bedding of a bed aside."""
 
     def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
-        taken = rows.bearing(world, o)
+        taken = rows.taking_room(world, o, made_bed)
         limit = world.home.limit(o, lying)
         if taken.bit_count() < limit:
             return None
-        return refuse(world, Code.OCCUPIED, f"fewer than {limit} on it", str(taken.bit_count()), o, *indices(taken))
+        fewer = f"fewer than {limit} on it{' besides bedding' if made_bed and rows.turned_back(world, o) else ''}"
+        return refuse(world, Code.OCCUPIED, fewer, str(taken.bit_count()), o, *indices(taken))
 
     def mask(s: Situation, action: str) -> int:
         places = indices(s.able(action) & s.close)
-        return mask_of(i for i in places if rows.bearing(s.world, i).bit_count() < s.home.limit(i, lying))
+        return mask_of(i for i in places if rows.taking_room(s.world, i, made_bed).bit_count() < s.home.limit(i, lying))
 
     return Check(refusal, mask)
+
+
+def _resting_on(name: str, lying: bool, already: Check, effect: Effect) -> Action:
+    """Sit or Lie: both need room, which the bedding of a made bed takes only in the release."""
+    made, counted = (
+        checked(name, close, already, able, _unoccupied(lying, made_bed), effect=effect) for made_bed in (True, False)
+    )
+    return by_rule("made_bed", made, counted)
 
 
 def _settle(world: World, number: int, o: int, state: int, facing: int) -> World:
@@ -87,8 +96,8 @@ def _settle(world: World, number: int, o: int, state: int, facing: int) -> World
 
 
 ACTIONS = (
-    checked("Sit", close, _not_already(SITTING, Code.SITTING, "sitting"), able, _unoccupied(lying=False), effect=_sit),
-    checked("Lie", close, _not_already(LYING, Code.LYING, "lying"), able, _unoccupied(lying=True), effect=_lie),
+    _resting_on("Sit", False, _not_already(SITTING, Code.SITTING, "sitting"), _sit),
+    _resting_on("Lie", True, _not_already(LYING, Code.LYING, "lying"), _lie),
     Action("StandUp", stand_up, _resting),
     Action("Sleep", sleep, _resting),
     Action("WakeUp", sleep, _resting),

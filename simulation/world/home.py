@@ -10,7 +10,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.explained import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
 from hearth.simulation.world import building
-from hearth.simulation.world.affordance import allowed
+from hearth.simulation.world.affordance import allowed, of_kind
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.building import Raw, Rows
 from hearth.simulation.world.nodes import with_states
@@ -253,6 +253,11 @@ class Home:
     def bearing(self) -> int:
         """All nodes that something is ON at the start."""
         return mask_of(i for i, row in enumerate(self.bears) if row)
+
+    @cached_property
+    def bedding(self) -> int:
+        """All bedding (derived.yaml): what may lie ON a made bed."""
+        return of_kind(self.knowledge.derived["bedding"][1], self.properties, self.by_class, self.everything)
 
     @explained
     def instances(self, name: str) -> int:

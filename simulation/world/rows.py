@@ -167,6 +167,17 @@ def bearing(world: WorldState, i: int) -> int:
     return found
 
 
+def turned_back(world: WorldState, i: int) -> int:
+    """The bedding ON i that takes no room there by the rule `made_bed`: that on what one can lie on."""
+    home = world.home
+    return bearing(world, i) & home.bedding if home.properties["LIEABLE"] >> i & 1 else 0
+
+
+def taking_room(world: WorldState, i: int, made_bed: bool = True) -> int:
+    """What is ON i and takes room from who would sit or lie there, with the rule `made_bed` or without."""
+    return bearing(world, i) & ~turned_back(world, i) if made_bed else bearing(world, i)
+
+
 def held_indices(agent: Agent) -> Iterator[int]:
     """What a character holds, right hand first."""
     yield from indices(agent.right)

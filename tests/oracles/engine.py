@@ -15,6 +15,7 @@ SEATS = {
     "couch": 4, "bed": 4, "sofa": 4, "loveseat": 2, "love_seat": 2, "pianobench": 2, "piano_bench": 2, "bench": 2,
 }  # fmt: skip
 BEDS = {"bed": 3, "couch": 2, "sofa": 2, "loveseat": 2, "love_seat": 2, "bathtub": 2}
+BEDDING = {"blanket", "comforter", "pillow", "sheets"}
 SQUEEZABLE = {
     "cleaning_solution", "tooth_paste", "shampoo", "food_peanut_butter", "dish_soap", "soap", "towel", "rag", "paper",
     "sponge", "food_lemon", "check",
@@ -92,7 +93,7 @@ def sit(w: World, o: int, _: int | None, options: Options) -> None:
     need(w.close(o), Code.NOT_CLOSE)
     need(not w.is_(w.me, "SITTING"), Code.SITTING)
     need(w.has(o, "SITTABLE"), Code.NOT_AFFORDED)
-    need(len(w.back["ON"][o]) < SEATS.get(w.name[o], 1), Code.OCCUPIED)
+    need(len(taken(w, o, options)) < SEATS.get(w.name[o], 1), Code.OCCUPIED)
     w.link(w.me, "ON", o)
     for x in list(w.to["FACING"][o]):
         w.link(w.me, "FACING", x)
@@ -103,9 +104,15 @@ def lie(w: World, o: int, _: int | None, options: Options) -> None:
     need(w.close(o), Code.NOT_CLOSE)
     need(not w.is_(w.me, "LYING"), Code.LYING)
     need(w.has(o, "LIEABLE"), Code.NOT_AFFORDED)
-    need(len(w.back["ON"][o]) < BEDS.get(w.name[o], 1), Code.OCCUPIED)
+    need(len(taken(w, o, options)) < BEDS.get(w.name[o], 1), Code.OCCUPIED)
     w.link(w.me, "ON", o)
     w.enter(w.me, "LYING")
+
+
+def taken(w: World, o: int, options: Options) -> list[int]:
+    """What takes room; a made bed's bedding is turned back."""
+    made = options.made_bed and w.has(o, "LIEABLE")
+    return [x for x in w.back["ON"][o] if not made or w.name[x] not in BEDDING]
 
 
 def stand_up(w: World, *_: object) -> None:

@@ -77,9 +77,9 @@ def first_failure(
 ) -> Condition | None:
     """The first check before the action that does not hold, or None when it can be done.
 
-    Checks that depend on an option are made when it is among `options`.
+    Checks that depend on an option are made when it is among `options`, which are those that `option` asks for too.
     """
-    reading = _Reading(knowledge, view, action)
+    reading = _Reading(knowledge, view, action, options)
     for condition in action.preconditions:
         if condition.option and condition.option not in options:
             continue
@@ -142,10 +142,13 @@ class _Draft:
 class _Reading:
     """One action's literals read in one world."""
 
-    def __init__(self, knowledge: Knowledge, view: View, action: Action | None) -> None:
+    def __init__(
+        self, knowledge: Knowledge, view: View, action: Action | None, options: frozenset[str] = frozenset()
+    ) -> None:
         self.knowledge = knowledge
         self.view = view
         self.action = action
+        self.options = options
 
     def thing(self, term: Term, bound: Mapping[str, int]) -> int | None:
         """The node a term means, or None."""
@@ -261,6 +264,10 @@ def _is_room(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -
     return node is not None and reading.view.is_room(node)
 
 
+def _option(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
+    return atom.terms[0].name in reading.options
+
+
 def _same(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     first, second = (reading.thing(term, bound) for term in atom.terms)
     return first is not None and first == second
@@ -295,6 +302,7 @@ _BUILT_IN: dict[str, Callable[[_Reading, Literal[Term], Mapping[str, int]], bool
     "class": _class,
     "class_contains": _class_contains,
     "is_room": _is_room,
+    "option": _option,
     "property": _property,
     "REMEMBERS": _remembers,
     "same": _same,

@@ -5,7 +5,7 @@ Every predicate is asked of one node, or of one and another; what a term stands 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from hearth.kb.knowledge import Knowledge
@@ -20,6 +20,7 @@ STATES = {
 }  # fmt: skip
 EDGES = {"in": "ON", "inside": "INSIDE", "atreach": "CLOSE", "nearby": "CLOSE", "facing": "FACING"}
 DOORS = "BETWEEN"
+BEDDING = ("blanket", "comforter", "pillow", "sheets")
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ class Plain:
         if name in ("free", "occupied"):
             kind = now.class_name(x)
             limit = max(self.knowledge.seat_limit(kind), self.knowledge.bed_limit(kind))
-            return (len(above) < limit) == (name == "free")
+            return (len(self.counted(x, above)) < limit) == (name == "free")
         if name == "full_hands":
             return x in self.characters() and all(now.targets(hand, x) for hand in HANDS)
         if name == "doors_closed":
@@ -90,6 +91,11 @@ class Plain:
         if name == "pet":
             return any(now.class_name(other) in ("cat", "dog") for other in above)
         return now.has_state(x, STATES.get(name, name))
+
+    def counted(self, x: int, above: Iterable[int]) -> list[int]:
+        """What takes room on a seat; on what one can lie on, bedding does not."""
+        made = "LIEABLE" in self.now.properties(x)
+        return [other for other in above if not made or self.now.class_name(other) not in BEDDING]
 
     def related(self, name: str, x: int, y: int) -> bool:
         """Whether a predicate of two terms holds."""

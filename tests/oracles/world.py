@@ -138,11 +138,12 @@ class World:
 
 
 class Options:
-    """Whether doors stop walks, and what is off can be watched."""
+    """Whether doors stop walks, what is off can be watched, and the bedding on a bed takes no room."""
 
-    def __init__(self, doors: bool = True, watch_needs_on: bool = True) -> None:
+    def __init__(self, doors: bool = True, watch_needs_on: bool = True, made_bed: bool = True) -> None:
         self.doors = doors
         self.watch_needs_on = watch_needs_on
+        self.made_bed = made_bed
 
 
 def _copied(relations: dict[str, dict[int, set[int]]]) -> dict[str, dict[int, set[int]]]:

@@ -157,9 +157,9 @@ def test_nearly_all_pairs_of_the_corpus_are_repaired():
 
 
 def things_on(seat: int, execution: Execution, tick: int, but: set[int]) -> list[str]:
-    """What can be carried and is on a seat before a tick, those nodes left out."""
+    """What takes room, can be carried and is on a seat before a tick, those nodes left out."""
     home, world = execution.final.home, execution.worlds[tick]
-    carried = rows.bearing(world, home.index[seat]) & home.able("Grab") & ~home.characters
+    carried = rows.taking_room(world, home.index[seat]) & home.able("Grab") & ~home.characters
     return [home.classes[i] for i in indices(carried) if home.ids[i] not in but]
 
 

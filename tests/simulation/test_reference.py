@@ -23,7 +23,7 @@ def agree(seed: int, steps: int = 30) -> int:
     rng = random.Random(seed)
     graph = random_graph(rng)
     rules = rng.choice((DEFAULT, REPLAY))
-    options = Options(rules.doors, rules.watch_needs_on)
+    options = Options(rules.doors, rules.watch_needs_on, rules.made_bed)
     world, plain = World.start(Home.from_graph(graph, "", default())), PlainWorld(graph, rules.origin == "release")
     done = 0
     for number in range(steps):

@@ -1,0 +1,146 @@
+"""Bedding around who lies in a bed: a pillow under the head, a blanket over the legs, the rest beside or on top."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from hearth.homes.forms import form
+from hearth.rendering.people.acting import Actor
+from hearth.rendering.scene.places import Places, Pose
+from hearth.rendering.scene.prepared import local_size
+from hearth.schemas.graph import Box, Node, Point
+from hearth.simulation.world.affordance import is_of_kind
+
+UNDER_HEAD = (0.6, 0.12, 0.4)
+"""Width, height and depth in metres of a pillow on which a head lies."""
+
+OVER_LEGS, FLAT = 0.32, 0.06
+"""Heights in metres of a blanket that covers somebody's legs, and of one under which nobody lies."""
+
+COVER, SPREAD = (0.84, 0.8), 0.8
+"""Width of a spread blanket and its least depth, and the depth from which one is spread rather than folded, metres.
+The model `folded` draws it so."""
+
+HEAD, HIPS = -0.43, 0.01
+"""Where a lying body's head and hips are along it, as shares of its height; its feet are towards +."""
+
+EDGE = 0.1
+"""Metres between bedding and the head or foot of the bed."""
+
+BESIDE = 0.3
+"""Metres across from a lying body's middle, from which a bed is free."""
+
+
+def turned_back(places: Places, actors: Sequence[Actor]) -> Places:
+    """The places with the bedding laid around those who lie, and flat where nobody does any more."""
+    poses = dict(places.poses)
+    sleepers = {actor.place: actor for actor in actors if actor.body_pose.posture == "lying" and actor.place in poses}
+    on: dict[int, list[Node]] = {}
+    for node in places.graph.nodes:
+        location = places.locations.get(node.id)
+        lies_on = node.id in poses and location is not None and location.kind == "on"
+        if lies_on and location is not None and is_of_kind(node.class_name, "bedding", places.knowledge):
+            on.setdefault(location.holder, []).append(node)
+    for bed, nodes in on.items():
+        if bed in sleepers:
+            poses |= _Bed.of(sleepers[bed], places).laid(nodes, places)
+        else:
+            poses |= {node.id: pose for node in nodes if (pose := _flat(poses[node.id])) is not None}
+    return places if poses == dict(places.poses) else replace(places, poses=poses)
+
+
+def _flat(pose: Pose) -> Pose | None:
+    """The pose of a spread blanket without anybody under it; None of what is folded."""
+    (x, y, z), (w, h, d) = pose.box
+    if local_size(pose.box.size, pose.yaw or 0.0)[2] < SPREAD or h <= FLAT:
+        return None
+    return pose._replace(box=Box((x, y - (h - FLAT) / 2, z), (w, FLAT, d)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Bed:
+    """A bed in the frame of who lies in it: x to the side, z towards the feet.
+
+    Attributes:
+        actor: who lies there.
+        top: height of the mattress in that frame.
+        middle, size: of the bed's box.
+    """
+
+    actor: Actor
+    top: float
+    middle: Point
+    size: Point
+
+    @classmethod
+    def of(cls, actor: Actor, places: Places) -> _Bed:
+        box = places.poses[actor.place].box
+        return cls(actor, actor.body_pose.seat, actor.local(box.center), local_size(box.size, actor.yaw))
+
+    @property
+    def free(self) -> tuple[float, float]:
+        """From where to where across there is room beside who lies there, on the wider side."""
+        low, high = self.middle[0] - self.size[0] / 2, self.middle[0] + self.size[0] / 2
+        return (BESIDE, high) if high > -low else (low, -BESIDE)
+
+    def laid(self, nodes: Sequence[Node], places: Places) -> dict[int, Pose]:
+        """The poses of its bedding, by id; what would be in another is on top of it."""
+        covers = [node for node in nodes if places.knowledge.has(node.class_name, "COVER_OBJECT")]
+        pillows = [node for node in nodes if node not in covers]
+        wanted = [(node, self._under_head()) for node in pillows[:1]] + [
+            (node, self._over_legs()) for node in covers[:1]
+        ]
+        for others, towards in ((pillows[1:], 1), (covers[1:], -1)):
+            boxes = self._beside([_folded(node, places) for node in others], towards)
+            wanted += zip(others, boxes, strict=True)
+        found: dict[int, Box] = {}
+        for node, box in wanted:
+            found[node.id] = _lifted(box, [*found.values()])
+        return {number: self._pose(box) for number, box in found.items()}
+
+    def _pose(self, box: Box) -> Pose:
+        x, y, z = self.actor.world(box.center)
+        return Pose(Box((x, y, z), local_size(box.size, self.actor.yaw)), self.actor.yaw)
+
+    def _under_head(self) -> Box:
+        w, h, d = UNDER_HEAD
+        return Box((0.0, self.top + h / 2, HEAD * self.actor.body.height), (min(w, self.size[0] - 0.1), h, d))
+
+    def _over_legs(self) -> Box:
+        start, end = HIPS * self.actor.body.height, self.middle[2] + self.size[2] / 2
+        depth = max(min(end, 0.6 * self.actor.body.height) - start, COVER[1])
+        width = min(COVER[0], self.size[0])
+        return Box((0.0, self.top + OVER_LEGS / 2, start + depth / 2), (width, OVER_LEGS, depth))
+
+    def _beside(self, sizes: Sequence[Point], towards: int) -> Iterator[Box]:
+        """Boxes on the free side, in rows from the head (towards 1) or the foot (-1); else at the foot."""
+        low, high = self.free
+        end = self.middle[2] - self.size[2] / 2 * towards
+        for number, (w, h, d) in enumerate(sizes):
+            if high - low <= BESIDE:
+                yield Box((0.0, self.top + h / 2, self.middle[2] + (self.size[2] - d) / 2), (w, h, d))
+                continue
+            across = max(1, int((high - low) / w))
+            row, column = divmod(number, across)
+            x = low + (high - low) / across * (column + 0.5)
+            z = end + (EDGE + min(d * (row + 0.5), self.size[2] - EDGE - d / 2)) * towards
+            yield Box((x, self.top + h / 2, z), (min(w, high - low), h, d))
+
+
+def _lifted(box: Box, others: Sequence[Box]) -> Box:
+    """A box, lifted onto those in which it would be."""
+    (x, y, z), (w, h, d) = box
+    for (ox, oy, oz), (ow, oh, od) in sorted(others, key=lambda other: other.center[1]):
+        beside = abs(x - ox) >= (w + ow) / 2 - 1e-6 or abs(z - oz) >= (d + od) / 2 - 1e-6
+        if not beside and abs(y - oy) < (h + oh) / 2 - 1e-6:
+            y = oy + (oh + h) / 2
+    return Box((x, y, z), (w, h, d))
+
+
+def _folded(node: Node, places: Places) -> Point:
+    """The size of bedding that is not spread."""
+    if node.box is not None:
+        return local_size(node.box.size, node.yaw or 0.0)
+    known = form(node.class_name, places.knowledge)
+    return known.size if known is not None and all(known.size) else places.size_of(node)
