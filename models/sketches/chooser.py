@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from hearth.kb.knowledge import Knowledge
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.data import Corpus, Example
 from hearth.models.decoding.scorers import Asked, Part, Scores
@@ -169,7 +170,8 @@ class TrainedChooser:
         starts = [Start(*each[:1], each[1:]) for each in zip(worlds, sketches, clues, strict=True)]
         search = Search(beam=beam, least=0)
         programs = decode(self.scorer(), starts, search)
-        return [_named(program, sketch) for program, sketch in zip(programs, sketches, strict=True)]
+        every = zip(programs, sketches, worlds, strict=True)
+        return [_named(program, sketch, world.home.knowledge) for program, sketch, world in every]
 
     def _clues(self, request: Request, world: World) -> Clues:
         return Clues.of(request, world.home.knowledge) if self.settings.text else NO_CLUES
@@ -232,9 +234,16 @@ def _bound(sketch: Steps, nodes: Mapping[tuple[str, int], int], world: World) ->
     return complete_steps(Program(steps=sketch).bound(ids).steps)
 
 
-def _named(steps: Steps, sketch: Steps) -> Steps:
-    """A program that calls nodes as the sketch does: a kitchen may serve as its dining room."""
+def _named(steps: Steps, sketch: Steps, known: Knowledge) -> Steps:
+    """A program that calls nodes as the sketch does, where that name affords all that is done to the node.
+
+    A kitchen may serve as the sketch's dining room; a box of cereal that is opened is not called food.
+    """
     names = {ref.node: ref.name for step in sketch for ref in step.objects}
+    for step in steps:
+        for position, ref in enumerate(step.objects):
+            if ref.node in names and not known.affords(step.action, position, names[ref.node]):
+                del names[ref.node]
 
     def renamed(ref: ObjectRef) -> ObjectRef:
         return ObjectRef(names.get(ref.node, ref.name), ref.instance, ref.node)

@@ -15,6 +15,7 @@ from hearth.models.data import corpus
 from hearth.models.decoding.options import Grammar
 from hearth.models.interface import Request, Training
 from hearth.models.model_registry import restore
+from hearth.models.sketches import chooser
 from hearth.models.sketches.choices import Candidate, Choice, joined, packed
 from hearth.models.sketches.chooser import NO_HABITS, SIZES, Chooser, TrainedChooser
 from hearth.models.sketches.chooser_examples import step_choices
@@ -82,6 +83,14 @@ def test_the_planner_always_runs(asked):
         program = planned_program(request.sketch, request.world)
         assert executability(program, request.world).executable
         assert program or not request.sketch
+
+
+def test_a_node_is_called_as_in_the_sketch_where_that_name_affords_what_is_done(knowledge):
+    sketch = sketch_of(("[Eat] <food_food> (1.7)",))
+    eaten = sketch_of(("[Grab] <food_cereal> (1.7)", "[Eat] <food_cereal> (1.7)"))
+    opened = (*sketch_of(("[Open] <food_cereal> (1.7)",)), *eaten)
+    assert [step.objects[0].name for step in chooser._named(eaten, sketch, knowledge)] == ["food_food"] * 2
+    assert chooser._named(opened, sketch, knowledge) == opened
 
 
 def test_a_plan_knows_which_of_its_steps_are_the_sketch(environments):
