@@ -16,6 +16,7 @@ from hearth.models.interface import Request, Steps
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
+from hearth.simulation import rules
 from hearth.storage.files import value_digest
 
 if TYPE_CHECKING:
@@ -236,5 +237,5 @@ def requests(
             sketch = tuple(step for step, keeps in zip(steps, keep, strict=False) if keeps)
             world = start_of(case["environment"], case["home"], homes) if worlds else None
             texts = (case["title"] or "", case["description"] or "")
-            share.append(Request(case["execution_id"], *texts, sketch, world))
+            share.append(Request(case["execution_id"], *texts, sketch, world, rules.RULES[case["rules"]]))
         yield share

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from hearth.schemas.program import Step
+from hearth.simulation.rules import DEFAULT, Rules
 
 if TYPE_CHECKING:
     from hearth.simulation.world.world import World
@@ -31,6 +32,7 @@ class Request:
         description: the text.
         sketch: steps that the program should have, without nodes; for models of sketches.
         world: where the program will run; for models that look at it, and for constrained decoding.
+        rules: by which it will run.
     """
 
     id: str
@@ -38,6 +40,7 @@ class Request:
     description: str = ""
     sketch: Steps = ()
     world: World | None = None
+    rules: Rules = DEFAULT
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,7 @@ class Planner(Settings):
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
         """The plan for each sketch in its world; no steps without a world."""
-        return [planned_program(each.sketch, each.world) if each.world else () for each in requests]
+        return [planned_program(each.sketch, each.world, each.rules) if each.world else () for each in requests]
 
     def checkpoint(self) -> Checkpoint:
         """A checkpoint without weights."""

@@ -86,7 +86,7 @@ def constrained(
     for share in requests(dataset, names, worlds=True, sketches=sketches):
         for first in range(0, len(share), WRITTEN):
             part = share[first : first + WRITTEN]
-            starts = [Start(each.world, each) for each in part if each.world]
+            starts = [Start(each.world, each, rules=each.rules) for each in part if each.world]
             yield from zip((each.id for each in part), decode(scorer, starts, Search(beam=beam)), strict=True)
         done += len(share)
         seen(done, len(names))

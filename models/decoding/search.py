@@ -55,11 +55,13 @@ class Start:
         world: at the start.
         given: the model's own input: a sketch, a text.
         random: for sampling; its own for each program, so that no program depends on its neighbours.
+        rules: of the engine.
     """
 
     world: World
     given: Any = None
     random: Random = field(default_factory=lambda: Random(0))
+    rules: Rules = DEFAULT
 
 
 @dataclass(frozen=True)
@@ -84,27 +86,24 @@ class _Draft:
 Choice = tuple[float, _Draft]
 
 
-def decode(
-    scorer: Scorer, starts: Sequence[Start], search: Search = Search(), rules: Rules = DEFAULT
-) -> list[tuple[Step, ...]]:
+def decode(scorer: Scorer, starts: Sequence[Start], search: Search = Search()) -> list[tuple[Step, ...]]:
     """Write a program for each start.
 
     Args:
         scorer: the model.
         starts: where, and from what.
         search: how.
-        rules: of the engine.
 
     Returns:
         The programs, bound to nodes. Constrained ones parse and run.
     """
-    return _Decoder(scorer, starts, search, rules).programs()
+    return _Decoder(scorer, starts, search).programs()
 
 
 class _Decoder:
-    def __init__(self, scorer: Scorer, starts: Sequence[Start], search: Search, rules: Rules) -> None:
-        self.scorer, self.starts, self.search, self.rules = scorer, starts, search, rules
-        self.grammars: dict[int, tuple[Home, Grammar]] = {}
+    def __init__(self, scorer: Scorer, starts: Sequence[Start], search: Search) -> None:
+        self.scorer, self.starts, self.search = scorer, starts, search
+        self.grammars: dict[tuple[int, Rules], tuple[Home, Grammar]] = {}
         self.free: frozenset[str] = frozenset()
         if starts:
             known = starts[0].world.home.knowledge
@@ -114,7 +113,7 @@ class _Decoder:
     def programs(self) -> list[tuple[Step, ...]]:
         states = self.scorer.begin([each.world for each in self.starts], [each.given for each in self.starts])
         beams = [
-            [_Draft(row, start.world, state, self._options(start.world))]
+            [_Draft(row, start.world, state, self._options(start.world, start.rules))]
             for row, (start, state) in enumerate(zip(self.starts, states, strict=True))
         ]
         while any(not draft.ended for beam in beams for draft in beam):
@@ -123,13 +122,14 @@ class _Decoder:
             beams = self._done(beams)
         return [numbered(beam[best_places(np.array([*map(_mean, beam)]), 1)[0]].steps) for beam in beams]
 
-    def _options(self, world: World) -> Options | None:
+    def _options(self, world: World, rules: Rules) -> Options | None:
         if not self.search.constrained:
             return None
         home = world.home
-        if id(home) not in self.grammars:
-            self.grammars[id(home)] = home, Grammar(home, self.rules)
-        return self.grammars[id(home)][1].options(world)
+        key = id(home), rules
+        if key not in self.grammars:
+            self.grammars[key] = home, Grammar(home, rules)
+        return self.grammars[key][1].options(world)
 
     # Choosing the parts of the next step
 
@@ -230,7 +230,7 @@ class _Decoder:
         step = draft.whole or _step(draft.chosen, draft.world.home)
         world = draft.world
         if draft.options is not None:
-            after = act(world, step, self.rules)
+            after = act(world, step, self.starts[draft.row].rules)
             assert not isinstance(after, Failure), after.message()  # the mask is exactly what the engine does
             world = after
         free = draft.free + 1 if step.action in self.free else 0
@@ -240,7 +240,7 @@ class _Decoder:
         """The draft with what may come next, or ended."""
         if draft.ended or len(draft.steps) >= self.search.longest:
             return replace(draft, ended=True)
-        options = self._options(draft.world)
+        options = self._options(draft.world, self.starts[draft.row].rules)
         if options is not None:
             barred = self.free if draft.free >= self.search.free_moves else frozenset()
             repeated = self._repeated(draft) if len(draft.steps) >= self.search.repeats else ()

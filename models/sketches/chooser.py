@@ -36,6 +36,7 @@ from hearth.models.sketches.text_clues import AROUND, NO_CLUES, Clues, frequent
 from hearth.models.training import Outcome, Task, train
 from hearth.repair.sketch_plan import bound_to_nearest, complete_steps
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.simulation.rules import Rules
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen
 
@@ -167,7 +168,10 @@ class TrainedChooser:
         worlds = [_world(request) for request in requests]
         sketches = self.bound([request.sketch for request in requests], worlds)
         clues = [self._clues(request, world) for request, world in zip(requests, worlds, strict=True)]
-        starts = [Start(*each[:1], each[1:]) for each in zip(worlds, sketches, clues, strict=True)]
+        starts = [
+            Start(world, (sketch, clue, request.rules), rules=request.rules)
+            for world, sketch, clue, request in zip(worlds, sketches, clues, requests, strict=True)
+        ]
         search = Search(beam=beam, least=0)
         programs = decode(self.scorer(), starts, search)
         every = zip(programs, sketches, worlds, strict=True)
@@ -177,7 +181,7 @@ class TrainedChooser:
         return Clues.of(request, world.home.knowledge) if self.settings.text else NO_CLUES
 
     def scorer(self) -> PlanScorer:
-        """The model as a scorer of steps; the input of a program is its bound sketch, and what its text says."""
+        """The model as a scorer of steps; its input is the bound sketch, what the text says, and the rules."""
         return PlanScorer(self.rankers.get("steps"), self.habits if self.settings.style else NO_HABITS, self.words)
 
     def bound(self, sketches: Sequence[Steps], worlds: Sequence[World]) -> list[Steps]:
@@ -260,10 +264,10 @@ class PlanScorer:
     def __init__(self, ranker: Ranker | None, habits: Habits, words: Words) -> None:
         self.ranker, self.habits, self.words = ranker, habits, words
 
-    def begin(self, worlds: Sequence[World], inputs: Sequence[tuple[Steps, Clues]]) -> list[Progress]:
+    def begin(self, worlds: Sequence[World], inputs: Sequence[tuple[Steps, Clues, Rules]]) -> list[Progress]:
         """The progress before the first step of each bound sketch."""
         given = zip(worlds, inputs, strict=True)
-        return [Progress.start(sketch, world, clues=clues) for world, (sketch, clues) in given]
+        return [Progress.start(sketch, world, rules, clues) for world, (sketch, clues, rules) in given]
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> list[Progress]:
         """The progress after each step."""

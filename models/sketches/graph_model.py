@@ -116,7 +116,7 @@ class TrainedGraphModel:
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
         """A program for each request with a sketch and a world; without a world none."""
         asked = [each for each in requests if each.world is not None]
-        starts = [Start(each.world, each.sketch) for each in asked if each.world is not None]
+        starts = [Start(each.world, each.sketch, rules=each.rules) for each in asked if each.world is not None]
         search = Search(beam=beam, constrained=self.settings.constrained)
         found = dict(zip((each.id for each in asked), decode(self.scorer(), starts, search), strict=True))
         return [found.get(each.id, ()) for each in requests]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,7 +22,6 @@ from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
 from hearth.scoring import baselines
 from hearth.scoring.metrics.lcs import score_pairs
-from hearth.simulation.rules import DEFAULT
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def _answers(
 
 
 def _other(request: Request, sketch: Steps) -> Request:
-    return Request(request.id, request.title, request.description, sketch, request.world)
+    return replace(request, sketch=sketch)
 
 
 def _entrants(methods: Sequence[Method], answers: Sequence[Sequence[Steps]]) -> list[Entrant]:
@@ -208,7 +208,9 @@ def _knowledge(asked: Sequence[Request]) -> Any:
 def _started(name: str, start: baselines.Starting, train: Sequence[baselines.Example], seed: int) -> Writer:
     def write(asked: Sequence[Request]) -> list[Steps]:
         return [
-            start(train, baselines.Example(each.id, "", (), each.sketch), each.world, DEFAULT, rng(seed, name, each.id))
+            start(
+                train, baselines.Example(each.id, "", (), each.sketch), each.world, each.rules, rng(seed, name, each.id)
+            )
             for each in asked
             if each.world is not None
         ]

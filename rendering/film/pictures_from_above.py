@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from io import BytesIO
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,5 +81,6 @@ def stored(found: Demonstration) -> bytes:
     changes = found.rgb.copy()
     changes[1:] -= found.rgb[:-1]
     buffer = BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **{MASKS: found.class_ids, CHANGES: changes})
+    arrays: dict[str, Any] = {MASKS: found.class_ids, CHANGES: changes}
+    np.savez_compressed(buffer, allow_pickle=False, **arrays)
     return buffer.getvalue()

@@ -33,6 +33,7 @@ from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_steps
 from hearth.scoring.metrics.executability import executability
 from hearth.simulation.engine import run
+from hearth.simulation.rules import RULES
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -260,3 +261,12 @@ def test_a_checkpoint_with_other_features_is_refused(untrained, tmp_path):
     save(dataclasses.replace(whole, content={**whole.content, "sizes": sizes}), tmp_path)
     with pytest.raises(HearthError, match="other features"):
         restore(tmp_path)
+
+
+@pytest.mark.parametrize(("name", "stripped"), [("default", True), ("made_bed", False)])
+def test_a_program_runs_by_the_rules_of_its_request(untrained, maple, name, stripped):
+    request = Request("x", sketch=sketch_of(["[Lie] <bed> (1)"]), world=World.start(maple), rules=RULES[name])
+    for model in (restore("planner")[1], untrained):
+        (steps,) = model.predict([request])
+        assert steps and run(request.world, Program(steps=steps), RULES[name]).executable
+        assert any(step.action == "Grab" for step in steps) == stripped

@@ -97,7 +97,7 @@ def test_unknown_parts_are_named(dataset):
 
 
 def test_requests_have_texts_and_worlds_and_no_programs(dataset):
-    assert [field.name for field in fields(Request)] == ["id", "title", "description", "sketch", "world"]
+    assert [field.name for field in fields(Request)] == ["id", "title", "description", "sketch", "world", "rules"]
     names = chosen(dataset)
     for worlds in (False, True):
         found = [each for share in requests(dataset, names, worlds=worlds) for each in share]
