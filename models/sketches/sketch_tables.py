@@ -207,13 +207,8 @@ def _knowledge(asked: Sequence[Request]) -> Any:
 
 def _started(name: str, start: baselines.Starting, train: Sequence[baselines.Example], seed: int) -> Writer:
     def write(asked: Sequence[Request]) -> list[Steps]:
-        return [
-            start(
-                train, baselines.Example(each.id, "", (), each.sketch), each.world, each.rules, rng(seed, name, each.id)
-            )
-            for each in asked
-            if each.world is not None
-        ]
+        given = [(each, baselines.Example(each.id, "", (), each.sketch)) for each in asked if each.world is not None]
+        return [start(train, one, each.world, each.rules, rng(seed, name, each.id)) for each, one in given]
 
     return write
 

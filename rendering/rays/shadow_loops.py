@@ -190,6 +190,15 @@ def judged(q: Any, own: int, first: Any, other: Any, covered: Any, group: int, s
 
 
 @kernel
+def put_off(rays: Floats, j: int, rest: Floats, places: Ints, count: int) -> int:
+    """Keep a ray for casting, as the next after `count` others; returns their number with it."""
+    for k in range(6):
+        rest[count, k] = rays[j, k]
+    places[count] = j
+    return count + 1
+
+
+@kernel
 def look_up_cube(
     rays: Floats, index: Ints, own: Ints, first: Any, other: Any, covered: Any, groups: Any,
     blocked: Any, rest: Floats, places: Ints,
@@ -224,10 +233,7 @@ def look_up_cube(
             f, o, v = first[face, row, column], other[face, row, column], covered[face, row, column]
             state = judged(q, own[index[j]], f, o, v, groups[face, row, column], q * np.float32(ROUND))
         if state == UNSURE:
-            for k in range(6):
-                rest[count, k] = rays[j, k]
-            places[count] = j
-            count += 1
+            count = put_off(rays, j, rest, places, count)
         else:
             blocked[j] = state == DARK
     return count
@@ -250,10 +256,7 @@ def look_up_plane(
             f, o, v = first[row, column], other[row, column], covered[row, column]
             state = judged(q, own[index[j]], f, o, v, groups[row, column], np.float32(2e-5))
         if state == UNSURE:
-            for k in range(6):
-                rest[count, k] = rays[j, k]
-            places[count] = j
-            count += 1
+            count = put_off(rays, j, rest, places, count)
         else:
             blocked[j] = state == DARK
     return count

@@ -230,18 +230,18 @@ def test_what_was_stopped_is_learnt_on_and_gives_the_same_bytes(tmp_path, what, 
     monkeypatch.setattr(learning, "PASSES", 3)
     limit = 12 if what == "goals" else 2
     learning.train("wah", what, tmp_path / "whole", default, limit=limit)
-    told = []
+    numbers = []
 
     def stopping(number, _):
-        told.append(number)
-        if len(told) == 1:
+        numbers.append(number)
+        if len(numbers) == 1:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         learning.train("wah", what, tmp_path / "again", default, limit=limit, trained=stopping)
     assert (tmp_path / "again" / STATE).is_dir()
     learning.train("wah", what, tmp_path / "again", default, limit=limit, trained=stopping)
-    assert told[1] == 2, "it began again"
+    assert numbers[1] == 2, "it began again"
     names = sorted(path.name for path in (tmp_path / "whole").iterdir())
     assert names == sorted(path.name for path in (tmp_path / "again").iterdir())
     assert (tmp_path / "whole" / WEIGHTS).read_bytes() == (tmp_path / "again" / WEIGHTS).read_bytes()
