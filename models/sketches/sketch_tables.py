@@ -207,8 +207,12 @@ def _knowledge(asked: Sequence[Request]) -> Any:
 
 def _started(name: str, start: baselines.Starting, train: Sequence[baselines.Example], seed: int) -> Writer:
     def write(asked: Sequence[Request]) -> list[Steps]:
-        given = [(each, baselines.Example(each.id, "", (), each.sketch)) for each in asked if each.world is not None]
-        return [start(train, one, each.world, each.rules, rng(seed, name, each.id)) for each, one in given]
+        given = ((each, each.world) for each in asked if each.world is not None)
+        found = []
+        for each, world in given:
+            one = baselines.Example(each.id, "", (), each.sketch)
+            found.append(start(train, one, world, each.rules, rng(seed, name, each.id)))
+        return found
 
     return write
 
