@@ -25,6 +25,7 @@ ROOM_COLOURS = {
 }  # fmt: skip
 COLOURS = {"wall": "#3b3b3b", "door": "#8a5a2b", "window": "#6db3e8", "curtain": "#b58fc4", "mat": "#e3d2b8"}
 FURNITURE, HUNG, SMALL, INK, PERSON = "#d3b28c", "#9fb3a0", "#c65b4a", "#222222", "#3f6fd1"
+HALO = "#ffffffd0"
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +80,8 @@ def shapes(layout: Layout) -> Iterator[Shape]:
     yield from _furniture(layout.character, PERSON)
     for room in layout.plan.rooms:
         yield Shape("text", room.rect, "#00000077", text=room.name, size=0.24)
+    named = (thing for thing in things if thing.mount == "floor" and thing.class_name != "wall")
+    yield from map(_label, (*named, layout.character))
 
 
 def _shell(things: tuple[Thing, ...]) -> Iterator[Shape]:
@@ -99,9 +102,13 @@ def _furniture(thing: Thing, colour: str = "") -> Iterator[Shape]:
     if thing.yaw is not None:
         edge = before(rect, thing.yaw, -min(0.05, rect.width / 3, rect.depth / 3))
         yield Shape("rect", edge, "#6b5535")
-    if thing.mount != "wall":
-        size = min(0.12, 1.5 * max(rect.width, rect.depth) / max(len(thing.class_name), 1))
-        yield Shape("text", rect, INK, text=thing.class_name, size=size)
+
+
+def _label(thing: Thing) -> Shape:
+    """The name of a piece of furniture, over what stands on it."""
+    rect = footprint(thing.box)
+    size = min(0.12, 1.5 * max(rect.width, rect.depth) / max(len(thing.class_name), 1))
+    return Shape("text", rect, INK, HALO, text=thing.class_name, size=size)
 
 
 def bounds(layout: Layout) -> Rect:
@@ -129,9 +136,10 @@ def svg_shape(shape: Shape, area: Rect) -> str:
     if shape.kind == "text":
         middle, centre = x + rect.width * SCALE / 2, y + rect.depth * SCALE / 2
         size = shape.size * SCALE
+        halo = f' paint-order="stroke" stroke="{shape.edge}" stroke-width="{size / 4:.1f}"' if shape.edge else ""
         return (
             f'<text x="{middle:.1f}" y="{centre + size / 3:.1f}" font-size="{size:.1f}" text-anchor="middle" '
-            f'fill="{shape.fill}">{escape(shape.text)}</text>'
+            f'fill="{shape.fill}"{halo}>{escape(shape.text)}</text>'
         )
     edge = f' stroke="{shape.edge}" stroke-width="0.7"' if shape.edge else ""
     width, height = rect.width * SCALE, rect.depth * SCALE
@@ -184,8 +192,10 @@ def paint(axes: Any, area: Rect, parts: Iterable[Shape], trails: Sequence[Trail]
     for number, shape in enumerate(parts):
         rect = shape.rect
         if shape.kind == "text":
-            axes.text(*rect.center, shape.text, size=shape.size * 72 * 0.95, ha="center", va="center",
-                      color=shape.fill, zorder=number)  # fmt: skip
+            size = shape.size * 72 * 0.95
+            halo = [library("matplotlib.patheffects").withStroke(linewidth=size / 4, foreground=shape.edge)]
+            axes.text(*rect.center, shape.text, size=size, ha="center", va="center", color=shape.fill, zorder=number,
+                      path_effects=halo if shape.edge else None)  # fmt: skip
         else:
             axes.add_patch(rectangle((rect.x0, rect.z0), rect.width, rect.depth, facecolor=shape.fill,
                                      edgecolor=shape.edge or "none", linewidth=0.5, zorder=number))  # fmt: skip

@@ -39,3 +39,10 @@ def test_the_png_is_the_same_each_time(tmp_path):
 def test_other_formats_are_refused(tmp_path):
     with pytest.raises(HearthError, match="UNSUPPORTED_FILE"):
         drawing.write(library.load_layout("maple", default()), tmp_path / "plan.gif")
+
+
+def test_names_of_furniture_are_written_over_what_stands_on_it():
+    drawn = list(drawing.shapes(library.load_layout("maple", default())))
+    last = max(number for number, shape in enumerate(drawn) if shape.kind == "rect")
+    assert all(number > last for number, shape in enumerate(drawn) if shape.kind == "text")
+    assert {"character", "bed", "fridge"} <= {shape.text for shape in drawn if shape.kind == "text" and shape.edge}
