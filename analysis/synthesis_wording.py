@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from random import Random
 
@@ -26,6 +26,11 @@ purpose or time, of a sentence that names no step, of a typing error in a descri
 
 HELD_OUT = 5
 """One paraphrase of this number is held out: descriptions of the test part use no other, where there is one."""
+
+_LIST = re.compile(r"<(\w+)>")
+_SLOT = re.compile(r"\{(\w+)\}")
+_THE_SLOT = re.compile(r"(the )?\{(\w+)\}")
+_FIRST_IT = re.compile(r"^([^{]*)\bit\b")
 
 
 @dataclass(frozen=True)
@@ -62,7 +67,7 @@ class Wording:
     def expanded(self, text: str, chance: Random) -> str:
         """A text with an entry of its list for each `<name>`, and for those within."""
         while "<" in text:
-            text = re.sub(r"<(\w+)>", lambda match: chance.choice(self.lists[match[1]]), text, count=1)
+            text = _LIST.sub(lambda match: chance.choice(self.lists[match[1]]), text, count=1)
         return text
 
     def reworded(self, clause: str, chance: Random) -> str:
@@ -84,7 +89,7 @@ def load_words(known: Knowledge, path: Path = WORDS) -> Wording:
     try:
         like = [word for row in data.pop("like") for word in row]
         found = Wording(**data, like=like, known=known)
-        named = {name for text in _texts(data) for name in re.findall(r"<(\w+)>", text)}
+        named = {name for text in _texts(data) for name in _LIST.findall(text)}
     except (TypeError, KeyError, AttributeError) as error:
         raise HearthError.of(Code.BAD_TABLE, f"not words of descriptions: {error}", file=str(path)) from error
     if unknown := named - found.lists.keys():
@@ -118,7 +123,12 @@ def is_held_out(paraphrase: str) -> bool:
 
 def paraphrase(say: Sequence[str], held_out: bool, chance: Random) -> str:
     """One of some paraphrases: held-out ones only, or none of them, as far as there are both kinds."""
-    return chance.choice([each for each in say if is_held_out(each) == held_out] or list(say))
+    return chance.choice(_of_kind(tuple(say), held_out) or say)
+
+
+@lru_cache(maxsize=4096)
+def _of_kind(say: tuple[str, ...], held_out: bool) -> tuple[str, ...]:
+    return tuple(each for each in say if is_held_out(each) == held_out)
 
 
 class Speaker:
@@ -138,10 +148,10 @@ class Speaker:
             subject: the slot that an `it` before any slot stands for, since a clause about it may have been left out.
         """
         if subject in objects:
-            template = re.sub(r"^([^{]*)\bit\b", rf"\1the {{{subject}}}", template, count=1)
+            template = _FIRST_IT.sub(rf"\1the {{{subject}}}", template, count=1)
         text = self.words.reworded(template, self.chance)
-        found = re.sub(r"(the )?\{(\w+)\}", lambda match: self._named(objects[match[2]], bool(match[1])), text)
-        self.last = next((objects[slot] for slot in re.findall(r"\{(\w+)\}", template)), self.last)
+        found = _THE_SLOT.sub(lambda match: self._named(objects[match[2]], bool(match[1])), text)
+        self.last = next((objects[slot] for slot in _SLOT.findall(template)), self.last)
         return self.words.expanded(found, self.chance)
 
     def _named(self, name: str, definite: bool) -> str:

@@ -14,6 +14,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 import pyarrow as pa
 from measuring import Figure, as_line, finish, parser, spread
@@ -21,7 +22,7 @@ from measuring import Figure, as_line, finish, parser, spread
 from hearth.pipelines.build import stage
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.stage import Job, Partition, Record, Stage, run_partition
+from hearth.pipelines.engine.stage import Job, Partition, Stage, run_partition
 from hearth.pipelines.engine.tiers import TIERS
 from hearth.pipelines.engine.workers import Workers
 from hearth.storage.parallel import unseen
@@ -72,12 +73,12 @@ def partitions(job: Job) -> Iterator[Partition]:
     return (Partition(number, str(number), (), 0) for number in range(PARTITIONS))
 
 
-def records(job: Job, partition: Partition) -> Iterator[Record]:
+def records(job: Job, partition: Partition) -> Iterator[Any]:
     """None."""
     return iter(())
 
 
-def process(record: Record, context: object) -> list[Record]:
+def process(record: Any, context: object) -> list[Any]:
     """Never called."""
     return [record]
 

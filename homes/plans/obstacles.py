@@ -32,7 +32,9 @@ class Obstacles:
 
     def __init__(self, room: Room, solids: Sequence[Thing], kept: Sequence[Rect], openings: Sequence[Opening]) -> None:
         self._inner = interior(room)
-        self._solids = solids
+        self._solids = [(footprint(t.box), bottom(t.box), top(t.box)) for t in solids]
+        self._fronts = [before(rect, t.yaw or 0.0, t.front) for t, (rect, *_) in zip(solids, self._solids, strict=True)
+                        if t.front]  # fmt: skip
         self._kept = kept
         self._openings = openings
         self._taken: dict[tuple[float, float], np.ndarray] = {}
@@ -50,7 +52,7 @@ class Obstacles:
         if front and found.any():
             zones = np.array([before(rect, yaw, front) for rect, yaw, _ in spots])
             found &= _within(zones, self._inner, 0.05)
-            low_ones = [footprint(t.box) for t in self._solids if bottom(t.box) < LOW]
+            low_ones = [rect for rect, lower, _ in self._solids if lower < LOW]
             found &= ~_meets(zones, np.array(low_ones, float).reshape(-1, 4)).any(axis=1)
         holes = [hole for hole in self._openings if low < hole.y1 and low + shaped.size[1] > hole.y0]
         if holes and found.any():
@@ -67,10 +69,9 @@ class Obstacles:
         """The floor that is taken for something of that height."""
         if (low, high) in self._taken:
             return self._taken[low, high]
-        taken = [footprint(t.box) for t in self._solids if bottom(t.box) < high and low < top(t.box)]
-        if low < LOW:
-            taken += [before(footprint(t.box), t.yaw or 0.0, t.front) for t in self._solids if t.front]
-        found = np.array([*taken, *(self._kept if low < HEAD else ())], float).reshape(-1, 4)
+        taken = [rect for rect, lower, upper in self._solids if lower < high and low < upper]
+        fronts, kept = self._fronts if low < LOW else (), self._kept if low < HEAD else ()
+        found = np.array([*taken, *fronts, *kept], float).reshape(-1, 4)
         self._taken[low, high] = found
         return found
 

@@ -63,6 +63,8 @@ class Piece:
 
     def with_parts(self, change: Callable[[tuple[Piece, ...]], tuple[Piece, ...]]) -> Piece:
         """The same, with its `on`, `inside` and `lay` changed."""
+        if not (self.on or self.inside or self.lay):
+            return self
         return replace(self, on=change(self.on), inside=change(self.inside), lay=change(self.lay))
 
     def has(self, key: str) -> bool:
