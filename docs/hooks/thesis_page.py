@@ -2,10 +2,12 @@
 
 python docs/hooks/thesis_page.py                          # write the page
 python docs/hooks/thesis_page.py "table 3.1" "text 3.4"   # run their commands, store what they print, write the page
+python docs/hooks/thesis_page.py "table 5.2" --printed data_out/tables/5.2.json      # store what a night has printed
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import shlex
@@ -127,8 +129,8 @@ def shown(value: Any) -> str:
     return f"{value:.2f}" if abs(value) < 10 else f"{value:.1f}" if abs(value) < 100 else f"{value:,.0f}"
 
 
-def measure(item: dict[str, Any], data: Path) -> None:
-    """Run an item's commands in an empty folder that has `data_out` and `data_raw`, and store what they print."""
+def printed(item: dict[str, Any], data: Path) -> Any:
+    """The JSON of an item's last command; they run in an empty folder that has `data_out` and `data_raw`."""
     with TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "data_out").symlink_to(data.resolve())
@@ -137,10 +139,15 @@ def measure(item: dict[str, Any], data: Path) -> None:
             last = command == item["commands"][-1]
             words = [sys.executable, str(ROOT / "cli.py"), *shlex.split(command)[1:], *(["--json"] if last else [])]
             done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, check=True, env=os.environ)
-    document = json.loads(done.stdout)
+    return json.loads(done.stdout)
+
+
+def fill(item: dict[str, Any], document: Any) -> None:
+    """Write what a command printed into the item's rows; a row's `at` is one place, or a list of them."""
     for row in item["rows"]:
-        if "at" in row:
-            row["ours"] = shown(value_at(document, row["at"]))
+        if places := row.get("at"):
+            each = [places] if isinstance(places, str) else places
+            row["ours"] = ", ".join(shown(value_at(document, place)) for place in each)
     head = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True)
     item["measured"] = {"date": date.today().isoformat(), "commit": head.stdout.strip()}
 
@@ -154,16 +161,21 @@ def store(chapters: Sequence[dict[str, Any]]) -> None:
     SOURCE.write_text("\n".join([*about, text]), "utf-8")
 
 
-def main(names: Sequence[str]) -> None:
+def main() -> None:
     """Measure the items of those names, if any, and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("items", nargs="*", help="`table 5.2`")
+    parser.add_argument("--printed", type=Path, metavar="FILE", help="what the item's last command printed with --json")
+    asked = parser.parse_args()
     chapters = load()
     for item in items(chapters):
-        if item["item"] in names:
-            measure(item, Path(os.environ.get("HEARTH_DATA_OUT", ROOT / "data_out")))
+        if item["item"] in asked.items:
+            known = asked.printed and json.loads(asked.printed.read_text("utf-8"))
+            fill(item, known or printed(item, Path(os.environ.get("HEARTH_DATA_OUT", ROOT / "data_out"))))
             store(chapters)
             print(item["item"], ", ".join(f"{row['what']}: {row['ours']}" for row in item["rows"]))
     PAGE.write_text(page(chapters), "utf-8")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -83,8 +83,14 @@ def test_a_command_that_does_not_exist_is_seen(command):
 
 def test_an_item_that_is_measured_again_has_the_same_numbers(thesis, items, tmp_path):
     again = {**items["table C.2"], "rows": [dict(row, ours="") for row in items["table C.2"]["rows"]]}
-    thesis.measure(again, tmp_path)
+    thesis.fill(again, thesis.printed(again, tmp_path))
     assert again["rows"] == items["table C.2"]["rows"], 'measure it with: python docs/hooks/thesis_page.py "table C.2"'
+
+
+def test_a_row_may_have_two_places(thesis):
+    item = {"rows": [{"what": "both", "ours": "", "at": ["a", "b"]}, {"what": "none", "ours": ""}]}
+    thesis.fill(item, {"a": 0.25, "b": 3})
+    assert [row["ours"] for row in item["rows"]] == [".250, 3", ""]
 
 
 def test_values_are_found_and_shown(thesis):
