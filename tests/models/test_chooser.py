@@ -266,7 +266,8 @@ def test_a_checkpoint_with_other_features_is_refused(untrained, tmp_path):
 @pytest.mark.parametrize(("name", "stripped"), [("default", True), ("made_bed", False)])
 def test_a_program_runs_by_the_rules_of_its_request(untrained, maple, name, stripped):
     request = Request("x", sketch=sketch_of(["[Lie] <bed> (1)"]), world=World.start(maple), rules=RULES[name])
-    for model in (restore("planner")[1], untrained):
-        (steps,) = model.predict([request])
-        assert steps and run(request.world, Program(steps=steps), RULES[name]).executable
-        assert any(step.action == "Grab" for step in steps) == stripped
+    (planned,), (chosen,) = (model.predict([request]) for model in (restore("planner")[1], untrained))
+    assert all(
+        steps and run(request.world, Program(steps=steps), RULES[name]).executable for steps in (planned, chosen)
+    )
+    assert any(step.action == "Grab" for step in planned) == stripped

@@ -75,7 +75,7 @@ def test_models_and_inputs_that_do_not_fit(words, message, sketch):
     assert result.exit_code == 1 and message in result.output and "Traceback" not in result.output
 
 
-@pytest.mark.parametrize("text", ["[Fly] <moon> (1)\n", "[Eat] <volcano> (1)\n[Juggle] <cup> (1)\n"])
+@pytest.mark.parametrize("text", ["[Fly] <moon> (1)\n", "[Eat] <volcano> (1)\n[Levitate] <cup> (1)\n"])
 def test_sketches_that_no_home_can_do(text, tmp_path):
     """A program that runs, or a reason; unknown actions are named by the reader."""
     path = tmp_path / "sketch.txt"

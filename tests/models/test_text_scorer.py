@@ -46,7 +46,9 @@ def test_what_it_has_learned_is_written_where_it_can_be_done(dataset, eight, map
 
     one = eight[0]
     settings = TextModel(hidden=32, vector=16, dropout=0.0)
-    model = settings.fit(Corpus(dataset, "activities", (one,), (one,)), Training(epochs=60, rate=0.01, patience=0))
+    model = settings.fit(
+        Corpus(dataset, "activities", (one,), (one,)), Training(epochs=60, rate=0.01, patience=0, halve_after=0)
+    )
     (steps,) = decode(model.scorer(), [Start(World.start(maple), one.request)])
     assert isinstance(maple, Home) and executability(steps, World.start(maple)).executable
     assert steps[0].action == "Walk" and Program(steps=steps).objects()
