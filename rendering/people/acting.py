@@ -156,9 +156,12 @@ def _goal(step: Step | None) -> int:
 
 
 def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -> Actor:
-    """The actor standing in front of the seat or bed that it used."""
-    pose = places.poses.get(actor.place)
-    spot = floor.spot_for(pose.box, pose.yaw, actor.room, actor.spot, others) if pose else None
+    """The actor standing in front of the seat that it used, or beside the bed, with the back to it."""
+    pose, lay = places.poses.get(actor.place), actor.body_pose.posture == "lying"
+    front = pose.yaw if pose and not lay else None
+    spot = floor.spot_for(pose.box, front, actor.room, actor.spot, others) if pose else None
+    if lay and spot is not None:
+        actor = replace(actor, yaw=_towards(actor.spot, (spot[0], 0.0, spot[1]), actor.yaw))
     return replace(actor, spot=spot or actor.spot)
 
 
