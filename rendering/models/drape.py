@@ -10,14 +10,17 @@ from hearth.rendering.models.shapes import triangles
 EMPTY, OVER_FEET = 0.1, 0.3
 """Heights in metres of a blanket under which nobody lies, and of one with feet underneath."""
 
-SHEET, TURNED = 0.03, 0.12
+SHEET, TURNED = 0.03, 0.09
 """Thickness in metres of a spread blanket, and depth of its edge that is turned back."""
 
-LEGS, SIDES = 0.19, 0.38
+LEGS, SIDES = 0.21, 0.39
 """Metres to the side up to which a blanket lies on legs, and from which on it lies on the mattress."""
 
-ALONG = ((0.0, 0.0), (0.05, 0.75), (0.12, 1.0), (0.2, 0.98), (0.34, 0.68), (0.6, 0.72), (0.8, 0.82), (2.0, 0.84))
+ALONG = ((0.0, 0.0), (0.05, 0.75), (0.12, 1.0), (0.2, 0.98), (0.34, 0.72), (0.6, 0.85), (2.0, 0.85))
 """Metres from a blanket's end at the foot, and the height of the feet and legs there, as a share of the highest."""
+
+SINKING, OPEN = 0.3, 0.8
+"""Shares by which a blanket sinks at its upper edge, and to which that edge stays open."""
 
 CELL = 0.05
 """Metres between the points of its surface, about."""
@@ -33,18 +36,26 @@ def _part(w: float, h: float, d: float, start: float, end: float, more: float, p
     """The part of a blanket between two lines across it, `more` metres higher, with sides down to the mattress."""
     x, z = _ticks(-w / 2 - more / 2, w / 2 + more / 2), _ticks(start - more / 2, end)
     across, along = np.meshgrid(x, z)
-    y = _heights(across, d / 2 - along, h) + more
-    # Round rims.
-    inside = np.minimum(np.minimum(across - x[0], x[-1] - across), np.minimum(along - z[0], z[-1] - along))
-    y = y * np.sqrt(np.clip(inside / 0.03, 0.0, 1.0))
+    filled = min(max((h - EMPTY) / (OVER_FEET - EMPTY), 0.0), 1.0)
+    y = _heights(across, d / 2 - along, h, filled) + more
+    # Rims are round; towards the head the blanket lies on the body, of which it leaves the end open.
+    upper = 1 - np.clip((along - z[0]) / 0.1, 0.0, 1.0)
+    y = y * (1 - SINKING * filled * upper * upper)
+    inside = np.minimum(np.minimum(across - x[0], x[-1] - across), z[-1] - along)
+    y = y * _rounded(inside) * np.maximum(_rounded(along - z[0]), filled * OPEN)
     points = np.stack((across, y, along), axis=-1)
     corners = _split(points)
     return triangles(corners, paint, _split(_normals(points)), corners[..., [2, 0]] * paint.scale)
 
 
-def _heights(x: Floats, from_foot: Floats, h: float) -> Floats:
-    """Heights of the surface at points."""
-    filled = min(max((h - EMPTY) / (OVER_FEET - EMPTY), 0.0), 1.0)
+def _rounded(inside: Floats) -> Floats:
+    """Shares of a height at distances from a rim."""
+    found: Floats = np.sqrt(np.clip(inside / 0.03, 0.0, 1.0))
+    return found
+
+
+def _heights(x: Floats, from_foot: Floats, h: float, filled: float) -> Floats:
+    """Heights of the surface at points; `filled` is 0 without legs to 1 with them."""
     thick = SHEET + (min(h, EMPTY) - SHEET) * (1 - filled)
     side = np.clip((SIDES - np.abs(x)) / (SIDES - LEGS), 0.0, 1.0)
     # Between the legs it sinks a little.

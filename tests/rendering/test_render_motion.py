@@ -14,8 +14,9 @@ from hearth.kb.loading.load import default
 from hearth.rendering.film.player import page
 from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import Writer, film, record, times
+from hearth.rendering.people.blends import blended
 from hearth.rendering.people.motion import frames, spans
-from hearth.rendering.people.tracks import RELAX, blended
+from hearth.rendering.people.tracks import RELAX
 from hearth.rendering.scene.routes import led_on, path, ways_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
