@@ -123,9 +123,9 @@ def moved(
     target = _goal(step)
     pose, front = reachable(target, places) if target and target != room else (None, None)
     if pose is None:
-        spot = (floor.spot_in(room, others) if goes else None) or actor.spot
-        yaw = floor.outlook(spot, actor.yaw) if gesture_of(step).hand == "read" else actor.yaw
-        return replace(actor, spot=spot, yaw=yaw, room=room)
+        stays = (floor.spot_in(room, others) if goes else None) or actor.spot
+        yaw = floor.outlook(stays, actor.yaw) if gesture_of(step).hand == "read" else actor.yaw
+        return replace(actor, spot=stays, yaw=yaw, room=room)
     acts = step is not None and (gesture_of(step).near or step.action == "Find")
     if goes or (acts and _gap(actor.spot, pose.box) > ARM):
         there = room_of(graph, target) or room
