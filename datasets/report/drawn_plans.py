@@ -61,30 +61,44 @@ def _rooms(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
 
 def _names(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
     for node, box in rooms:
-        x, y, width, _ = _rectangle(box)
+        x, y, _, size = _room_name(node, box)
         name = escape(node.class_name.replace("_", " "))
-        size = min(0.35, 1.6 * (width - 0.3) / max(len(name), 1))
-        yield f'<text x="{x + 0.15:.2f}" y="{y + 0.45:.2f}" font-size="{size:.2f}">{name}</text>'
+        yield f'<text x="{x:.2f}" y="{y + size:.2f}" font-size="{size:.2f}">{name}</text>'
 
+
+def _room_name(node: Node, box: Box) -> Rectangle:
+    """What the name of a room covers; its height is the letters'."""
+    x, y, width, _ = _rectangle(box)
+    length = max(len(node.class_name), 1)
+    size = min(0.35, 1.6 * (width - 0.3) / length)
+    return x + 0.15, y + 0.45 - size, _LETTER * size * length, size
+
+
+_MAT = 0.1
+"""Height in metres below which furniture stands on a thing, as on a carpet."""
 
 _LONGEST, _LETTER, _LEGIBLE = 0.24, 0.56, 0.085
 """Metres of the largest letters on furniture, width of a letter as a share of its height, and the smallest letters."""
 
 
 def _furniture_names(nodes: tuple[Node, ...]) -> Iterator[str]:
-    """The names of furniture in which they fit, along its longer side, where nothing stands on them."""
+    """The names of furniture in which they fit, along its longer side, over what stands there as in `homes/drawing.py`;
+    those of mats where nothing stands on them.
+    """
     drawn = list(_furniture(nodes))
-    rooms = [_rectangle(node.box) for node in nodes if node.category == "Rooms" and node.box]
-    taken = [(x, y, width, 0.5) for x, y, width, _ in rooms]
+    taken = [_room_name(node, node.box) for node in nodes if node.category == "Rooms" and node.box]
     for node, (x, y, width, height) in drawn:
         name = node.class_name.replace("_", " ")
         along, across = max(width, height), min(width, height)
         size = min(_LONGEST, 0.9 * along / (_LETTER * len(name)), 0.7 * across)
-        line = (x, y + height / 2 - size / 2, width, size) if width >= height else (
-            x + width / 2 - size / 2, y, size, height)  # fmt: skip
-        others = [other for one, other in drawn if one is not node and other[2] * other[3] < width * height]
+        long = _LETTER * size * len(name)
+        w, h = (long, size) if width >= height else (size, long)
+        line = x + (width - w) / 2, y + (height - h) / 2, w, h
+        on_mat = [other for one, other in drawn if one is not node and other[2] * other[3] < width * height]
+        others = on_mat if node.box is not None and node.box.size[1] < _MAT else []
         if size < _LEGIBLE or any(_overlap(line, other) for other in (*others, *taken)):
             continue
+        taken.append(line)
         middle = f"{x + width / 2:.2f} {y + height / 2:.2f}"
         turn = f' transform="rotate(-90 {middle})"' if height > width else ""
         at = f'x="{x + width / 2:.2f}" y="{y + height / 2:.2f}"'

@@ -5,6 +5,7 @@ from functools import partial
 from typing import TypeVar
 
 from hearth.rendering.models import shapes
+from hearth.rendering.models.drape import drape
 from hearth.rendering.models.expressions import MATH, Values
 from hearth.rendering.models.leaf import leaf
 from hearth.rendering.models.look import Look, Region, nowhere, over, shelves, top
@@ -20,6 +21,7 @@ SHAPES: dict[str, Callable[..., Mesh]] = {
     "box": shapes.box,
     "cushion": shapes.cushion,
     "cylinder": shapes.cylinder,
+    "drape": drape,
     "lathe": shapes.lathe,
     "leaf": leaf,
     "medallion": shapes.medallion,

@@ -123,8 +123,9 @@ def moved(
     target = _goal(step)
     pose, front = reachable(target, places) if target and target != room else (None, None)
     if pose is None:
-        spot = floor.spot_in(room, others) if goes else None
-        return replace(actor, spot=spot or actor.spot, room=room)
+        stays = (floor.spot_in(room, others) if goes else None) or actor.spot
+        yaw = floor.outlook(stays, actor.yaw) if gesture_of(step).hand == "read" else actor.yaw
+        return replace(actor, spot=stays, yaw=yaw, room=room)
     acts = step is not None and (gesture_of(step).near or step.action == "Find")
     if goes or (acts and _gap(actor.spot, pose.box) > ARM):
         there = room_of(graph, target) or room
@@ -156,9 +157,12 @@ def _goal(step: Step | None) -> int:
 
 
 def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -> Actor:
-    """The actor standing in front of the seat or bed that it used."""
-    pose = places.poses.get(actor.place)
-    spot = floor.spot_for(pose.box, pose.yaw, actor.room, actor.spot, others) if pose else None
+    """The actor standing in front of the seat that it used, or beside the bed, with the back to it."""
+    pose, lay = places.poses.get(actor.place), actor.body_pose.posture == "lying"
+    front = pose.yaw if pose and not lay else None
+    spot = floor.spot_for(pose.box, front, actor.room, actor.spot, others) if pose else None
+    if lay and spot is not None:
+        actor = replace(actor, yaw=_towards(actor.spot, (spot[0], 0.0, spot[1]), actor.yaw))
     return replace(actor, spot=spot or actor.spot)
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import cos, pi, radians, sin
 
 from hearth.homes.forms import form
+from hearth.rendering.models.drape import EMPTY
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.scene.places import Places, Pose
 from hearth.rendering.scene.prepared import local_size
@@ -15,15 +17,29 @@ from hearth.simulation.world.affordance import is_of_kind
 UNDER_HEAD = (0.6, 0.12, 0.4)
 """Width, height and depth in metres of a pillow on which a head lies."""
 
-OVER_LEGS, FLAT = 0.32, 0.06
-"""Heights in metres of a blanket that covers somebody's legs, and of one under which nobody lies."""
+OVER_LEGS = 0.32
+"""Height in metres of a blanket that covers somebody's legs."""
 
 COVER, SPREAD = (0.84, 0.8), 0.8
-"""Width of a spread blanket and its least depth, and the depth from which one is spread rather than folded, metres.
-The model `folded` draws it so."""
+"""Width of a spread blanket and its least depth, and the depth from which one is spread, metres."""
+
+OPENED = 0.34
+"""Depth in metres of a blanket that is folded back to the foot of the bed."""
 
 HEAD, HIPS = -0.43, 0.01
 """Where a lying body's head and hips are along it, as shares of its height; its feet are towards +."""
+
+RAISED = 0.3
+"""Share of the way of a blanket in which it rises over the feet."""
+
+GRASPED = 0.7
+"""Height at which hands hold a blanket's edge, as a share of its greatest."""
+
+PALM = 0.05
+"""Metres from what hands hold up to the middle of a palm."""
+
+LIFTED = 0.12
+"""Metres by which bedding is lifted where it is moved."""
 
 EDGE = 0.1
 """Metres between bedding and the head or foot of the bed."""
@@ -33,29 +49,105 @@ BESIDE = 0.3
 
 
 def turned_back(places: Places, actors: Sequence[Actor]) -> Places:
-    """The places with the bedding laid around those who lie, and flat where nobody does any more."""
+    """The places with the bedding laid around those who lie, and folded back where nobody does any more."""
     poses = dict(places.poses)
     sleepers = {actor.place: actor for actor in actors if actor.body_pose.posture == "lying" and actor.place in poses}
-    on: dict[int, list[Node]] = {}
-    for node in places.graph.nodes:
-        location = places.locations.get(node.id)
-        lies_on = node.id in poses and location is not None and location.kind == "on"
-        if lies_on and location is not None and is_of_kind(node.class_name, "bedding", places.knowledge):
-            on.setdefault(location.holder, []).append(node)
-    for bed, nodes in on.items():
+    for bed, nodes in _bedding_on(places).items():
         if bed in sleepers:
             poses |= _Bed.of(sleepers[bed], places).laid(nodes, places)
         else:
-            poses |= {node.id: pose for node in nodes if (pose := _flat(poses[node.id])) is not None}
+            poses |= {node.id: drawn(poses[node.id], 0.0) for node in nodes if covers(poses[node.id])}
     return places if poses == dict(places.poses) else replace(places, poses=poses)
 
 
-def _flat(pose: Pose) -> Pose | None:
-    """The pose of a spread blanket without anybody under it; None of what is folded."""
-    (x, y, z), (w, h, d) = pose.box
-    if local_size(pose.box.size, pose.yaw or 0.0)[2] < SPREAD or h <= FLAT:
-        return None
-    return pose._replace(box=Box((x, y - (h - FLAT) / 2, z), (w, FLAT, d)))
+def _bedding_on(places: Places) -> dict[int, list[Node]]:
+    """Bedding by the id of what it lies on."""
+    on: dict[int, list[Node]] = {}
+    for node in places.graph.nodes:
+        location = places.locations.get(node.id)
+        lies_on = node.id in places.poses and location is not None and location.kind == "on"
+        if lies_on and location is not None and is_of_kind(node.class_name, "bedding", places.knowledge):
+            on.setdefault(location.holder, []).append(node)
+    return on
+
+
+def covers(pose: Pose) -> bool:
+    """Whether bedding is a blanket over somebody's legs."""
+    return pose.box.size[1] > EMPTY and local_size(pose.box.size, pose.yaw or 0.0)[2] >= SPREAD
+
+
+def drawn(pose: Pose, share: float) -> Pose:
+    """A blanket over legs, drawn over them by a share: folded back to the foot at 0, as it is at 1."""
+    yaw, (x, y, z) = pose.yaw or 0.0, pose.box.center
+    w, high, deep = local_size(pose.box.size, yaw)
+    d = OPENED + (deep - OPENED) * share
+    h = EMPTY + (high - EMPTY) * min(share / RAISED, 1.0)
+    back = (deep - d) / 2
+    at = (x + back * sin(radians(yaw)), y - (high - h) / 2, z + back * cos(radians(yaw)))
+    return Pose(Box(at, local_size((w, h, d), yaw)), pose.yaw)
+
+
+def edge(pose: Pose) -> Point:
+    """The middle of a blanket's upper edge, which hands hold."""
+    yaw, (x, y, z), h = pose.yaw or 0.0, pose.box.center, pose.box.size[1]
+    half = local_size(pose.box.size, yaw)[2] / 2
+    return x - half * sin(radians(yaw)), y + (GRASPED - 0.5) * h + PALM, z - half * cos(radians(yaw))
+
+
+@dataclass(frozen=True, slots=True)
+class Remade:
+    """A bed whose bedding differs between two keyframes.
+
+    Attributes:
+        moved: poses of bedding before, and once the bed is made for somebody, by id; a blanket is folded back then.
+        cover: id of the blanket over somebody's legs; 0 for none.
+        over: its pose over them.
+    """
+
+    moved: Mapping[int, tuple[Pose, Pose]]
+    cover: int = 0
+    over: Pose | None = None
+
+    @classmethod
+    def between(cls, before: Places, after: Places, bed: int) -> Remade:
+        """What differs in a bed between two keyframes' places."""
+        moved: dict[int, tuple[Pose, Pose]] = {}
+        cover, over = 0, None
+        for node in _bedding_on(before).get(bed, ()):
+            start, end = before.poses[node.id], after.poses.get(node.id)
+            if end is None or start == end or after.locations.get(node.id) != before.locations[node.id]:
+                continue
+            if covers(start) or covers(end):
+                cover, over = node.id, end if covers(end) else start
+                folded = drawn(over, 0.0)
+                start, end = folded if covers(start) else start, folded
+            if start != end:
+                moved[node.id] = start, end
+        return cls(moved, cover, over)
+
+    def at(self, made: float | None, covered: float | None) -> dict[int, Pose]:
+        """The poses of what lies otherwise than in the keyframes, by id.
+
+        Args:
+            made: share of the way on which things are; None if nobody moves them.
+            covered: share by which the blanket is drawn over the legs; None if nobody draws it.
+        """
+        found = {} if made is None else {number: glided(*ways, made) for number, ways in self.moved.items()}
+        if self.over is not None and covered is not None and (covered > 0 or self.cover not in found):
+            found[self.cover] = drawn(self.over, covered)
+        return found
+
+
+def glided(start: Pose, end: Pose, share: float) -> Pose:
+    """A pose between two, in an arc over what lies there; bedding is the same from both ends."""
+    turn = ((end.yaw or 0.0) - (start.yaw or 0.0) + 90) % 180 - 90
+    yaw = (end.yaw or 0.0) - turn * (1 - share)
+    sizes = (local_size(pose.box.size, pose.yaw or 0.0) for pose in (start, end))
+    size = tuple(a + (b - a) * share for a, b in zip(*sizes, strict=True))
+    x, y, z = (a + (b - a) * share for a, b in zip(start.box.center, end.box.center, strict=True))
+    w, h, d = size
+    c, s = abs(cos(radians(yaw))), abs(sin(radians(yaw)))
+    return Pose(Box((x, y + LIFTED * sin(pi * share), z), (w * c + d * s, h, w * s + d * c)), yaw)
 
 
 @dataclass(frozen=True, slots=True)

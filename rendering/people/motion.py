@@ -6,12 +6,14 @@ from typing import NamedTuple
 
 from hearth.rendering.film.snapshots import Keyframe, Trajectory
 from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.bedding import Remade
 from hearth.rendering.people.gait import eased
 from hearth.rendering.people.holding import held_things
 from hearth.rendering.people.pushing import slides
 from hearth.rendering.people.tracks import HOLD, Track, motionless, track
 from hearth.rendering.scene.effects import at_time
 from hearth.rendering.scene.instances import Thing
+from hearth.rendering.scene.places import Pose
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Node, Spot
 from hearth.schemas.program import Step
@@ -71,11 +73,22 @@ def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Ite
             actors = tuple(track.at(past) for track in tracks)
             keyframe, share = (after, (past - change) / OPENING) if past >= change else (before, 1.0)
             ajar = {node: share if opens else 1 - share for node, opens in swings.items()} if share < 1 else {}
-            scene = set_.scene(keyframe, actors, ajar, time)
+            scene = set_.scene(keyframe, actors, ajar, _bedding(before, after, tracks, past), time)
             if slide and 0 <= past - change < SLIDING:
                 scene = _sliding(scene, slide, 1 - eased((past - change) / SLIDING))
             yield Frame(time, span.tick, span.steps, scene, actors, keyframe.places.holds)
             number += 1
+
+
+def _bedding(before: Keyframe, after: Keyframe, tracks: Sequence[Track], past: float) -> dict[int, Pose]:
+    """Poses of the bedding that people move at a moment."""
+    found: dict[int, Pose] = {}
+    for each, one, other in zip(tracks, before.actors, after.actors, strict=True):
+        made, covered = each.done("make", past), each.done("cover", past)
+        if made is not None or covered is not None:
+            place = other.place or one.place
+            found |= Remade.between(before.places, after.places, place).at(made, covered)
+    return found
 
 
 def _sliding(scene: Scene, slide: Mapping[int, Spot], left: float) -> Scene:
@@ -112,7 +125,7 @@ def _spans(trajectory: Trajectory, speed: float) -> Iterator[tuple[Span, Keyfram
     for before, after in zip(trajectory.keyframes, trajectory.keyframes[1:], strict=False):
         by_agent = {step.agent: step for step in after.steps}
         tracks = tuple(
-            track(one, other, before, by_agent.get(number))
+            track(one, other, before, after, by_agent.get(number))
             for number, (one, other) in enumerate(zip(before.actors, after.actors, strict=True))
         )
         takes = [found.seconds for found in tracks] or [HOLD]
@@ -130,16 +143,31 @@ class _SceneCache:
         self.trajectory = trajectory
         self.known: dict[tuple[int, frozenset[int], frozenset[int]], tuple[tuple[Thing, ...], Scene]] = {}
 
-    def scene(self, keyframe: Keyframe, actors: tuple[Actor, ...], ajar: Mapping[int, float], time: float) -> Scene:
-        """A keyframe's scene with actors as in a frame, some things partly open, and effects as they are at a time."""
+    def scene(
+        self,
+        keyframe: Keyframe,
+        actors: tuple[Actor, ...],
+        ajar: Mapping[int, float],
+        moved: Mapping[int, Pose],
+        time: float,
+    ) -> Scene:
+        """A keyframe's scene with actors as in a frame, some things partly open or elsewhere, and effects as they are
+        at a time.
+        """
         prepared, places = self.trajectory.prepared, keyframe.places
         held = held_things(prepared, places, actors)
-        things, base = self._rest(keyframe, frozenset(held), frozenset(ajar))
+        things, base = self._rest(keyframe, frozenset(held), frozenset(ajar) | frozenset(moved))
         swung = [
             thing
             for node in (places.nodes() if ajar else ())
             if node.id in ajar and node.id not in held
             for thing in prepared.things(_opened(node), ajar[node.id])
+        ]
+        swung += [
+            thing
+            for node in (places.nodes() if moved else ())
+            if node.id in moved and node.id not in held
+            for thing in prepared.things(replace(node, box=moved[node.id].box, yaw=moved[node.id].yaw))
         ]
         hands = [thing for things in held.values() for thing in things]
         people = [Thing(a.node.id, a.node.class_name, a.figure(), a.position, a.yaw) for a in actors]

@@ -55,6 +55,11 @@ class WalkableFloor:
         return Ways(replace(self.wide.floor, walkable=self.free))
 
     @cached_property
+    def every(self) -> Ways:
+        """All cells, whatever stands there."""
+        return Ways(replace(self.wide.floor, walkable=np.ones_like(self.free)))
+
+    @cached_property
     def regions(self) -> NDArray[np.int32]:
         """(columns, rows): cells of `narrow` that join share a number from 1; others are 0."""
         return raster.regions(self.narrow.floor.walkable)
@@ -180,12 +185,38 @@ def led_on(floor: WalkableFloor | None, route: Sequence[Spot], goal: Spot) -> tu
     """A route that may end before its goal, led on to it.
 
     Where the world has somebody whom no way leads to by what is drawn, such as beside an open oven, one passes between
-    the things, however near they are. Only where there is no free floor at all, the rest is the straight line.
+    the things, however near they are. Where things or walls are all around, the way is the one that leads through them
+    for the fewest metres. Only where no floor is known, the rest is the straight line.
     """
     if dist(route[-1], goal) < SAME:
         return tuple(route)
-    found = None if floor is None else _found(floor, floor.tight, route[-1], goal, ())
-    return (*route, *(found[1:] if found else (goal,)))
+    if floor is None:
+        return (*route, goal)
+    found = _found(floor, floor.tight, route[-1], goal, ()) or _through_least(floor, route[-1], goal)
+    return (*route, *found[1:])
+
+
+def _through_least(floor: WalkableFloor, start: Spot, goal: Spot) -> tuple[Spot, ...]:
+    """The path that leads through things for the fewest metres."""
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.csgraph import dijkstra
+
+    every = floor.every
+    ones, others, lengths = every.edges
+    taken = ~floor.free[tuple(every.cells.T)]
+    costs = lengths * (1 + THROUGH * (taken[ones].astype(float) + taken[others]))
+    graph = csr_matrix((costs, (ones, others)), shape=(len(taken),) * 2)
+    first, last = (int(np.hypot(*(every.points - spot).T).argmin()) for spot in (start, goal))
+    _, before = dijkstra(graph, directed=False, indices=first, return_predecessors=True)
+    numbers = [last]
+    while numbers[-1] != first:
+        numbers.append(int(before[numbers[-1]]))
+    points = [(float(x), float(z)) for x, z in every.points[numbers[::-1]]]
+    return start, *_straightened(floor, floor.tight, points), goal
+
+
+THROUGH = 50.0
+"""Metres of detour that a metre through something is worth, from each of the two cells between which one steps."""
 
 
 SAME = 0.01

@@ -22,6 +22,9 @@ SIDE = 0.26
 """Metres from a character's middle within which a door touches it."""
 
 
+AHEAD, CLOSE, TURN = 2.0, 0.9, 30
+"""Metres of floor that matter ahead of who reads, and up to which something is close; degrees between directions."""
+
 APART = 0.19
 """Metres between spots among which one chooses."""
 
@@ -135,6 +138,22 @@ class FreeFloor:
             x, z = mine[int(cost.argmin())]
             yield float(x), float(z)
             cost[np.linalg.norm(mine - (x, z), axis=1) < APART] = np.inf
+
+    def outlook(self, spot: Spot, yaw: float) -> float:
+        """The direction in which to look about with something in the hands: `yaw`, unless something stands close
+        there; then the nearest with the most floor ahead.
+        """
+        if self.walkable is None or self._ahead(spot, yaw) > CLOSE:
+            return yaw
+        turns = (turn * sign for turn in range(0, 181, TURN) for sign in (1, -1))
+        return max((yaw + turn for turn in turns), key=lambda to: self._ahead(spot, to))
+
+    def _ahead(self, spot: Spot, yaw: float) -> float:
+        """Metres of free floor in a direction, as far as it matters."""
+        assert self.walkable is not None
+        end = spot[0] + AHEAD * sin(radians(yaw)), spot[1] + AHEAD * cos(radians(yaw))
+        blocked = self.walkable.blocked(spot, end)
+        return AHEAD * (int(blocked.argmax()) if blocked.any() else len(blocked)) / len(blocked)
 
     def _hit(self, centers: NDArray[np.float64], opens: int) -> NDArray[np.float64]:
         """A cost for standing in the swept area of a door."""

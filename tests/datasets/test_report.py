@@ -123,7 +123,7 @@ def test_a_plan_escapes_names_and_needs_boxes():
     assert draw((Node(1, "kitchen", "Rooms", (), (), None, None, None),)) == ""
 
 
-def test_a_plan_names_furniture_where_nothing_stands_on_it():
+def test_a_plan_names_furniture_over_what_stands_on_it_and_no_name_is_on_another():
     def piece(number, name, center, size):
         return Node(number, name, "Furniture", (), (), None, Box(center, size), None)
 
@@ -134,8 +134,11 @@ def test_a_plan_names_furniture_where_nothing_stands_on_it():
     )
     bed, box = piece(4, "bed", (2.0, 0.3, -2.0), (1.0, 0.6, 2.0)), piece(5, "box", (-2.0, 0.1, -2.0), (0.3, 0.2, 0.3))
     names = re.findall(r'class="named"[^>]*>([^<]*)<', draw((room, table, tray, bed, box)))
-    assert names == ["bed", "tray"]
-    assert "table" in re.findall(r'class="named"[^>]*>([^<]*)<', draw((room, table, bed)))
+    assert names == ["table", "bed"]
+    assert "tray" in re.findall(r'class="named"[^>]*>([^<]*)<', draw((room, tray, bed)))
+    carpet = piece(6, "carpet", (0.0, 0.01, 0.0), (3.0, 0.02, 3.0))
+    assert "carpet" not in re.findall(r'class="named"[^>]*>([^<]*)<', draw((room, carpet, table)))
+    assert "carpet" in re.findall(r'class="named"[^>]*>([^<]*)<', draw((room, carpet)))
     assert 'transform="rotate(-90 2.00 2.00)"' in draw((room, bed))
 
 

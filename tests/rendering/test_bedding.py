@@ -7,7 +7,11 @@ from hearth.grounding.trial import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.people.bedding import FLAT, SPREAD, turned_back
+from hearth.rendering.models.drape import EMPTY, drape
+from hearth.rendering.models.paint import Paint
+from hearth.rendering.people.bedding import OPENED, SPREAD, drawn, edge, turned_back
+from hearth.rendering.people.motion import frames
+from hearth.rendering.people.tracks import track
 from hearth.rendering.scene.prepared import local_size
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -19,7 +23,12 @@ BEDDING = ("pillow", "blanket", "comforter", "sheets")
 
 
 def rested(name, bed, more=(), last="StandUp"):
-    """The keyframes of lying down in a bed and getting up, with more bedding on the bed."""
+    """The keyframes of lying down in a bed and getting up, with more bedding on the bed; and the bed's id."""
+    trajectory, place = filmed(name, bed, more, last)
+    return trajectory.keyframes, place
+
+
+def filmed(name, bed, more=(), last="StandUp"):
     graph = library.load_graph(name, KNOWN)
     home = Home.from_graph(graph, name, KNOWN)
     (place, *_) = [node.id for node in graph.nodes if node.class_name == bed]
@@ -29,7 +38,7 @@ def rested(name, bed, more=(), last="StandUp"):
     steps = (Step("Walk", (seat,)), Step("Lie", (seat,)), Step(last))
     execution = attempt(Program("Rest", steps=steps), home, 0, default_state=False, add=False).execution
     assert execution.executable
-    return trajectory_of(execution, graph, KNOWN).keyframes, place
+    return trajectory_of(execution, graph, KNOWN), place
 
 
 def bedding_of(keyframe, place):
@@ -70,16 +79,19 @@ def test_what_lies_in_a_bed_stays_in_it(maple_bed):
         assert over[0] <= bed.size[0] / 2 + 0.08 and over[2] <= bed.size[2] / 2 + 0.01, node.class_name
 
 
-def test_the_bed_is_as_it_was_before_and_flat_after(maple_bed):
+def test_the_bed_is_as_it_was_before_and_its_blanket_folded_back_after(maple_bed):
     keyframes, place = maple_bed
     before, lying, after = (bedding_of(keyframes[tick], place) for tick in (1, 2, 3))
     assert before == bedding_of(keyframes[0], place) and before != lying
     spread = [node for node in lying.values() if local_size(node.box.size, node.yaw)[2] >= SPREAD]
     assert [node.class_name for node in spread] == ["blanket"]
-    flat = after[spread[0].id]
-    assert flat.box.size[1] == pytest.approx(FLAT) and flat.box.size[::2] == spread[0].box.size[::2]
-    assert flat.box.center[1] - FLAT / 2 == pytest.approx(spread[0].box.center[1] - spread[0].box.size[1] / 2)
-    others = lying.keys() - {flat.id}
+    over, back = spread[0], after[spread[0].id]
+    assert local_size(back.box.size, back.yaw) == pytest.approx((local_size(over.box.size, over.yaw)[0], EMPTY, OPENED))
+    assert back.box.center[1] - EMPTY / 2 == pytest.approx(over.box.center[1] - over.box.size[1] / 2)
+    actor = keyframes[2].actors[0]
+    ends = [actor.local(each.box.center)[2] + local_size(each.box.size, each.yaw)[2] / 2 for each in (over, back)]
+    assert ends[0] == pytest.approx(ends[1]), "it stays at the foot"
+    others = lying.keys() - {back.id}
     assert {number: after[number].box for number in others} == {number: lying[number].box for number in others}
 
 
@@ -98,3 +110,79 @@ def test_no_two_things_of_a_full_bed_are_in_the_same_place(name, bed):
         for other in found[:number]:
             apart = np.abs(np.subtract(one.box.center, other.box.center))
             assert (apart >= (np.add(one.box.size, other.box.size)) / 2 - 1e-6).any(), (one, other)
+
+
+@pytest.fixture(scope="module", params=[("maple", "bed"), ("birch", "bed"), ("maple", "couch")])
+def film(request):
+    """What is filmed of lying down and getting up, ten times a second; the bed's id; its trajectory."""
+    trajectory, place = filmed(*request.param)
+    return [frame for frame in frames(trajectory, 10.0) if frame.tick >= 2], place, trajectory
+
+
+def test_in_a_film_bedding_is_moved_and_never_jumps(film):
+    shown, place, trajectory = film
+    bedding = bedding_of(trajectory.keyframes[2], place)
+    ways = {number: [] for number in bedding}
+    for frame in shown:
+        for thing in (*frame.scene.things, *frame.scene.static.things):
+            if thing.id in ways:
+                ways[thing.id].append((*thing.position, *thing.model.look.size))
+    for number, way in ways.items():
+        assert len(way) == len(shown), "it is drawn once in each picture"
+        steps = np.abs(np.diff(np.array(way), axis=0)).max(axis=1)
+        assert steps.max() < 0.2, bedding[number].class_name
+
+
+def test_hands_draw_the_blanket_over_the_legs_and_back(maple_bed):
+    keyframes, _ = maple_bed
+    for before, after in ((keyframes[1], keyframes[2]), (keyframes[2], keyframes[3])):
+        (one,), (other,) = before.actors, after.actors
+        motion = track(one, other, before, after, after.steps[0])
+        laid = max((before, after), key=lambda each: each.actors[0].body_pose.posture == "lying")
+        bedding = bedding_of(laid, one.place or other.place).values()
+        (over,) = [each for each in bedding if each.box.size[1] > EMPTY and each.class_name == "blanket"]
+        pose = laid.places.poses[over.id]
+        times = np.arange(0.0, motion.seconds, 0.1)
+        meanwhile = [(time, share) for time in times if 0.02 < (share := motion.done("cover", time)) < 0.98]
+        assert len(meanwhile) >= 8
+        for time, share in meanwhile:
+            actor, at = motion.at(time), edge(drawn(pose, share))
+            palms = [np.subtract(actor.hand(side), at) for side in ("right", "left")]
+            assert max(np.linalg.norm(palm) for palm in palms) < 0.25, (time, share)
+
+
+def test_no_leg_goes_through_the_bed(film):
+    shown, place, trajectory = film
+    (x, _, z), (w, _, d) = trajectory.keyframes[2].places.poses[place].box
+    actor = trajectory.keyframes[2].actors[0]
+    top = actor.level + actor.body_pose.seat
+    for frame in shown:
+        person = frame.actors[0]
+        joints = person.figure().joints()
+        for name in ("knee_r", "knee_l", "ankle_r", "ankle_l", "toe_r", "toe_l"):
+            px, py, pz = person.world(tuple(joints[name]))
+            inside = abs(px - x) < w / 2 - 0.12 and abs(pz - z) < d / 2 - 0.12
+            assert not inside or py > top - 0.03, (frame.time, name)
+
+
+def test_who_gets_up_stands_beside_the_bed(film):
+    shown, _, trajectory = film
+    up = trajectory.keyframes[3].actors[0]
+    lying = trajectory.keyframes[2].actors[0]
+    assert up.body_pose.posture == "standing"
+    stood = [frame.actors[0] for frame in shown if frame.tick == 3 and frame.actors[0].body_pose.posture == "standing"]
+    assert np.hypot(*np.subtract(stood[0].spot, up.spot)) < 0.5, "no walk around the bed"
+    away = np.subtract(up.spot, lying.spot)
+    assert np.cos(np.radians(up.yaw) - np.arctan2(*away)) > 0.9, "with the back to it"
+
+
+def test_a_blanket_over_legs_is_highest_over_the_feet_and_an_empty_one_is_even():
+    over = drape(0.84, 0.32, 1.0, Paint("#808080"), Paint("#ffffff"))
+    points = over.corners.reshape(-1, 3)
+    low, high = over.bounds()
+    assert low[1] == pytest.approx(0.0, abs=1e-6) and 0.29 < high[1] <= 0.335
+    assert points[points[:, 1].argmax(), 2] > 0.25
+    assert (over.normals[..., 1] > -1e-3).all()
+    middle = drape(0.84, EMPTY, OPENED, Paint("#808080"), Paint("#ffffff")).corners.reshape(-1, 3)
+    middle = middle[(abs(middle[:, 0]) < 0.35) & (abs(middle[:, 2] - 0.02) < 0.06)]
+    assert np.ptp(middle[:, 1]) < 0.02

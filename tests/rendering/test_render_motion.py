@@ -14,9 +14,11 @@ from hearth.kb.loading.load import default
 from hearth.rendering.film.player import page
 from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import Writer, film, record, times
+from hearth.rendering.people.blends import blended
 from hearth.rendering.people.motion import frames, spans
-from hearth.rendering.people.tracks import RELAX, blended
+from hearth.rendering.people.tracks import RELAX
 from hearth.rendering.scene.routes import led_on, path, ways_of
+from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
@@ -304,6 +306,54 @@ def test_to_where_the_world_has_somebody_one_passes_between_things_however_near(
     assert not any(crosses(led, shelf) for shelf in shelves)
     assert led_on(None, route, goal) == (*route, goal)
     assert led_on(floor, led, goal) == led
+
+
+def inside(way, things):
+    """Metres of a way in things' boxes."""
+    points = np.concatenate(
+        [np.linspace(a, b, max(2, int(np.hypot(*np.subtract(b, a)) * 200))) for a, b in pairwise(way)]
+    )
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    halves = [(np.array(each.box.center)[[0, 2]], np.array(each.box.size)[[0, 2]] / 2) for each in things]
+    return float(sum(steps[(np.abs(points[1:] - at) < half).all(axis=1)].sum() for at, half in halves))
+
+
+def test_out_of_what_is_all_around_one_goes_through_the_least_of_it_and_then_by_a_way():
+    around = [
+        standing(2, "bookshelf", (-1.5, 1, 0.8), (1.2, 2, 0.4)),
+        standing(3, "bookshelf", (-1.5, 1, -0.8), (1.2, 2, 0.4)),
+        standing(4, "bookshelf", (-0.7, 1, 0.0), (0.8, 2, 2.0)),
+    ]
+    beyond = standing(5, "bookshelf", (1.0, 1, -0.6), (0.4, 2, 2.8))
+    boxed, goal = (-1.5, 0.0), (1.6, -1.0)
+    wall = standing(6, "bookshelf", (-1.95, 1, 0.0), (0.1, 2, 4.0))
+    things = [*around, beyond, wall]
+    floor = ways_of([ROOM], [ROOM, *things])
+    led = led_on(floor, path(floor, boxed, goal), goal)
+    assert led[-1] == goal
+    assert inside(led, things) < 0.55, "through one shelf, and around the other"
+    assert inside((boxed, goal), things) > 0.9
+    assert led == led_on(floor, path(floor, boxed, goal), goal)
+
+
+def test_into_a_room_without_a_door_one_goes_through_the_wall_where_it_is_thinnest():
+    walls = [
+        standing(2, "wall", (0, 1, -1.0), (0.8, 2, 2.0)),
+        standing(3, "wall", (0, 1, 1.0), (0.2, 2, 2.0)),
+    ]
+    floor, start, goal = ways_of([ROOM], [ROOM, *walls]), (-1.5, -1.0), (1.5, -1.0)
+    led = led_on(floor, path(floor, start, goal), goal)
+    assert led[-1] == goal
+    assert inside(led, walls) < 0.3 < 0.7 < inside((start, goal), walls)
+
+
+def test_who_reads_looks_to_the_room_and_not_at_a_shelf():
+    shelf = standing(2, "bookshelf", (0, 1, 1.5), (4, 2, 0.4))
+    floor = FreeFloor.of([ROOM], [shelf], walkable=ways_of([ROOM], [ROOM, shelf]))
+    ahead, away = floor.outlook((0.0, 0.9), 0.0), floor.outlook((0.0, 0.0), 180.0)
+    assert away == 180.0, "nothing is close"
+    assert abs((ahead + 180) % 360 - 180) >= 90
+    assert FreeFloor.of([ROOM], [shelf]).outlook((0.0, 0.9), 0.0) == 0.0, "nothing is known of the floor"
 
 
 def test_open_leaves_are_walked_around_and_closed_ones_are_not():
