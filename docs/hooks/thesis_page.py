@@ -97,7 +97,8 @@ def _item(item: dict[str, Any]) -> Iterator[str]:
 
 
 def value_at(document: Any, place: str) -> Any:
-    """What stands at a place of a JSON document: names and numbers by `/`; `key=value` finds an entry of a list.
+    """What stands at a place of a JSON document: names and numbers by `/`; `key=value` finds an entry of a list, and
+    `key=value&key=value` one that has both.
 
     Raises:
         LookupError: there is nothing.
@@ -106,14 +107,18 @@ def value_at(document: Any, place: str) -> Any:
         if isinstance(document, dict):
             document = document[part]
         elif "=" in part:
-            key, _, wanted = part.partition("=")
-            found = [each for each in document if str(each[int(key) if isinstance(each, list) else key]) == wanted]
+            wanted = [each.partition("=")[::2] for each in part.split("&")]
+            found = [each for each in document if all(_field(each, key) == value for key, value in wanted)]
             if not found:
                 raise LookupError(f"{part} of {place}")
             document = found[0]
         else:
             document = document[int(part)]
     return document
+
+
+def _field(entry: Any, key: str) -> str:
+    return str(entry[int(key) if isinstance(entry, list) else key])
 
 
 def shown(value: Any) -> str:
@@ -136,6 +141,10 @@ def printed(item: dict[str, Any], data: Path) -> Any:
         (folder / "data_out").symlink_to(data.resolve())
         (folder / "data_raw").symlink_to(ROOT / "data_raw")
         for command in item["commands"]:
+            if not command.startswith("hearth "):
+                raise SystemExit(
+                    f"`{command}` is no command of Hearth: run it, and give what it wrote by --printed FILE"
+                )
             last = command == item["commands"][-1]
             words = [sys.executable, str(ROOT / "cli.py"), *shlex.split(command)[1:], *(["--json"] if last else [])]
             done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, check=True, env=os.environ)

@@ -97,6 +97,8 @@ def test_values_are_found_and_shown(thesis):
     document = {"rows": [{"name": "a b", "mean": 0.5}, {"name": "x", "mean": 1234}], "pairs": [["x", 1234]]}
     assert thesis.value_at(document, "rows/name=a b/mean") == 0.5
     assert thesis.value_at(document, "pairs/0=x/1") == 1234
+    both = [{"name": "x", "of": "thesis", "n": 1}, {"name": "x", "of": "ours", "n": 2}]
+    assert thesis.value_at(both, "name=x&of=ours/n") == 2
     with pytest.raises(LookupError):
         thesis.value_at(document["rows"][:1], "name=c/mean")
     assert [thesis.shown(each) for each in (0.2451, 1234, 11.82, 9857.3, {"mean": 0.3, "low": -0.2, "high": 2.0})] == [
