@@ -143,7 +143,7 @@ def printed(item: dict[str, Any], data: Path) -> Any:
         for command in item["commands"]:
             if not command.startswith("hearth "):
                 raise SystemExit(
-                    f"`{command}` is no command of Hearth: run it, and give what it wrote by --printed FILE"
+                    f"run `{command}`, and give what it wrote by --printed FILE"
                 )
             last = command == item["commands"][-1]
             words = [sys.executable, str(ROOT / "cli.py"), *shlex.split(command)[1:], *(["--json"] if last else [])]
