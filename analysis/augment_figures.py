@@ -4,6 +4,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+from hearth.datasets.damage import reading
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.graph_sizes import graph_sizes
 from hearth.pipelines.augment import ORIGINAL
@@ -36,7 +37,9 @@ def outcome(folder: Path) -> dict[str, Any]:
     manifest = read_manifest(folder)
     if manifest is None:
         raise HearthError.of(Code.MISSING_FILE, "nothing was augmented here", file=str(folder))
-    rejects = pq.read_table(folder / "rejects.parquet", columns=["code", "message", "fault"]).to_pylist()
+    with reading(folder):
+        rejects = pq.read_table(folder / "rejects.parquet", columns=["code", "message", "fault"]).to_pylist()
+        seconds = orjson.loads((folder / TIMING).read_bytes())["seconds"]
     idle = sum(row["code"] == Code.UNPERTURBED and "where" not in row["message"] for row in rejects)
     codes = Counter(row["code"] for row in rejects if row["fault"] == 0)
     codes[str(Code.UNPERTURBED)] -= idle
@@ -51,7 +54,7 @@ def outcome(folder: Path) -> dict[str, Any]:
         "repaired_share": round(1 - given_up / tried, 4) if tried else None,
         "rejected": dict(sorted((+codes).items(), key=lambda each: (-each[1], each[0]))),
         "programs_out": programs,
-        "seconds": orjson.loads((folder / TIMING).read_bytes())["seconds"],
+        "seconds": seconds,
     }
 
 

@@ -1,6 +1,5 @@
 """Error detection: precision and recall of faults in a corpus with known faults."""
 
-import csv
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -11,7 +10,11 @@ from hearth.pipelines import validate
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.schemas.row_types import IngestedRow
+from hearth.storage.csv_files import CsvTable
 from hearth.storage.rejects import Reject
+
+LARGEST_KEY = 16 << 20
+"""Bytes of a key, at most: all of it is in memory."""
 
 IGNORED = frozenset({"NOT_SIMULATED"})
 """Warnings that do not indicate a fault of the author."""
@@ -75,9 +78,8 @@ def _codes(row: IngestedRow | Reject, known: Knowledge) -> set[str]:
 
 
 def read_key(path: Path) -> dict[str, str]:
-    """Record -> its fault, from a CSV with the columns HITId and fault."""
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        return {row["HITId"]: row["fault"] for row in csv.DictReader(file)}
+    """Record -> its fault, from a CSV with the columns HITId and fault; errors as of `CsvTable`."""
+    return {record: fault for _, (record, fault) in CsvTable(path, ("HITId", "fault"), LARGEST_KEY).rows()}
 
 
 def score(found: Found, key: dict[str, str]) -> Report:

@@ -19,7 +19,7 @@ Action = tuple[int, int, str, str]
 def drawn(found: Beliefs, actions: Sequence[Action]) -> str:
     """SVG: a line for each of the likeliest predicates, those of the goal thick, and what both did below."""
     ticks = max(1, len(found.moments))
-    most = [max(moment.wanted[n] for moment in found.moments) for n in range(len(found.predicates))]
+    most = [max((moment.wanted[n] for moment in found.moments), default=0.0) for n in range(len(found.predicates))]
     order = sorted(range(len(most)), key=lambda n: (found.goal[n] == 0, -most[n], n))[: len(LINES)]
     lines = [f'<rect x="{LEFT}" y="{TOP}" width="{WIDE}" height="{HIGH}" fill="none" stroke="#888888"/>']
     lines += [_label(LEFT - 6, TOP + HIGH * (1 - share) + 4, f"{share:.1f}", "end") for share in (0.0, 0.5, 1.0)]

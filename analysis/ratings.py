@@ -1,7 +1,5 @@
 """Completeness of programs (thesis 3.4.1): estimated from inserted repair steps, and rated by people."""
 
-import csv
-import io
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
@@ -14,13 +12,12 @@ from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.defaults import default_conditions
 from hearth.kb.knowledge import Knowledge
 from hearth.repair.loop import repair
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_lines
 from hearth.simulation.world.home import Home
-from hearth.storage.input_files import read_input
+from hearth.storage.csv_files import CsvTable
 
 
 class Completeness(IntEnum):
@@ -39,6 +36,9 @@ SAID = {
 
 THESIS = {Completeness.COMPLETE: 0.64, Completeness.MINOR: 0.28, Completeness.CRUCIAL: 0.08}
 """Of 100 programs, by the median of five raters (thesis 3.4.1)."""
+
+MOST_FAULTS = 200
+"""Rows without a rating that are told, at most."""
 
 COLUMNS = ("program_id", "title", "description", "program", "rater", "rating")
 HELP = "1 complete: a robot could do it as written; 2 minor steps are missing (a walk); 3 something crucial is missing"
@@ -79,30 +79,22 @@ def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
     """The ratings by program; rows without a rating are ignored.
 
     Raises:
-        HearthError: every row whose rating is not 1, 2 or 3, and every table with missing columns.
+        HearthError: every row whose rating is not 1, 2 or 3, up to `MOST_FAULTS`, and every table that can't be read
+            or has missing columns.
     """
     found: dict[str, list[Completeness]] = defaultdict(list)
     faults: list[Diagnostic] = []
     for path in paths:
-        text = decode(read_input(path), str(path))
-        if isinstance(text, Diagnostic):
-            faults.append(text)
-            continue
-        delimiter = max(",;\t", key=text.partition("\n")[0].count)
-        rows = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, restval="")
-        names = rows.fieldnames or []
-        column = next((name for name in names if name.startswith("rating")), None)
-        if column is None or "program_id" not in names:
-            missing = "rating" if column is None else "program_id"
-            faults.append(Diagnostic(Code.BAD_TABLE, f"the table lacks the column `{missing}`", str(path), 1))
-            continue
-        for row in rows:
-            answer = (row[column] or "").strip()
-            if answer in ("1", "2", "3"):
-                found[original_cell(row["program_id"])].append(Completeness(int(answer)))
-            elif answer:
-                message = f"`{answer[:40]}` is not a rating"
-                faults.append(Diagnostic(Code.BAD_TABLE, message, str(path), rows.line_num, suggestion="1, 2 or 3"))
+        try:
+            for line, (program, given) in CsvTable(path, ("program_id", "rating*")).rows():
+                answer = given.strip()
+                if answer in ("1", "2", "3"):
+                    found[original_cell(program)].append(Completeness(int(answer)))
+                elif answer and len(faults) < MOST_FAULTS:
+                    message = f"`{answer[:40]}` is not a rating"
+                    faults.append(Diagnostic(Code.BAD_TABLE, message, str(path), line, suggestion="1, 2 or 3"))
+        except HearthError as error:
+            faults += error.diagnostics
     if faults:
         raise HearthError(faults)
     return dict(found)

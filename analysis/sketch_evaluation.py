@@ -3,6 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from hearth.analysis.coverage import Script
@@ -10,6 +11,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers import sketches as reader
 from hearth.repair.sketch import Keep, sketch
 from hearth.repair.sketch_model import SketchModel, learned_sketch
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
 from hearth.schemas.row_types import IngestedRow
 from hearth.schemas.syntax import print_step
@@ -140,7 +143,12 @@ def annotated(place: Place, name: str, scripts: Iterable[Script], knowledge: Kno
     """The annotations of a file with their programs; None for an annotation without a program.
 
     A program is identified by its id, else by title, length and kept steps if these are unique.
+
+    Raises:
+        HearthError: MISSING_FILE: it is not a file.
     """
+    if isinstance(place, Path) and not place.is_file():
+        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(place))
     by_id: dict[str, Script] = {}
     by_form: dict[tuple[str, int], list[Script]] = defaultdict(list)
     for script in scripts:
@@ -175,7 +183,7 @@ def _kept(script: Script, keep: Keep) -> list[tuple[str, ...]]:
 def _answered(row: IngestedRow, knowledge: Knowledge) -> list[tuple[str, ...]]:
     found = []
     for line in (row["text"] or "").splitlines():
-        word, *names = line.split()
+        word, *names = line.split() or [""]
         action = knowledge.action(word)
         things = [knowledge.object_class(name) for name in names]
         names_found = (thing.name if thing else name for thing, name in zip(things, names, strict=True))

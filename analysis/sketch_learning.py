@@ -13,6 +13,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.repair.sketch import Keep, sketch
 from hearth.repair.sketch_features import RATED, StepFeatures, features
 from hearth.repair.sketch_model import BASE, SketchModel, Tree, inputs, logit, shares
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
 from hearth.simulation.world.home import Home
 
@@ -115,7 +117,13 @@ def fit(found: Sequence[Example], fitted_on: str, base: SketchModel | None = Non
         fitted_on: what they are, in words; stored in the model.
         base: a model of other annotations that this one builds on.
         seed: of the trees.
+
+    Raises:
+        HearthError: EMPTY: all steps are kept, or none.
     """
+    if len({kept for one in found for kept in one.answer}) < 2:
+        remedy = "give more sketches, which keep some steps and not others"
+        raise HearthError.of(Code.EMPTY, "nothing to learn: all steps are kept, or none", suggestion=remedy)
     rows = _rows(found, base)
     rarest = max(RAREST, len(rows.answers) // SHARE)
     vocabulary = _vocabulary(rows.names, rarest)

@@ -21,7 +21,13 @@ DEFAULT_COUNT = 5_193
 
 FILE = Path(__file__).parent / "synthesis.yaml"
 
+LARGEST_WEIGHT = 1e12
+"""Of a grammar, at most."""
+
 _TRIES = 60
+_DRAWS = 10_000
+"""Tasks that are drawn for a program, at most: where fewer differ than it wants, it has these."""
+
 _HANDS = 2
 
 
@@ -34,8 +40,14 @@ class Weighted:
 
     @classmethod
     def of(cls, weights: Mapping[Any, float]) -> Weighted:
-        """The entries of a mapping with positive weight."""
+        """The entries of a mapping with positive weight.
+
+        Raises:
+            ValueError: there are none, or weights that are not numbers of any use.
+        """
         kept = {str(thing): weight for thing, weight in weights.items() if weight > 0}
+        if not kept or not sum(kept.values()) < LARGEST_WEIGHT:
+            raise ValueError(f"weights {str(weights)[:60]}")
         return cls(tuple(kept), tuple(accumulate(kept.values())))
 
     def draw(self, chance: Random) -> str:
@@ -120,19 +132,23 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
         tasks = {name: _task(name, entry, described) for name, entry in entries.items()}
         weights = {name: float(entry["weight"]) for name, entry in entries.items()}
         plan = Weighted.of(data["plan"])
+        if any(int(number) < 1 for number in plan.things):
+            raise ValueError("a plan of programs without tasks")
         join, first = float(data["join"]), float(data["first"])
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        message = f"not a grammar of programs: {type(error).__name__} {error}"
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
+        message = f"not a grammar of programs: {type(error).__name__} {str(error)[:200]}"
         suggestion = "it needs plan, join, first, described and tasks"
         raise HearthError.of(Code.BAD_TABLE, message, file=str(path), suggestion=suggestion) from error
-    faults = [fault for task in tasks.values() for fault in _faults(task, known, str(path))]
+    words = load_words(known)
+    faults = [fault for task in tasks.values() for fault in _faults(task, known, words, str(path))]
     if faults:
         raise HearthError(faults)
     kept = {name: task if every_action else _animated(task, known) for name, task in tasks.items()}
-    return Grammar(
-        plan, Weighted.of({n: weights[n] for n, task in kept.items() if task.parts}), kept, join, first, known,
-        load_words(known),
-    )  # fmt: skip
+    try:
+        drawn = Weighted.of({name: weights[name] for name, task in kept.items() if task.parts})
+    except ValueError as error:
+        raise HearthError.of(Code.EMPTY, f"no task can be drawn: {error}", file=str(path)) from error
+    return Grammar(plan, drawn, kept, join, first, known, words)
 
 
 def _inherited(entry: Mapping[str, Any], entries: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -160,7 +176,13 @@ def _animated(task: Task, known: Knowledge) -> Task:
     return Task(task.name, task.titles, task.slots, parts, task.aims)
 
 
-def _faults(task: Task, known: Knowledge, file: str) -> Iterator[Diagnostic]:
+def _faults(task: Task, known: Knowledge, words: Wording, file: str) -> Iterator[Diagnostic]:
+    said = [*task.titles, *task.aims, *(text for part in task.parts for text in part.say)]
+    if not task.titles or not all(part.steps and part.say for part in task.parts):
+        yield Diagnostic(Code.BAD_TABLE, f"task `{task.name}`: no titles, or a part without steps or words", file)
+    for text in said:
+        if why := words.fault(text, task.slots):
+            yield Diagnostic(Code.BAD_TABLE, f"task `{task.name}`: `{str(text)[:80]}` {why}", file)
     for part in task.parts:
         for action, slots in part.steps:
             found = known.actions.get(action)
@@ -215,7 +237,9 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
     """A program, or None if it is not executable: a third object to hold, a lamp switched on twice."""
     wanted = int(grammar.plan.draw(chance))
     names: list[str] = []
-    while len(names) < wanted:
+    for _ in range(_DRAWS):
+        if len(names) >= min(wanted, len(grammar.weights.things)):
+            break
         name = grammar.weights.draw(chance)
         if name not in names:
             names.append(name)

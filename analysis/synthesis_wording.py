@@ -6,7 +6,7 @@ All words are data (`synthesis_words.yaml`); every choice is drawn from the gene
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -69,6 +69,15 @@ class Wording:
         while "<" in text:
             text = _LIST.sub(lambda match: chance.choice(self.lists[match[1]]), text, count=1)
         return text
+
+    def fault(self, text: object, slots: Collection[str]) -> str:
+        """Why a text of a grammar can't be said; "" if it can: it names lists and slots that there are."""
+        if not isinstance(text, str):
+            return "is not a text"
+        unknown = {*_SLOT.findall(text)} - {*slots} | {*_LIST.findall(text)} - self.lists.keys()
+        if unknown or "<" in _LIST.sub("", text):
+            return f"names what there is not: {', '.join(sorted(unknown)) or '<'}"
+        return ""
 
     def reworded(self, clause: str, chance: Random) -> str:
         """A clause with synonyms of its phrases."""

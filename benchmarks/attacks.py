@@ -21,10 +21,14 @@ from typing import Any
 sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Path(__file__).resolve().parents[1]]
 
 from attack import Attack, Ground  # noqa: E402
+from attacks_on_beliefs import belief_results  # noqa: E402
 from attacks_on_challenges import clients, results, task_files  # noqa: E402
+from attacks_on_corpora import corpora  # noqa: E402
+from attacks_on_datasets import datasets  # noqa: E402
 from attacks_on_episodes import episodes  # noqa: E402
 from attacks_on_films import films  # noqa: E402
 from attacks_on_models import checkpoints, kinds  # noqa: E402
+from attacks_on_stores import stores  # noqa: E402
 from attacks_on_studies import studies  # noqa: E402
 from attacks_on_trainings import trainings  # noqa: E402
 from attacks_on_ways import ways  # noqa: E402
@@ -336,7 +340,7 @@ def terminals() -> Iterator[Attack]:
 
 GROUPS = (
     queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals, checkpoints, kinds, trainings,
-    task_files, results, clients, episodes, films, studies, ways, web,
+    task_files, results, belief_results, clients, episodes, films, studies, stores, ways, web, corpora, datasets,
 )  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Readers of what strangers give to challenges, models, studies and pages: targets of `guided_fuzz.py`.
 
-Each takes a file's bytes, or a message's, and may raise only HearthError or the server's refusal.
+Each takes a file's bytes, or a message's, and may raise only HearthError or the server's refusal. Those of what is
+beside corpora, datasets and stores are in `fuzzed_files.py`.
 """
 
 from __future__ import annotations
@@ -8,26 +9,20 @@ from __future__ import annotations
 import contextlib
 import json
 import shutil
-from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
+
+try:
+    from benchmarks.fuzzed_files import FILES, One, Room, _by_file, _signed_results
+except ImportError:
+    from fuzzed_files import FILES, One, Room, _by_file, _signed_results
 
 SMALL = "goal-inference"
 """The checkpoint whose description is changed."""
 
 EMPTY = "retrieve-edit"
 """The checkpoint whose weights are changed: it has none."""
-
-One = Callable[[bytes], Any]
-"""Reads one input."""
-
-
-class Room(NamedTuple):
-    """A reader: what its input may look like, and what reads it in a folder of its own."""
-
-    example: Callable[[], bytes]
-    reader: Callable[[Path], One]
 
 
 def _suite() -> Any:
@@ -71,15 +66,6 @@ def _read_tasks(path: Path) -> Any:
     from hearth.kb.loading.load import default
 
     return [start_of(task, default(), 1) for task in read(path).tasks[:1]]
-
-
-def _signed_results(path: Path) -> None:
-    """The same for a file of results with one episode."""
-    from attacks_on_challenges import _resigned
-
-    with contextlib.suppress(ValueError, RecursionError, TypeError, AttributeError):
-        first, second = map(json.loads, path.read_bytes().splitlines())
-        path.write_text("".join(f"{json.dumps(each)}\n" for each in _resigned(first, second)), "utf-8")
 
 
 def _read_results(path: Path) -> Any:
@@ -126,18 +112,6 @@ def _read_films(path: Path) -> Any:
     from hearth.studies.judged_films import read_films
 
     return read_films(path)
-
-
-def _by_file(name: str, read: Callable[[Path], Any]) -> Callable[[Path], One]:
-    def reader(scratch: Path) -> One:
-        def one(data: bytes) -> Any:
-            path = scratch / name
-            path.write_bytes(data)
-            return read(path)
-
-        return one
-
-    return reader
 
 
 def _checkpoint(base: str, name: str) -> Room:
@@ -359,4 +333,5 @@ ROOMS: dict[str, Room] = {
     "training-state": Room(_state, _continued),
     "agent-answer": Room(lambda: _ANSWER, _answers),
     "page-steps": Room(lambda: _STEPS, _messages),
+    **FILES,
 }

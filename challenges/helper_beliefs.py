@@ -53,7 +53,8 @@ def beliefs(task: Task, record: Record, helper: str, knowledge: Knowledge) -> Be
     """Follow an episode with a helper that was not given the goal.
 
     Raises:
-        HearthError: BAD_ARGUMENT: the helper infers no goals, or was not there; every fault of its actions.
+        HearthError: BAD_ARGUMENT: the helper infers no goals, or was not there, or the goal is none of those that it
+            reckons with; every fault of its actions.
     """
     if helper not in ONLINE or not record.helped or record.helper_goal is not None:
         raise HearthError.of(Code.BAD_ARGUMENT, f"`{helper[:40]}` infers no goal here", suggestion=", ".join(ONLINE))
@@ -72,6 +73,9 @@ def beliefs(task: Task, record: Record, helper: str, knowledge: Knowledge) -> Be
     agent = ONLINE[helper].make(which.goals_in)
     assert isinstance(agent, OnlineHelper)
     agent.reset(playing.view(1), None, derive(derive(task.seed, "episode", record.seed), "agent", 1))
+    if goal not in agent.space.goals:
+        message = f"the goal of {task.id[:80]} is none that people have in {task.home[:80]}: {str(goal)[:200]}"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="tasks of `challenge tasks`")
     number = agent.space.goals.index(goal)
     moments = []
     for texts in record.actions:

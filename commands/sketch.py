@@ -111,8 +111,6 @@ def _judge(
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 
-    if not file.is_file():
-        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(file))
     learned = model_of(model) if model else None
     found = evaluate_sketches(annotated(file, file.name, programs, known), places, known, seed, learned)
     if not found.rows:

@@ -81,8 +81,8 @@ class Dataset:
         if not isinstance(content, dict) or content.get("stage") != "publish":
             suggestion = "name the folder that `build` gave with --out, or the dataset inside it"
             raise HearthError.of(Code.MISSING_FILE, "no dataset here", file=str(path), suggestion=suggestion)
-        if not isinstance(content.get("format"), int) or not isinstance(content.get("files"), dict):
-            message = "its manifest does not name a format and its files"
+        if not _names_its_form(content):
+            message = "its manifest does not name a format, a version and its files"
             remedy = "fetch or publish the dataset again"
             raise HearthError.of(Code.BAD_JSON, message, file=str(folder / NAME), suggestion=remedy)
         if content["format"] > FORMAT:
@@ -427,3 +427,11 @@ def _refused(error: Exception, folder: Path) -> HearthError:
     if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
         return unreadable(error, folder)
     return HearthError.of(Code.SYNTAX, message)
+
+
+def _names_its_form(manifest: dict[str, Any]) -> bool:
+    """Whether a manifest has what every reader of a dataset asks it for."""
+    form = manifest.get("format")
+    texts = [manifest.get(name) for name in ("version", "action_set")]
+    numbered = isinstance(form, int) and not isinstance(form, bool) and form > 0
+    return numbered and all(isinstance(text, str) for text in texts) and isinstance(manifest.get("files"), dict)

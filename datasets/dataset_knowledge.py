@@ -10,6 +10,7 @@ from hearth.kb.loading.load import digest, files_of, overlaid
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import write_bytes
+from hearth.storage.names import inside
 
 FOLDER = "knowledge"
 """Folder of the overlay's files, in a dataset and in the stage that provides knowledge to others."""
@@ -67,16 +68,18 @@ def carried(folder: Path, recorded: Any, what: str, digest_of: Callable[[Path], 
         return None
     try:
         overlay = recorded["overlay"]
-        path: Path | None = folder / overlay["path"] if overlay else None
-        wanted = overlay["sha256"] if overlay else ""
+        name, wanted = (str(overlay["path"]), overlay["sha256"]) if overlay else ("", "")
     except (TypeError, KeyError) as error:
         message = f"the manifest does not say which {what}: {type(error).__name__} {error}"
         raise HearthError.of(Code.BAD_JSON, message, file=str(folder)) from error
-    if path is None:
+    if not overlay:
         return None
     again = "fetch or publish the dataset again"
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise HearthError.of(Code.DAMAGED_FILE, f"its {what} lies outside: `{path}`", file=str(folder))
+    try:
+        path = inside(folder, name)
+    except HearthError as error:
+        message = f"its {what} lies outside: `{name[:80]}`"
+        raise HearthError.of(Code.DAMAGED_FILE, message, file=str(folder)) from error
     if not path.is_dir():
         raise HearthError.of(Code.MISSING_FILE, f"the {what} it was made with", file=str(path), suggestion=again)
     if digest_of(path) != wanted:

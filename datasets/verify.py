@@ -15,6 +15,8 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES
 from hearth.simulation.world.home import Home
+from hearth.storage.manifest import NAME
+from hearth.storage.names import leaves
 from hearth.storage.parallel import Seen, spread, unseen
 
 SHARE = 1_000
@@ -95,7 +97,10 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
     files = dataset.manifest["files"]
     for name, entry in files.items():
         path = dataset.folder / name
-        if not path.is_file():
+        if leaves(name) or not _is_entry(entry):
+            message = f"it does not say which file of the folder `{name[:80]!a}` is, and its bytes and SHA-256"
+            yield Diagnostic(Code.BAD_JSON, message, str(dataset.folder / NAME), suggestion=AGAIN)
+        elif not path.is_file():
             yield Diagnostic(Code.MISSING_FILE, "the manifest has it, the folder has not", str(path), suggestion=AGAIN)
         elif path.stat().st_size != entry["bytes"]:
             message = f"{path.stat().st_size:,} bytes where the manifest says {entry['bytes']:,}"
@@ -107,6 +112,12 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
             if path.relative_to(dataset.folder).as_posix() not in files:
                 message = "the folder has it, the manifest has not: queries would read it"
                 yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
+
+
+def _is_entry(entry: object) -> bool:
+    if not isinstance(entry, dict):
+        return False
+    return isinstance(entry.get("bytes"), int) and isinstance(entry.get("sha256"), str)
 
 
 def _overlays(dataset: Dataset) -> Iterator[Diagnostic]:
@@ -180,9 +191,13 @@ def _references(dataset: Dataset) -> Iterator[Diagnostic]:
 
 
 def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
-    counts = (dataset.manifest.get("counts") or {}).get("rows", {})  # whatever else is wrong there is reported later
-    for table, number in counts.items():
-        if number != _count(dataset, table):
+    counts = dataset.manifest.get("counts")
+    rows = counts.get("rows") if isinstance(counts, dict) else None  # whatever else is wrong there is reported later
+    for table, number in rows.items() if isinstance(rows, dict) else ():
+        if table not in TABLES or not isinstance(number, int):
+            message = f"it counts {str(number)[:20]} rows of a table `{table[:80]!a}`"
+            yield Diagnostic(Code.BAD_JSON, message, str(dataset.folder / NAME), suggestion=AGAIN)
+        elif number != _count(dataset, table):
             message = f"{_count(dataset, table):,} rows where the manifest counts {number:,}"
             yield Diagnostic(Code.BAD_TABLE, message, str(dataset.folder / table))
     for table, column, query in COUNTED:

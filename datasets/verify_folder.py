@@ -12,9 +12,10 @@ from hearth.datasets import dataset_homes, dataset_knowledge
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, published
 from hearth.datasets.format.datasheet import STRENGTH
-from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import read_json, value_digest
+from hearth.storage.input_files import read_input
 from hearth.storage.manifest import NAME, TIMING
 from hearth.storage.partitions import Counts
 
@@ -52,7 +53,7 @@ def manifest_faults(dataset: Dataset) -> Iterator[Diagnostic]:
     place = str(dataset.folder / NAME)
     try:
         found = list(_contradictions(dataset))
-    except (KeyError, TypeError, ValueError, AttributeError, AssertionError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError, AssertionError, OSError) as error:
         found = [f"a field is missing or of another kind: {type(error).__name__} {error}"]
     yield from (Diagnostic(Code.BAD_JSON, message, place, suggestion=AGAIN) for message in found)
 
@@ -106,8 +107,8 @@ def other_files(folder: Path) -> Iterator[Diagnostic]:
 def _known_sql(folder: Path) -> str | None:
     """The SQL that the catalog was made by, if it is ours: that of strangers is never run."""
     try:
-        text = (folder / SQL).read_text("utf-8")
-    except (OSError, UnicodeDecodeError):
+        text = read_input(folder / SQL).decode()
+    except (HearthError, UnicodeDecodeError):
         return None
     return text if text == published() or sha256(text.encode()).hexdigest() in EARLIER else None
 

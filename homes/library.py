@@ -1,6 +1,5 @@
 """The library of homes: the designed ones, and a user's own from `--homes DIR`."""
 
-import csv
 from collections.abc import Mapping
 from dataclasses import replace
 from difflib import get_close_matches
@@ -14,14 +13,18 @@ from hearth.homes.plans.layout import Layout, read
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.decoding import decode
-from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
 from hearth.schemas.numbers import number_of
+from hearth.storage.csv_files import CsvTable
 from hearth.storage.input_files import read_input
 
 IDS = ".ids.csv"
 """A plan `maple.yaml` may have its node ids fixed in `maple.ids.csv`, with columns id and name."""
+
+LARGEST_IDS = 16 << 20
+"""Bytes of such a file, at most: all of it is in memory."""
 
 
 def names(directory: Path | str | None = None, *, alone: bool = False) -> tuple[str, ...]:
@@ -173,12 +176,13 @@ def _ids(path: Path) -> dict[str, int]:
     if not path.exists():
         return {}
     found: dict[str, int] = {}
-    with path.open(encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            number, name = number_of(row.get("id") or ""), row.get("name") or ""
-            if number is None or not name or name in found or number in found.values():
-                message = f"`{row.get('id')},{name}` repeats an id or a name, or lacks one"
-                raise HearthError.of(Code.BAD_TABLE, message, file=str(path),
-                                     suggestion="columns id and name, each once")  # fmt: skip
-            found[name] = number
+    taken: set[int] = set()
+    for line, (name, given) in CsvTable(path, ("name", "id"), LARGEST_IDS).rows():
+        number = number_of(given)
+        if number is None or not name or name in found or number in taken:
+            message = f"`{given[:40]},{name[:40]}` repeats an id or a name, or lacks one"
+            raise HearthError(Diagnostic(Code.BAD_TABLE, message, str(path), line,
+                                         suggestion="columns id and name, each once"))  # fmt: skip
+        found[name] = number
+        taken.add(number)
     return found

@@ -20,6 +20,7 @@ from hearth.repair.sketch_features import NUMBERS, RATED, StepFeatures, features
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
+from hearth.storage.input_files import LARGEST_TABLE, read_input
 
 FILE = Path(__file__).parent / "sketch_model.json"
 """The model fitted on our own annotations."""
@@ -32,6 +33,10 @@ BASE = "base"
 
 SMOOTHING = 3.0
 """Steps at the share of its action that a rarer name is counted with."""
+
+
+LARGEST_NUMBER = 1e12
+"""Of a stored model, at most: no weight, threshold or count is near it."""
 
 
 class Tree(NamedTuple):
@@ -191,31 +196,47 @@ def load_model(path: Path) -> SketchModel:
     """Read a stored model, which may be a stranger's.
 
     Raises:
-        HearthError: BAD_JSON, it is not a model of sketches; MISSING_FILE.
+        HearthError: BAD_JSON, it is not a model of sketches; those of `read_input`.
     """
     import orjson
 
-    if not path.is_file():
-        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(path))
+    stored = read_input(path, LARGEST_TABLE)
     try:
-        data = orjson.loads(path.read_bytes())
+        data = orjson.loads(stored)
         if data["form"] != FORM:
-            raise ValueError(f"form {data['form']}")
+            raise ValueError(f"form {str(data['form'])[:20]}")
         numbers = tuple(map(str, data["numbers"]))
         trees = tuple(_tree(each, len(numbers)) for each in data["trees"])
         forest = tuple(_tree(each, len(numbers)) for each in data.get("forest", ()))
-        weights = {str(name): float(weight) for name, weight in data["weights"].items()}
-        start, bias, base_weight = float(data["start"]), float(data["bias"]), float(data["base_weight"])
-        counts = {str(name): (int(pair[0]), int(pair[1])) for name, pair in data["counts"].items()}
+        if any(not 0 <= value <= 1 for tree in forest for value in tree.value):
+            raise ValueError("a tree of a forest whose leaves have no probabilities")
+        weights = {str(name): _number(weight) for name, weight in data["weights"].items()}
+        start, bias, base_weight = _number(data["start"]), _number(data["bias"]), _number(data["base_weight"])
+        counts = {str(name): _share(*pair) for name, pair in data["counts"].items()}
         base = shipped() if data["base"] else None
         return SketchModel(
-            data["fitted_on"], bias, weights, base_weight, counts, _known(numbers, base), start, trees,
-            float(data["least"]), base, forest=forest,
+            dict(data["fitted_on"]), bias, weights, base_weight, counts, _known(numbers, base), start, trees,
+            _number(data["least"]), base, forest=forest,
         )  # fmt: skip
-    except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
-        message = f"not a model of sketches: {type(error).__name__} {error}"
+    except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        message = f"not a model of sketches: {type(error).__name__} {str(error)[:200]}"
         suggestion = "`sketch --fit` writes one"
         raise HearthError.of(Code.BAD_JSON, message, file=str(path), suggestion=suggestion) from error
+
+
+def _number(given: Any) -> float:
+    """A number that sums and products of the model's stay finite with."""
+    number = float(given)
+    if not abs(number) <= LARGEST_NUMBER:
+        raise ValueError(f"the number {str(given)[:20]}")
+    return number
+
+
+def _share(steps: Any, kept: Any) -> tuple[int, int]:
+    """Numbers of steps and of those kept."""
+    if not 0 <= int(kept) <= int(steps) <= LARGEST_NUMBER:
+        raise ValueError(f"{str(kept)[:20]} steps kept of {str(steps)[:20]}")
+    return int(steps), int(kept)
 
 
 def _known(numbers: tuple[str, ...], base: SketchModel | None) -> tuple[str, ...]:
@@ -235,10 +256,10 @@ def _tree(data: Mapping[str, Any], count: int) -> Tree:
     """A tree whose children come after their parents, so that every walk ends."""
     tree = Tree(
         tuple(int(each) for each in data["number"]),
-        tuple(float(each) for each in data["threshold"]),
+        tuple(map(_number, data["threshold"])),
         tuple(int(each) for each in data["left"]),
         tuple(int(each) for each in data["right"]),
-        tuple(float(each) for each in data["value"]),
+        tuple(map(_number, data["value"])),
     )
     if len({len(column) for column in tree}) != 1 or not tree.number:
         raise ValueError("columns of a tree differ in length")

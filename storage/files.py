@@ -12,6 +12,10 @@ import orjson
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.input_files import read_input
+
+LARGEST_JSON = 256 << 20
+"""Bytes of a manifest; it has a line for each of a dataset's files."""
 
 TEMPORARY = ".tmp"
 
@@ -67,10 +71,10 @@ def write_json(path: Path, value: Any) -> None:
 
 
 def read_json(path: Path) -> Any | None:
-    """The JSON of a file; None when it is absent or is not JSON."""
+    """The JSON of a file; None when it is absent, not a regular file, too large or not JSON."""
     try:
-        return orjson.loads(path.read_bytes())
-    except (OSError, orjson.JSONDecodeError):
+        return orjson.loads(read_input(path, LARGEST_JSON))
+    except (HearthError, orjson.JSONDecodeError):
         return None
 
 

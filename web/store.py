@@ -9,7 +9,7 @@ import contextlib
 import random
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -39,7 +39,8 @@ class Store:
         url: `sqlite:///FILE`, `postgresql://USER@HOST/NAME`, or another form of these two that SQLAlchemy knows.
 
     Raises:
-        HearthError: MISSING_FILE, if the database can't be reached; UNSUPPORTED_FILE, if it is of another kind.
+        HearthError: MISSING_FILE, if the database can't be reached; UNSUPPORTED_FILE, if it is of another kind;
+            DAMAGED_FILE, if statements of its own would run with ours.
     """
 
     def __init__(self, url: str) -> None:
@@ -48,11 +49,9 @@ class Store:
         self._turn: contextlib.AbstractContextManager[Any] = contextlib.nullcontext()
         if self.engine.dialect.name == "sqlite":
             self._turn = threading.Lock()
-        try:
+        with usable(_shown(url), "the store can't be opened"):
+            self.read(_check_schema)
             self.write(_make_tables)
-        except DBAPIError as error:
-            what = str(error.orig).strip().splitlines()[0]
-            raise HearthError.of(Code.MISSING_FILE, f"the store can't be opened: {what}", file=_shown(url)) from error
 
     def read(self, work: Callable[[sql.Connection], T]) -> T:
         """What a function returns that reads one state of the store and changes nothing."""
@@ -93,6 +92,20 @@ class Store:
     def close(self) -> None:
         """Close the connections."""
         self.engine.dispose()
+
+
+@contextlib.contextmanager
+def usable(place: str, message: str) -> Iterator[None]:
+    """Say of a store that somebody gave why the database refuses it.
+
+    Raises:
+        HearthError: MISSING_FILE.
+    """
+    try:
+        yield
+    except DBAPIError as error:
+        what = str(error.orig).strip().partition("\n")[0]
+        raise HearthError.of(Code.MISSING_FILE, f"{message}: {what}", file=place) from error
 
 
 def default_url(out: Path) -> str:
@@ -149,7 +162,8 @@ def _shown(url: str) -> str:
 def _set_up_sqlite(connection: Any, record: object) -> None:
     """Readers do not wait for the writer; a commit is on the disk; rows of a session go with it."""
     connection.isolation_level = None  # SQLAlchemy begins transactions, not the driver
-    for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+    # A file may be a stranger's: with `trusted_schema` off its schema calls no function that does anything.
+    for pragma in ("trusted_schema = OFF", "journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
         connection.execute(f"PRAGMA {pragma}")
 
 
@@ -162,6 +176,15 @@ def _begin_sqlite(connection: sql.Connection) -> None:
 def _is_conflict(error: DBAPIError) -> bool:
     state = getattr(error.orig, "sqlstate", None)
     return state in ("40001", "40P01") or "database is locked" in str(error.orig)
+
+
+def _check_schema(connection: sql.Connection) -> None:
+    """Refuse views, which could stand for our tables and never end, and triggers, which follow what we change."""
+    if connection.dialect.name == "sqlite":
+        query = "SELECT type, name FROM sqlite_master WHERE type IN ('view', 'trigger')"
+        for kind, name in connection.exec_driver_sql(query):
+            message = f"it has a {kind} `{str(name)[:60]}`, and stores of ours have none"
+            raise HearthError.of(Code.DAMAGED_FILE, message, suggestion="name a folder that `serve` keeps its store in")
 
 
 def _make_tables(connection: sql.Connection) -> None:

@@ -171,15 +171,18 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
 
     Raises:
         HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
-            DuckDB's words.
+            DuckDB's words; DAMAGED_FILE, where a table is a pipe or a device, which a query would wait for.
     """
     from hearth.schemas.tables import TABLES
 
-    missing = [table for table in TABLES if not any((folder / table).glob("*.parquet"))]
+    parts = {table: [*(folder / table).glob("*.parquet")] for table in TABLES}
+    for path in (path for paths in parts.values() for path in paths if not path.is_file()):
+        raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(path), suggestion="move it elsewhere")
+    missing = [table for table, paths in parts.items() if not paths]
     published = {name.partition("/")[0] for name in content["files"]}
     lost = [f"`{table}`" for table in missing if table in published]
     if lost:
-        message = f"it has no table {', '.join(lost)}; it was written by {content['version']}"
+        message = f"it has no table {', '.join(lost)}; it was written by {content.get('version')}"
         remedy = "fetch the dataset again, or publish it again with this version"
         raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
     return missing

@@ -39,6 +39,9 @@ class Faults(list[Diagnostic]):
 
 def check_extent(path: Path, faults: Faults) -> None:
     """Refuse a file of others' knowledge that takes too much to read; ours need no such check."""
+    if not path.is_file():
+        faults.add(str(path), 0, "is not a regular file", "move it elsewhere", Code.UNSUPPORTED_FILE)
+        return
     size = path.stat().st_size
     if size > LARGEST:
         faults.add(str(path), 0, f"{size:,} bytes are too many", LIMITS, Code.FILE_TOO_LARGE)

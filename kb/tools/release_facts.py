@@ -1,12 +1,12 @@
 """The facts of the release's five knowledge files, as sets of names."""
 
-import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.input_files import read_input
 
 Fact = tuple[str, ...]
 """Names; what they mean depends on the table."""
@@ -24,12 +24,14 @@ def read_release(directory: Path) -> dict[str, set[Fact]]:
         HearthError: a file is not JSON or not of its form.
     """
     found = {}
+    import orjson
+
     for file, table, facts in _FILES:
         path = directory / file
         if not path.exists():
             continue
         try:
-            found[table] = set(facts(json.loads(path.read_bytes())))
+            found[table] = set(facts(orjson.loads(read_input(path))))
         except (ValueError, TypeError, KeyError, AttributeError) as error:
             message = f"not the release's file: {type(error).__name__} {error}"
             raise HearthError.of(Code.BAD_JSON, message, file=str(path)) from error

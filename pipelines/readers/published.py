@@ -80,6 +80,8 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:
 
     for file in sorted((path / table).glob("*.parquet")):
         try:
+            if not file.is_file():
+                raise ValueError("it is not a regular file")
             with pq.ParquetFile(file) as source:
                 later = {*earlier(1).get(table, {}).get("lacks", ())} - {*source.schema_arrow.names}
                 columns = [name for name in columns if name not in later]

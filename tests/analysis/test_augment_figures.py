@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import pytest
 
 from hearth.analysis.augment_figures import GIVEN_UP, THESIS, figures, outcome
@@ -56,3 +58,11 @@ def test_figures_are_drawn_the_same_each_time(made, tmp_path):
     first, second = (draw(found, tmp_path / name) for name in ("a", "b"))
     assert [file.name for file in first] == ["conditions.png", "conditions.svg", "lengths.png", "lengths.svg"]
     assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
+
+
+@pytest.mark.parametrize("name", ["timing.json", "rejects.parquet"])
+def test_a_stage_that_is_damaged_is_told(made, tmp_path, name):
+    folder = shutil.copytree(made.out / "augment", tmp_path / "augment")
+    (folder / name).write_text("{}")
+    with pytest.raises(HearthError, match="DAMAGED_FILE"):
+        outcome(folder)

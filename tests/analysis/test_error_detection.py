@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from hearth.analysis import error_detection
 from hearth.cli import app
 from hearth.pipelines.build import corpus
+from hearth.schemas.diagnostics import HearthError
 
 
 @pytest.fixture(scope="module")
@@ -58,3 +59,18 @@ def test_the_command(tmp_path):
     source.write_text("Nap\n\n\n[Walk <bed> (1)\n")
     result = CliRunner().invoke(app, ["corpus", "dirt", str(key), str(source), "--json"])
     assert json.loads(result.stdout)["recall"] == 1
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [(b"a,b\n1,2\n", "BAD_TABLE"), (b"HITId,fault\n\x81\x81\x81,x\n", "NOT_TEXT"), (b"", "BAD_TABLE")],
+)
+def test_what_is_no_key_is_refused(tmp_path, data, code):
+    (tmp_path / "key.csv").write_bytes(data)
+    with pytest.raises(HearthError, match=code):
+        error_detection.read_key(tmp_path / "key.csv")
+
+
+def test_a_key_may_be_a_spreadsheets(tmp_path):
+    (tmp_path / "key.csv").write_bytes("HITId;fault\r\na;empty\r\n".encode("utf-16"))
+    assert error_detection.read_key(tmp_path / "key.csv") == {"a": "empty"}

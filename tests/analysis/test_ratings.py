@@ -69,3 +69,10 @@ def test_the_commands(tmp_path):
     result = CliRunner().invoke(app, ["corpus", "completeness", str(source), "--sheet", str(sheet)])
     assert result.exit_code == 0, result.output
     assert "agree on 100%" in result.stdout
+
+
+def test_of_many_rows_that_are_no_ratings_some_are_told(tmp_path):
+    (tmp_path / "a.csv").write_text("program_id,rating\n" + "p1,9\n" * 5_000)
+    with pytest.raises(HearthError) as caught:
+        ratings.read_sheets([tmp_path / "a.csv"])
+    assert len(caught.value.diagnostics) == ratings.MOST_FAULTS

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
 
 import pytest
 
+from hearth.analysis.coverage import Script
 from hearth.analysis.sketch_agreement import compare, kappa
+from hearth.analysis.sketch_evaluation import annotated
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.syntax import parse_program
 
 
 def drawn(path, **answers):
@@ -41,3 +45,18 @@ def test_repeated_annotations_in_one_file_are_compared(tmp_path):
 def test_annotations_of_different_programs_are_an_error(tmp_path):
     with pytest.raises(HearthError, match="no program is annotated twice"):
         compare(drawn(tmp_path / "a.json", P1=[1]), drawn(tmp_path / "b.json", P2=[1]))
+
+
+@pytest.mark.parametrize("lines", [[""], [" ", "walk sofa"]])
+def test_an_annotation_with_empty_lines_is_of_no_program(tmp_path, knowledge, lines):
+    given = {"title": "Sit", "descr": "", "prog": lines, "prefix": "b"}
+    (tmp_path / "a.json").write_text(json.dumps({"answer": [[1]], "input": [given]}))
+    program, _ = parse_program("Sit\n\n\n\n[Walk] <sofa> (1)\n")
+    script = Script("text:a", "a.txt", program)
+    assert list(annotated(tmp_path / "a.json", "a.json", [script], knowledge)) == [None]
+
+
+def test_annotations_that_are_no_file_are_not_waited_for(tmp_path, knowledge):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(HearthError, match="MISSING_FILE"):
+        list(annotated(tmp_path / "pipe", "pipe", [], knowledge))

@@ -100,6 +100,56 @@ def test_a_faulty_grammar_is_told_where(knowledge, tmp_path):
         synthesis.load(file, knowledge)
 
 
+NAP = """
+plan: {1: 1}
+join: 0
+first: 0
+told: 1
+tasks:
+  nap:
+    weight: 1
+    titles: [Nap]
+    choose: {bed: {bed: 1, sofa: 1}}
+    parts:
+    - {steps: [Walk bed], say: ["go to the {bed}"]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("{1: 1}", "{}"),
+        ("{1: 1}", "{x: 1}"),
+        ("{1: 1}", "{0: 1}"),
+        ("{1: 1}", "{1: .inf}"),
+        ("weight: 1", "weight: 0"),
+        ("weight: 1", "weight: .nan"),
+        ("[Nap]", "[]"),
+        ("[Nap]", "[7]"),
+        ("{bed: 1, sofa: 1}", "{}"),
+        ("[Walk bed]", "[]"),
+        ("[Walk bed]", "['']"),
+        ('["go to the {bed}"]', "[]"),
+        ("{bed}", "{chair}"),
+        ("{bed}", "<nothing>"),
+        ("the {bed}", "a < b"),
+    ],
+)
+def test_a_grammar_from_which_nothing_could_be_drawn_is_refused(knowledge, tmp_path, old, new):
+    file = tmp_path / "g.yaml"
+    file.write_text(NAP)
+    assert len(list(synthesis.synthesize(2, 0, synthesis.load(file, knowledge)))) == 2
+    file.write_text(NAP.replace(old, new))
+    with pytest.raises(HearthError, match=r"BAD_TABLE|EMPTY"):
+        synthesis.load(file, knowledge)
+
+
+def test_a_plan_of_more_tasks_than_there_are_ends(knowledge, tmp_path):
+    (tmp_path / "g.yaml").write_text(NAP.replace("{1: 1}", "{3: 1}"))
+    (found,) = synthesis.synthesize(1, 0, synthesis.load(tmp_path / "g.yaml", knowledge))
+    assert found.tasks == ("nap",)
+
+
 def test_a_grammar_too_small_says_so(knowledge, tmp_path):
     file = tmp_path / "g.yaml"
     file.write_text(

@@ -22,6 +22,7 @@ from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HOLDS
 from hearth.schemas.rng import rng
 
@@ -52,6 +53,17 @@ def test_beliefs_of_who_infers_nothing_are_refused(results, knowledge):
         beliefs(FEW.tasks[0], list(results.records)[1], "hp", knowledge)
     with pytest.raises(HearthError, match="infers no goal"):
         beliefs(FEW.tasks[0], replace(list(results.records)[1], helped=False), "nopa", knowledge)
+
+
+def test_a_goal_that_nobody_has_there_is_refused(results, knowledge):
+    """Of a stranger's results, whose digests anybody can make fit."""
+    record = list(results.records)[1]
+    with pytest.raises(HearthError, match="is none that people have"):
+        beliefs(replace(FEW.tasks[0], goal=Goal(())), record, "nopa", knowledge)
+
+
+def test_an_episode_without_ticks_is_drawn(believed):
+    assert "<polyline" in drawn(replace(believed, moments=()), ())
 
 
 def test_inference_is_scored_over_time(results):

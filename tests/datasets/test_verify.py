@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 
 import orjson
@@ -42,6 +43,55 @@ def rewritten(folder, table, change):
 
 def codes(folder):
     return [str(fault.code) for fault in verify(folder).faults]
+
+
+def said(folder, change):
+    """A copy whose manifest says something else."""
+    manifest = orjson.loads((folder / "manifest.json").read_bytes())
+    change(manifest)
+    (folder / "manifest.json").write_bytes(orjson.dumps(manifest))
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda manifest: manifest["files"].update({"../secret.csv": {"bytes": 3, "sha256": "0"}}), "secret.csv"),
+        (lambda manifest: manifest["files"].update({"/etc/hosts": {"bytes": 3, "sha256": "0"}}), "hosts"),
+        (lambda manifest: manifest["files"].update({"splits.json": 7}), "splits.json"),
+        (lambda manifest: manifest["files"].update({"splits.json": {"bytes": "x", "sha256": []}}), "splits.json"),
+        (lambda manifest: manifest["counts"]["rows"].update({"range(999999999999)": 1}), "range"),
+        (lambda manifest: manifest["counts"]["rows"].update({"programs": "x"}), "programs"),
+        (lambda manifest: manifest.update(counts=[]), "field is missing or of another kind"),
+        (lambda manifest: manifest["homes"]["overlay"].update(path="x\0y"), "lies outside"),
+        (lambda manifest: manifest["homes"]["overlay"].update(path="loop"), "lies outside"),
+    ],
+)
+def test_a_manifest_names_files_and_tables_of_the_folder(copy, change, message):
+    (copy / "loop").symlink_to("loop")
+    (copy.parent / "secret.csv").write_text("abc")
+    faults = verify(said(copy, change)).faults
+    assert faults and all(message in fault.message for fault in faults), faults
+
+
+@pytest.mark.parametrize("change", [{"format": 0}, {"format": True}, {"version": None}, {"action_set": []}])
+def test_a_manifest_without_its_form_is_refused(copy, change):
+    with pytest.raises(HearthError, match="does not name a format, a version and its files"):
+        verify(said(copy, lambda manifest: manifest.update(change)))
+
+
+def test_what_never_ends_beside_the_tables_is_not_waited_for(copy):
+    for name in ("timing.json", "catalog.sql"):
+        (copy / name).unlink()
+        os.mkfifo(copy / name)
+    assert {"BAD_JSON", "DAMAGED_FILE", "MISSING_FILE"} & {*codes(copy)}
+    os.mkfifo(copy / "programs/more.parquet")
+    with pytest.raises(HearthError, match=r"more\.parquet: DAMAGED_FILE: is not a regular file"):
+        hearth.load(copy).rows("SELECT 1 FROM programs")
+    (copy / "manifest.json").unlink()
+    (copy / "manifest.json").symlink_to("/dev/zero")
+    with pytest.raises(HearthError, match="no dataset here"):
+        hearth.load(copy)
 
 
 def test_what_was_published_is_what_it_says(made):

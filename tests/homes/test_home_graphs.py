@@ -14,6 +14,7 @@ from hearth.homes import exporting, library, relations
 from hearth.homes.plans.layout import read
 from hearth.homes.scene_graph import every_thing, node_ids, scene
 from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import edge_set, from_release, to_release
 from hearth.schemas.vocabulary import FIRST_ADDED_ID
 
@@ -215,3 +216,13 @@ def test_the_order_of_hashing_changes_nothing():
         done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
         found.add(done.stdout)
     assert len(found) == 1
+
+
+@pytest.mark.parametrize(
+    "data", [b"name;number\na;1\n", b"id,name\n\x81\x81\x81,a\n", b"id,name\n" + b"x" * 200_000, b""]
+)
+def test_ids_that_are_no_table_are_refused(tmp_path, data):
+    (tmp_path / "hut.yaml").write_text((GOLDEN / "hut.yaml").read_text())
+    (tmp_path / "hut.ids.csv").write_bytes(data)
+    with pytest.raises(HearthError, match=r"hut\.ids\.csv"):
+        library.layout_of(tmp_path / "hut.yaml", default())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 import hearth.kb
 from hearth.kb.loading.load import FILES, load
+from hearth.kb.tools.release_facts import read_release
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -246,3 +248,16 @@ def test_an_overlay_may_use_aliases(tmp_path):
     (tmp_path / "limits.yaml").write_text("sit: &seats {default: 3, sofa: 5}\nlie: *seats\n")
     known = load(overlay=tmp_path)
     assert (known.seat_limit("sofa"), known.bed_limit("sofa"), known.bed_limit("bed")) == (5, 5, 3)
+
+
+def test_an_overlay_with_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "actions.yaml")
+    with pytest.raises(HearthError, match="is not a regular file"):
+        load(overlay=tmp_path)
+
+
+@pytest.mark.parametrize("text", ["[" * 90_000, "7", '{"cup": [[]]}', '{"cup": 7}'])
+def test_a_file_of_the_release_that_is_none_is_refused(tmp_path, text):
+    (tmp_path / "object_states.json").write_text(text)
+    with pytest.raises(HearthError, match="not the release's file"):
+        read_release(tmp_path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -116,13 +117,33 @@ def test_a_model_on_top_of_another_has_a_forest_whose_probabilities_count(fitted
         {"trees": [{"number": [0], "threshold": [0], "left": [1], "right": [2], "value": [0]}]},
         {"forest": [{"number": [0], "threshold": [0], "left": [1], "right": [2], "value": [0]}]},
         {"weights": []},
+        {"fitted_on": None},
+        {"bias": "nan"},
+        {"start": "inf"},
+        {"counts": {"": [-3, -3]}},
+        {"counts": {"": [1, 2]}},
+        {"counts": {"": ["inf", 0]}},
+        {"forest": [{"number": [-1], "threshold": [0], "left": [-1], "right": [-1], "value": [5]}]},
     ],
 )  # fmt: skip
-def test_a_strangers_model_is_refused_if_it_could_not_end(fitted, tmp_path, fault):
+def test_a_strangers_model_is_refused_if_it_could_not_end_or_give_no_probability(fitted, tmp_path, fault):
     path = tmp_path / "model.json"
     path.write_text(json.dumps({**fitted.to_json(), **fault}))
     with pytest.raises(HearthError, match="not a model of sketches"):
         sketch_model.load_model(path)
+
+
+def test_a_model_that_never_begins_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(HearthError, match="UNSUPPORTED_FILE"):
+        sketch_model.load_model(tmp_path / "pipe")
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_nothing_is_learned_from_sketches_that_keep_all_or_nothing(kept):
+    alike = [one._replace(answer=(kept,) * len(one.answer)) for one in examples(4)]
+    with pytest.raises(HearthError, match="nothing to learn"):
+        learning.fit(alike, "test")
 
 
 def test_one_step_at_least_is_kept(fitted):

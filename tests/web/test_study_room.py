@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sqlite3
 import zipfile
 from dataclasses import asdict
 
@@ -22,6 +23,7 @@ from hearth.studies.simulated_people import simulated_person
 from hearth.studies.study_file import study_of
 from hearth.studies.study_trials import tasks_of
 from hearth.web.play.game_tables import GAMES
+from hearth.web.store import embedded
 from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, TRIAL_GAMES
 from hearth.web.study.study_store import StoreLedger, conducted, opened_store
 from hearth.web.web_tables import SESSIONS
@@ -258,6 +260,43 @@ def test_tables_and_report_are_downloaded(judging):
     assert opened_store(judging.out, "", "", default).study.name == "judging"
     with pytest.raises(HearthError, match="no study `other`"):
         opened_store(judging.out, "", "other", default)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("UPDATE study_events SET data = 'x'", "is not one"),
+        ("UPDATE study_events SET at = 'x'", "is not one"),
+        ("UPDATE study_events SET data = '[]' WHERE kind = 'did'", "is not of this study"),
+        ("UPDATE study_events SET kind = 'won'", "does not happen there"),
+        ("UPDATE study_places SET place = 99", "there are"),
+        ("UPDATE study_studies SET text = replace(text, 'name: judging', 'name: other')", "as the study `judging`"),
+        ("ALTER TABLE study_events RENAME COLUMN data TO other", "not as `serve` keeps it"),
+        ("CREATE TRIGGER t AFTER DELETE ON sessions BEGIN DELETE FROM study_studies; END", "has a trigger"),
+        ("DROP TABLE study_events; CREATE VIEW study_events AS SELECT 1 AS study", "has a view"),
+    ],
+)
+def test_the_store_of_a_stranger_is_refused_where_no_server_wrote_it_so(judging, change, message):
+    person = judging.person()
+    person.post("/study/agree", data={"agree": "yes"})
+    person.post("/study/answer", data={"answer-quality": "4"})
+    judging.store.close()
+    with sqlite3.connect(embedded(judging.out)) as store:
+        store.execute("PRAGMA foreign_keys = OFF")
+        store.executescript(change)
+    store.close()
+    with pytest.raises(HearthError, match=message):
+        opened_store(judging.out, "", "", default)
+
+
+def test_a_store_that_is_a_link_to_another_file_is_not_written_to(tmp_path):
+    (tmp_path / "given/.server").mkdir(parents=True)
+    other = tmp_path / "other.sqlite"
+    other.touch()
+    embedded(tmp_path / "given").symlink_to(other)
+    with pytest.raises(HearthError, match="DAMAGED_FILE"):
+        opened_store(tmp_path / "given", "", "", default)
+    assert other.read_bytes() == b""
 
 
 def test_a_study_that_has_begun_does_not_change(judging, tmp_path):

@@ -20,8 +20,9 @@ from web.people import Server
 from web.test_annotate import STEPS, TEXT, accept, described, ids, reviewer, scene, submitted, waiting
 
 from hearth.schemas.diagnostics import HearthError
+from hearth.web.annotate import collected_files
 from hearth.web.annotate.annotate_tables import TEXTS
-from hearth.web.annotate.draft import Draft, read_blocks
+from hearth.web.annotate.draft import Draft, read_blocks, stored
 from hearth.web.limits import Rate
 from hearth.web.messages import Inbox
 from hearth.web.store import Store, default_url
@@ -181,3 +182,24 @@ def test_two_servers_share_a_postgres(postgres, tmp_path, knowledge):
     assert (third.out / "programs.csv").read_bytes() == (second.out / "programs.csv").read_bytes()
     assert person.post("/mine/delete").status_code == 303
     assert second.store.rows(sql.select(TEXTS)) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "", "[]", "null", '{"rooms": [], "props": {}, "steps": []}', '{"rooms": {"x": 1e9}, "props": {}, "steps": []}',
+        '{"rooms": {}, "props": {}, "steps": [{}]}',
+        '{"rooms": {}, "props": {}, "steps": [{"action": "Lie", "things": [["bed"]]}]}',
+    ],
+)  # fmt: skip
+def test_a_program_that_somebody_changed_in_the_store_is_refused(text):
+    with pytest.raises(HearthError, match="a program of the store is not one"):
+        stored(text)
+    draft = Draft({"bedroom": 1}, {"bed": 1})
+    assert stored(draft.dumped()) == draft
+
+
+@pytest.mark.parametrize(("kind", "value"), [("film", "[]"), ("sketch", "x"), ("completeness", "{}")])
+def test_a_mark_that_somebody_changed_in_the_store_is_refused(kind, value):
+    with pytest.raises(HearthError, match="has another value than those of"):
+        collected_files._marked({"id": "m", "kind": kind, "value": value})

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import orjson
@@ -16,6 +16,8 @@ from filelock import FileLock
 
 from hearth.analysis.ratings import COLUMNS, HELP
 from hearth.analysis.spreadsheet_cells import sheet_of
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.storage.files import write_bytes
 from hearth.web.annotate import annotated_programs
 from hearth.web.annotate.annotate_tables import MARKS
@@ -79,8 +81,28 @@ def _program(row: Row) -> tuple[str, ...]:
 
 
 def _film(mark: Row) -> tuple[str, ...]:
-    value = orjson.loads(mark["value"])
-    return f"film:{mark['id']}", value["title"], value["description"], value["program"]
+    value = _marked(mark)
+    return f"film:{mark['id']}", *(str(value.get(name, "")) for name in ("title", "description", "program"))
+
+
+_KINDS: Mapping[str, type] = {"sketch": list, "completeness": int, "film": dict}
+"""What the value of a mark is, by its kind."""
+
+
+def _marked(mark: Row) -> Any:
+    """The value of a mark.
+
+    Raises:
+        HearthError: DAMAGED_FILE: it is none, as in a store that somebody has changed.
+    """
+    try:
+        value = orjson.loads(mark["value"])
+    except orjson.JSONDecodeError:
+        value = None
+    if not isinstance(value, _KINDS[mark["kind"]]):
+        message = f"the mark {str(mark['id'])[:40]} of the store has another value than those of `{mark['kind']}`"
+        raise HearthError.of(Code.DAMAGED_FILE, message)
+    return value
 
 
 def _marks(store: Store) -> list[Row]:
@@ -95,12 +117,12 @@ def _sketches(accepted: Sequence[Row], marks: Iterable[Row]) -> bytes:
     answers: list[list[int]] = []
     inputs: list[dict[str, Any]] = []
     for subject in sorted(first.keys() & programs.keys()):
-        row, kept = programs[subject], orjson.loads(first[subject]["value"])
+        row, kept = programs[subject], _marked(first[subject])
         lines = stored(row["draft"]).lines()
         if len(kept) == len(lines) and any(kept):
             answers.append([int(flag) for flag in kept])
             steps = [line for line, flag in zip(lines, kept, strict=True) if flag]
-            about = {"title": row["title"], "descr": row["description"]}
+            about = {"title": str(row["title"]), "descr": str(row["description"])}
             inputs.append({**about, "prog": steps, "prefix": f"crowd:{subject}"})
     return orjson.dumps({"answer": answers, "represent": [1] * len(answers), "input": inputs}) if answers else b""
 
@@ -114,5 +136,5 @@ def ratings_sheet(store: Store) -> str:
             row = programs[mark["subject"]]
             steps = "\n".join(stored(row["draft"]).lines())
             about = (f"crowd:{row['id']}", row["title"], row["description"], steps)
-            rows.append((*about, mark["session"], str(orjson.loads(mark["value"]))))
+            rows.append((*about, mark["session"], str(_marked(mark))))
     return sheet_of(rows)

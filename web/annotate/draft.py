@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import orjson
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import print_object, print_step
@@ -94,15 +95,33 @@ class Draft:
 
 
 def stored(text: str) -> Draft:
-    """A draft as it was stored."""
-    value = orjson.loads(text)
-    return Draft(value["rooms"], value["props"], tuple(map(_stored_block, value["steps"])))
+    """A draft as it was stored.
+
+    Raises:
+        HearthError: DAMAGED_FILE: it is none, as in a store that somebody has changed.
+    """
+    try:
+        value = orjson.loads(text)
+        return Draft(_counts(value["rooms"]), _counts(value["props"]), tuple(map(_stored_block, value["steps"])))
+    except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, AttributeError) as error:
+        message = f"a program of the store is not one: {type(error).__name__} {str(error)[:80]}"
+        raise HearthError.of(Code.DAMAGED_FILE, message) from error
+
+
+def _counts(given: dict[str, Any]) -> dict[str, int]:
+    if not all(isinstance(count, int) and 0 <= count <= MOST_PIECES for count in given.values()):
+        raise ValueError(f"numbers of things {str(given)[:40]}")
+    return given
 
 
 def _stored_block(step: dict[str, Any]) -> Block:
     if "special" in step:
-        return Block(SPECIAL, (), step["special"])
-    return Block(step["action"], tuple(ObjectRef(*ref) if ref else None for ref in step["things"]))
+        return Block(SPECIAL, (), str(step["special"]))
+    return Block(str(step["action"]), tuple(_stored_thing(*ref) if ref else None for ref in step["things"]))
+
+
+def _stored_thing(name: str, instance: int) -> ObjectRef:
+    return ObjectRef(str(name), int(instance))
 
 
 def read_quantity(text: str, place: str) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import secrets
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import orjson
 import sqlalchemy as sql
@@ -15,17 +16,20 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.names import inside
 from hearth.studies.conduct import Conduct
+from hearth.studies.event_checks import check_events
 from hearth.studies.events import PLACES, Event, salted
 from hearth.studies.study import Study
 from hearth.studies.study_file import study_of
 from hearth.studies.study_folder import Collected
 from hearth.web import play  # noqa: F401 - its tables are those of trials' games
 from hearth.web.sessions import forget as forget_session
-from hearth.web.store import Store, default_url, embedded
+from hearth.web.store import Store, default_url, embedded, usable
 from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, STUDIES
 
 FOLDER = "studies"
 """In the server's folder, the folders of studies: their films, and the episodes of the human-like agent."""
+
+UNREADABLE = "the store is not as `serve` keeps it"
 
 
 class StoreLedger:
@@ -46,13 +50,13 @@ class StoreLedger:
             return self._places()
         query = sql.select(HAPPENED).where(HAPPENED.c.study == self.study, HAPPENED.c.session == stream)
         rows = self.store.read(lambda connection: connection.execute(query.order_by(HAPPENED.c.number)).all())
-        return [Event(stream, row.number, row.kind, row.at, orjson.loads(row.data)) for row in rows]
+        return [_event(stream, row.number, row.kind, row.at, row.data) for row in rows]
 
     def _places(self) -> list[Event]:
         query = sql.select(PLACES_TAKEN).where(PLACES_TAKEN.c.study == self.study).order_by(PLACES_TAKEN.c.number)
         rows = self.store.read(lambda connection: connection.execute(query).all())
         return [
-            Event(PLACES, row.number, "joined", row.at, {"person": row.session or "", "place": row.place})
+            _event(PLACES, row.number, "joined", row.at, {"person": row.session or "", "place": row.place})
             for row in rows
         ]
 
@@ -74,12 +78,26 @@ class StoreLedger:
 
     def forget(self, stream: str) -> None:
         """Delete a person's session with all that belongs to it, in every room."""
-        forget_session(self.store, stream)
+        with usable("", UNREADABLE):
+            forget_session(self.store, stream)
 
     def secret(self, name: str) -> str:
         """Derived from the study's salt."""
         query = sql.select(STUDIES.c.salt).where(STUDIES.c.name == self.study)
         return salted(str(self.store.read(lambda connection: connection.execute(query).scalar_one())), name)
+
+
+def _event(stream: str, number: Any, kind: Any, at: Any, data: Any) -> Event:
+    """An event of a row, whose cells SQLite lets be of any kind.
+
+    Raises:
+        HearthError: BAD_JSON: it is not one.
+    """
+    try:
+        given = data if isinstance(data, dict) else orjson.loads(data)
+        return Event(stream, int(number), str(kind), float(at), given)
+    except (orjson.JSONDecodeError, TypeError, ValueError, OverflowError) as error:
+        raise HearthError.of(Code.BAD_JSON, f"event {str(number)[:20]} of `{stream[:20]}` is not one") from error
 
 
 def conducted(store: Store, study: Study, known: Callable[[], Knowledge]) -> Conduct:
@@ -110,9 +128,11 @@ def names_in(source: Path, url: str = "") -> list[str]:
     """
     store = _store(source, url)
     query = sql.select(STUDIES.c.name).order_by(STUDIES.c.name)
-    found = store.read(lambda connection: list(connection.execute(query).scalars()))
-    store.close()
-    return found
+    try:
+        with usable(str(source), UNREADABLE):
+            return store.read(lambda connection: list(map(str, connection.execute(query).scalars())))
+    finally:
+        store.close()
 
 
 def opened_store(source: Path, url: str, name: str, known: Callable[[], Knowledge]) -> Collected:
@@ -125,25 +145,36 @@ def opened_store(source: Path, url: str, name: str, known: Callable[[], Knowledg
         known: gives the knowledge.
 
     Raises:
-        HearthError: MISSING_FILE; UNKNOWN_ID: there is no such study, or several, and none was named.
+        HearthError: MISSING_FILE; UNKNOWN_ID: there is no such study, or several, and none was named; BAD_JSON: what
+            happened is not of the study.
     """
     names = names_in(source, url)
     if (name or len(names) != 1) and name not in names:
         message = f"there is no study `{name[:60]}`" if name else f"there are {len(names)} studies"
         raise HearthError.of(Code.UNKNOWN_ID, message, file=str(source), suggestion=f"--study {' or '.join(names)}")
     store = _store(source, url)
-    return collected_in(store, name or names[0], source, known)
+    with usable(str(source), UNREADABLE):
+        found = collected_in(store, name or names[0], source, known)
+        check_events(found.study, found.conduct.slots, found.ledger, str(source))
+    return found
 
 
 def collected_in(store: Store, name: str, out: Path, known: Callable[[], Knowledge]) -> Collected:
-    """A study of a store, with the folder of its films."""
+    """A study of a store, with the folder of its films.
+
+    Raises:
+        HearthError: BAD_JSON: the store has another study by that name; every fault of the study.
+    """
     query = sql.select(STUDIES.c.text).where(STUDIES.c.name == name)
-    text = str(store.read(lambda connection: connection.execute(query).scalar_one()))
-    return Collected(conducted(store, study_of(text, f"{name}.yaml"), known), False, inside(out, f"{FOLDER}/{name}"))
+    study = study_of(str(store.read(lambda connection: connection.execute(query).scalar())), f"{name}.yaml")
+    if study.name != name:
+        raise HearthError.of(Code.BAD_JSON, f"the store has `{study.name}` as the study `{name[:60]}`", file=str(out))
+    folder = inside(out, f"{FOLDER}/{name}")
+    return Collected(conducted(store, study, known), False, folder)
 
 
 def _store(source: Path, url: str) -> Store:
-    if not url and not embedded(source).is_file():
+    if not url and not inside(source, embedded(Path()).as_posix()).is_file():
         message = "there are neither events of a simulation nor a server's store"
         raise HearthError.of(Code.MISSING_FILE, message, file=str(source), suggestion="name the folder, or --store URL")
     return Store(url or default_url(source))

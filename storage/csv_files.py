@@ -1,0 +1,59 @@
+"""Tables that somebody wrote with a spreadsheet or a program: CSV whose first line names the columns."""
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from hearth.schemas.decoding import decode
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.input_files import LARGEST, read_input
+
+
+class CsvTable:
+    """A table of a file.
+
+    Args:
+        path: the file.
+        columns: those that it must have; `name*` is a column that begins so, as one with an explanation.
+        largest: bytes of the file, at most.
+
+    Raises:
+        HearthError: as of `read_input`; NOT_TEXT; BAD_TABLE: a column is missing.
+    """
+
+    def __init__(self, path: Path, columns: Sequence[str], largest: int = LARGEST) -> None:
+        text = decode(read_input(path, largest), str(path))
+        if isinstance(text, Diagnostic):
+            raise HearthError(text)
+        delimiter = max(",;\t", key=text.partition("\n")[0].count)
+        self._path = path
+        self._rows = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, restval="")
+        try:
+            names = self._rows.fieldnames or []
+        except csv.Error as error:
+            raise self._fault(f"not CSV: {error}", 1) from error
+        self._columns = {each: _column(each, names) for each in columns}
+        if missing := [f"`{each.removesuffix('*')}`" for each, name in self._columns.items() if name is None]:
+            raise self._fault(f"the table lacks the column {', '.join(missing)}", 1)
+
+    def rows(self) -> Iterator[tuple[int, tuple[str, ...]]]:
+        """The line in which each row ends, and its cells in the order of `columns`; a row at a time is in memory.
+
+        Raises:
+            HearthError: BAD_TABLE with the line: a quote that is not closed, or a cell that is too long.
+        """
+        try:
+            for row in self._rows:
+                yield self._rows.line_num, tuple(row[name] or "" for name in self._columns.values() if name is not None)
+        except csv.Error as error:
+            raise self._fault(f"not CSV: {error}", self._rows.reader.line_num) from error
+
+    def _fault(self, message: str, line: int) -> HearthError:
+        return HearthError(Diagnostic(Code.BAD_TABLE, message, str(self._path), line))
+
+
+def _column(wanted: str, names: Sequence[str]) -> str | None:
+    begins = wanted.removesuffix("*")
+    return next((name for name in names if name == wanted or (begins != wanted and name.startswith(begins))), None)
