@@ -142,9 +142,7 @@ def printed(item: dict[str, Any], data: Path) -> Any:
         (folder / "data_raw").symlink_to(ROOT / "data_raw")
         for command in item["commands"]:
             if not command.startswith("hearth "):
-                raise SystemExit(
-                    f"run `{command}`, and give what it wrote by --printed FILE"
-                )
+                raise SystemExit(f"run `{command}`, and give what it wrote by --printed FILE")
             last = command == item["commands"][-1]
             words = [sys.executable, str(ROOT / "cli.py"), *shlex.split(command)[1:], *(["--json"] if last else [])]
             done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, check=True, env=os.environ)
