@@ -100,7 +100,7 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
         if leaves(name) or not _is_entry(entry):
             message = f"it does not say which file of the folder `{name[:80]!a}` is, and its bytes and SHA-256"
             yield Diagnostic(Code.BAD_JSON, message, str(dataset.folder / NAME), suggestion=AGAIN)
-        elif not path.is_file():
+        elif not _is_file(path):
             yield Diagnostic(Code.MISSING_FILE, "the manifest has it, the folder has not", str(path), suggestion=AGAIN)
         elif path.stat().st_size != entry["bytes"]:
             message = f"{path.stat().st_size:,} bytes where the manifest says {entry['bytes']:,}"
@@ -112,6 +112,13 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
             if path.relative_to(dataset.folder).as_posix() not in files:
                 message = "the folder has it, the manifest has not: queries would read it"
                 yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name that is longer than any
+        return False
 
 
 def _is_entry(entry: object) -> bool:

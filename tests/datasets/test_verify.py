@@ -58,6 +58,7 @@ def said(folder, change):
     [
         (lambda manifest: manifest["files"].update({"../secret.csv": {"bytes": 3, "sha256": "0"}}), "secret.csv"),
         (lambda manifest: manifest["files"].update({"/etc/hosts": {"bytes": 3, "sha256": "0"}}), "hosts"),
+        (lambda manifest: manifest["files"].update({"x" * 999: {"bytes": 3, "sha256": "0"}}), "the folder has not"),
         (lambda manifest: manifest["files"].update({"splits.json": 7}), "splits.json"),
         (lambda manifest: manifest["files"].update({"splits.json": {"bytes": "x", "sha256": []}}), "splits.json"),
         (lambda manifest: manifest["counts"]["rows"].update({"range(999999999999)": 1}), "range"),
