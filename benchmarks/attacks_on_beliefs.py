@@ -64,7 +64,7 @@ def belief_results() -> Iterator[Attack]:
     for actions in ([], [[]], [[None, None]], [[None]], [[None] * 9], [["[Sleep]", "[Sleep]"]], [["x\x1b[2J", None]]):
         changes.append((f"actions {actions!r:.30}", first, _with(second, ("actions",), actions)))
     for goal in (None, {}, {"ON(plate, kitchentable)": 1}, {"x": []}):
-        changes.append((f"told {goal!r:.30}", first, _with(second, ("helper_goal",), goal)))
+        changes.append((f"asked for {goal!r:.30}", first, _with(second, ("helper_goal",), goal)))
     for name, head, episode in changes:
         yield Attack("beliefs", name, lambda ground, h=head, e=episode: _followed(ground, h, e))
 
