@@ -38,7 +38,7 @@ THESIS = {Completeness.COMPLETE: 0.64, Completeness.MINOR: 0.28, Completeness.CR
 """Of 100 programs, by the median of five raters (thesis 3.4.1)."""
 
 MOST_FAULTS = 200
-"""Rows without a rating that are told, at most."""
+"""Rows without a rating that are reported, at most."""
 
 COLUMNS = ("program_id", "title", "description", "program", "rater", "rating")
 HELP = "1 complete: a robot could do it as written; 2 minor steps are missing (a walk); 3 something crucial is missing"

@@ -14,6 +14,7 @@ from attacks_on_challenges import BAD, _filled, _read, _resigned, _signed, _with
 from hearth.challenges import result_files
 from hearth.challenges import task_files as files
 from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 
 
 @cache
@@ -28,7 +29,7 @@ def watched() -> tuple[dict[str, Any], dict[str, Any]]:
     lineup = Lineup("human_like", "nopa", "none")
     header = result_files.Header(suite, lineup, 1, episodes=((suite.tasks[0].id, 0, True),))
     record = played(Job(suite.tasks[0], 0, lineup, True, None, default))
-    record = replace(record, actions=record.actions[:2])
+    record = replace(record, actions=record.actions[:2], end={"code": "TIMED_OUT", "agent": 0})
     first, second = result_files.first_line(header), result_files.line(header, record)
     return json.loads(first), json.loads(second)
 
@@ -55,7 +56,8 @@ def belief_results() -> Iterator[Attack]:
     first, second = watched()
     task = ("suite", "tasks", 0)
     goals: tuple[Any, ...] = ({"ON(plate, kitchentable)": 1}, {"INSIDE(cup, fridge)": 9}, {"ON(plate, stove)": 0}, {})
-    changes: list[tuple[str, dict[str, Any], dict[str, Any]]] = [("as it was", first, second)]
+    yield Attack("beliefs", "as it is", lambda ground: _whole(ground, first, second))
+    changes: list[tuple[str, dict[str, Any], dict[str, Any]]] = []
     for helper in ("none", "human_like", "expected_time", "nopa\x1b[2J", "os:system", "same_goal"):
         changes.append((f"helper {helper!a}", _with(first, ("agents", "helper"), helper), second))
     for place in ("goal", "home", "sets", "seed"):
@@ -64,9 +66,17 @@ def belief_results() -> Iterator[Attack]:
     for actions in ([], [[]], [[None, None]], [[None]], [[None] * 9], [["[Sleep]", "[Sleep]"]], [["x\x1b[2J", None]]):
         changes.append((f"actions {actions!r:.30}", first, _with(second, ("actions",), actions)))
     for goal in (None, {}, {"ON(plate, kitchentable)": 1}, {"x": []}):
-        changes.append((f"told {goal!r:.30}", first, _with(second, ("helper_goal",), goal)))
+        changes.append((f"asked for {goal!r:.30}", first, _with(second, ("helper_goal",), goal)))
     for name, head, episode in changes:
         yield Attack("beliefs", name, lambda ground, h=head, e=episode: _followed(ground, h, e))
+
+
+def _whole(ground: Ground, first: dict[str, Any], second: dict[str, Any]) -> None:
+    """What is changed in the attacks is read where it is not."""
+    try:
+        assert "polyline" in _followed(ground, first, second)[0]
+    except HearthError as error:
+        raise AssertionError(str(error)) from error
 
 
 def _followed(ground: Ground, first: dict[str, Any], second: dict[str, Any]) -> Any:

@@ -206,8 +206,9 @@ def keyed(path: Path) -> Any:
 
 def numbered(path: Path) -> Any:
     """A home by a plan, whose things have the ids of a table."""
-    from hearth.homes.library import IDS, layout_of
+    from hearth.homes.library import IDS, _layout, layout_of
 
+    _layout.cache_clear()
     plan = path.with_name("hut.yaml")
     plan.write_text(
         "home: hut\nheight: 2.5\ncharacter: kitchen\nrooms:\n- {name: kitchen, class: kitchen, at: [0, 0], "

@@ -74,6 +74,17 @@ def opened(folder: Path) -> Any:
     return found
 
 
+def manifested(folder: Path) -> Any:
+    """What is wrong with a manifest, without the queries and replays by which `verify` checks the tables."""
+    from hearth.datasets.dataset import Dataset
+    from hearth.datasets.verify import _counts, _files, _overlays
+    from hearth.datasets.verify_folder import manifest_faults, unknown
+
+    dataset = Dataset.open(folder)
+    found = [*unknown(dataset), *_files(dataset), *_overlays(dataset)]
+    return found or [*_counts(dataset), *manifest_faults(dataset)]
+
+
 def _copy(ground: Ground) -> Path:
     """A copy of the dataset, whose files are links to the same ones: they are replaced, not written to."""
     return Path(shutil.copytree(ground.dataset, ground.folder / "dataset", copy_function=os.link))

@@ -98,14 +98,14 @@ def _manifest() -> bytes:
 
 
 def _manifests(scratch: Path) -> One:
-    """A manifest of a dataset, of which everything is asked."""
-    from attacks_on_datasets import opened
+    """A manifest of a dataset."""
+    from attacks_on_datasets import manifested
 
     folder = _dataset(scratch)
 
     def one(data: bytes) -> Any:
         (folder / "manifest.json").write_bytes(data)
-        return opened(folder)
+        return manifested(folder)
 
     return one
 

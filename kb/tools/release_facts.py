@@ -6,7 +6,6 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.input_files import read_input
 
 Fact = tuple[str, ...]
 """Names; what they mean depends on the table."""
@@ -28,10 +27,10 @@ def read_release(directory: Path) -> dict[str, set[Fact]]:
 
     for file, table, facts in _FILES:
         path = directory / file
-        if not path.exists():
+        if not path.is_file():
             continue
         try:
-            found[table] = set(facts(orjson.loads(read_input(path))))
+            found[table] = set(facts(orjson.loads(path.read_bytes())))
         except (ValueError, TypeError, KeyError, AttributeError) as error:
             message = f"not the release's file: {type(error).__name__} {error}"
             raise HearthError.of(Code.BAD_JSON, message, file=str(path)) from error

@@ -71,7 +71,7 @@ def test_the_commands(tmp_path):
     assert "agree on 100%" in result.stdout
 
 
-def test_of_many_rows_that_are_no_ratings_some_are_told(tmp_path):
+def test_of_many_rows_that_are_no_ratings_some_are_reported(tmp_path):
     (tmp_path / "a.csv").write_text("program_id,rating\n" + "p1,9\n" * 5_000)
     with pytest.raises(HearthError) as caught:
         ratings.read_sheets([tmp_path / "a.csv"])

@@ -104,7 +104,7 @@ NAP = """
 plan: {1: 1}
 join: 0
 first: 0
-told: 1
+described: 1
 tasks:
   nap:
     weight: 1
