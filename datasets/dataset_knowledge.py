@@ -68,7 +68,9 @@ def carried(folder: Path, recorded: Any, what: str, digest_of: Callable[[Path], 
         return None
     try:
         overlay = recorded["overlay"]
-        name, wanted = (str(overlay["path"]), overlay["sha256"]) if overlay else ("", "")
+        name, wanted = (overlay["path"], overlay["sha256"]) if overlay else ("", "")
+        if not isinstance(name, str):
+            raise TypeError(f"a path of {type(name).__name__}")
     except (TypeError, KeyError) as error:
         message = f"the manifest does not say which {what}: {type(error).__name__} {error}"
         raise HearthError.of(Code.BAD_JSON, message, file=str(folder)) from error

@@ -10,6 +10,9 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.input_files import LARGEST, read_input
 
+LONGEST = 131_072
+"""Characters of a cell: the usual limit of `csv`, which readers of corpora raise for the whole process."""
+
 
 class CsvTable:
     """A table of a file.
@@ -46,7 +49,10 @@ class CsvTable:
         """
         try:
             for row in self._rows:
-                yield self._rows.line_num, tuple(row[name] or "" for name in self._columns.values() if name is not None)
+                cells = tuple(row[name] or "" for name in self._columns.values() if name is not None)
+                if any(len(cell) > LONGEST for cell in cells):
+                    raise self._fault(f"a cell has more than {LONGEST:,} characters", self._rows.line_num)
+                yield self._rows.line_num, cells
         except csv.Error as error:
             raise self._fault(f"not CSV: {error}", self._rows.reader.line_num) from error
 
