@@ -251,18 +251,21 @@ if __name__ == "__main__":
 """
 
 
+@pytest.fixture
 def interruptible():
     """Jobs in the background of a shell ignore interrupts, and what they start inherits that."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("after", [0.3, 0.8, 1.5])
 def test_an_interrupt_while_workers_start_prints_no_traceback(tmp_path, after):
     script, ready = tmp_path / "starting.py", tmp_path / "ready"
     script.write_text(STARTING)
     command = [sys.executable, str(script), str(ready), "1.0"]
-    build = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
-                             preexec_fn=interruptible)  # fmt: skip
+    build = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
     while not ready.exists():
         time.sleep(0.02)
     time.sleep(after)
@@ -271,11 +274,11 @@ def test_an_interrupt_while_workers_start_prints_no_traceback(tmp_path, after):
     assert out == "stopped\n" and err == ""
 
 
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, TERMINATED), (signal.SIGINT, STOPPED)])
 def test_a_build_that_is_asked_to_end_says_what_to_do(tmp_path, number, status):
     command = [sys.executable, str(ROOT / "cli.py"), "build", "--out", str(tmp_path / "out"), "--workers", "2"]
-    build = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                             preexec_fn=interruptible)  # fmt: skip
+    build = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     while not list(tmp_path.glob("out/sample/**/*.parquet")) and build.poll() is None:
         time.sleep(0.05)
     build.send_signal(number)
