@@ -19,7 +19,7 @@ from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.syntax import normal_name
 from hearth.storage.rejects import Reject
 

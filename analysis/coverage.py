@@ -28,7 +28,8 @@ from hearth.pipelines.readers import release
 from hearth.pipelines.readers.item import Item
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
-from hearth.schemas.row_types import DifferenceRow, IngestedRow, Row
+from hearth.schemas.row_types import DifferenceRow, Row
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import CASE
 from hearth.storage.rejects import Reject
 

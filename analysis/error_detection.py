@@ -9,7 +9,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.csv_files import CsvTable
 from hearth.storage.rejects import Reject
 

@@ -14,7 +14,7 @@ from hearth.repair.sketch_model import SketchModel, learned_sketch
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.syntax import print_step
 from hearth.simulation.world.home import Home
 from hearth.storage.archives import Place

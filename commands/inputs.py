@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from hearth.schemas.diagnostics import Diagnostic
     from hearth.schemas.goals import Goal
     from hearth.schemas.program import Program
-    from hearth.schemas.row_types import IngestedRow, WrittenGroundingRow
+    from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
     from hearth.simulation.world.home import Home
     from hearth.storage.rejects import Reject
 

@@ -20,7 +20,9 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.literals import RENAMED
 from hearth.schemas.program import Program
-from hearth.schemas.row_types import ConditionRow, ProgramRow, RepairedRow, SketchRow, StoredRunRow
+from hearth.schemas.published_rows import ProgramRow, RepairedRow, StoredRunRow
+from hearth.schemas.row_types import ConditionRow
+from hearth.schemas.stage_rows import SketchRow
 from hearth.schemas.tables import TABLES
 from hearth.storage.files import read_json
 from hearth.storage.manifest import FORMAT, NAME

@@ -28,7 +28,8 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
-from hearth.schemas.row_types import CaseRow, DifferenceRow, PerturbationRow, RepairRow, Row, SketchRow
+from hearth.schemas.row_types import DifferenceRow, PerturbationRow, RepairRow, Row
+from hearth.schemas.stage_rows import CaseRow, SketchRow
 from hearth.schemas.syntax import print_step
 from hearth.schemas.tables import CASE, SKETCHED
 from hearth.simulation.engine import Execution, run

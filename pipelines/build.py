@@ -20,7 +20,7 @@ from hearth.pipelines.render import no_pictures
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
-from hearth.schemas.row_types import RejectedRow
+from hearth.schemas.stage_rows import RejectedRow
 from hearth.storage.fetching import fetched
 from hearth.storage.lock import locked
 from hearth.storage.manifest import Manifest, read_manifest

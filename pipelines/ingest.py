@@ -24,7 +24,7 @@ from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognis
 from hearth.pipelines.readers.scanning_time import SECONDS, ScanningTime
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import INGESTED
 from hearth.storage.archives import DamagedError
 from hearth.storage.files import value_digest

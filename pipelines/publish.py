@@ -20,16 +20,9 @@ from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.split_assignment import Assignment, assignment
 from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import (
-    CaseRow,
-    EnvironmentRow,
-    ExecutionRow,
-    PerturbedRow,
-    ProgramRow,
-    RepairedRow,
-    Row,
-    columns_of,
-)
+from hearth.schemas.published_rows import EnvironmentRow, ExecutionRow, PerturbedRow, ProgramRow, RepairedRow
+from hearth.schemas.row_types import Row, columns_of
+from hearth.schemas.stage_rows import CaseRow
 from hearth.schemas.tables import TABLES
 from hearth.storage.files import value_digest
 from hearth.storage.partitions import read_rows

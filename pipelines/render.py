@@ -20,15 +20,8 @@ from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
-from hearth.schemas.row_types import (
-    CaseRow,
-    ClippedRow,
-    DemonstratedRow,
-    FilmedRow,
-    PinholeRow,
-    RenderedRow,
-    TrackRow,
-)
+from hearth.schemas.row_types import PinholeRow, TrackRow
+from hearth.schemas.stage_rows import CaseRow, ClippedRow, DemonstratedRow, FilmedRow, RenderedRow
 from hearth.schemas.tables import CLIPPED, DEMONSTRATED, FILMED, RENDERED
 from hearth.storage.files import value_digest, write_bytes
 from hearth.storage.manifest import read_manifest

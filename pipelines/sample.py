@@ -21,7 +21,8 @@ from hearth.pipelines.engine.stage import Job, Plan, Stage
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
-from hearth.schemas.row_types import CaseRow, ConditionRow, DifferenceRow, GraphRow, GroundingRow, RunRow, ValidatedRow
+from hearth.schemas.row_types import ConditionRow, DifferenceRow, GraphRow
+from hearth.schemas.stage_rows import CaseRow, GroundingRow, RunRow, ValidatedRow
 from hearth.schemas.tables import CASE
 from hearth.simulation.engine import run
 from hearth.simulation.rules import REPLAY, RULES, Rules

@@ -15,7 +15,7 @@ from hearth.pipelines.readers import plans
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program
-from hearth.schemas.row_types import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
+from hearth.schemas.stage_rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
 from hearth.simulation.rules import REPLAY

@@ -1,4 +1,5 @@
-"""The columns of every table as Arrow schemas, made from the rows that `schemas.row_types` declares.
+"""The columns of every table as Arrow schemas, made from the rows that `schemas.stage_rows` and
+`schemas.published_rows` declare.
 
 A column's comment stands in its field's metadata (`comment`).
 """
@@ -9,7 +10,7 @@ from typing import Any, Final, Union, get_args, get_origin, get_type_hints, is_t
 
 import pyarrow as pa
 
-from hearth.schemas import row_types
+from hearth.schemas import published_rows, stage_rows
 from hearth.schemas.row_types import Arrow
 from hearth.schemas.yaml_extent import packaged
 
@@ -65,40 +66,40 @@ def nested(column: pa.Field, path: str = "") -> Iterator[tuple[str, pa.Field]]:
         yield from nested(field, f"{path}.{field.name}")
 
 
-INGESTED: Final = _schema(row_types.IngestedRow)
-VALIDATED: Final = _schema(row_types.ValidatedRow)
-CASE: Final = _schema(row_types.CaseRow)
-SKETCHED: Final = _schema(row_types.SketchRow)
-RENDERED: Final = _schema(row_types.RenderedRow)
-FILMED: Final = _schema(row_types.FilmedRow)
-CLIPPED: Final = _schema(row_types.ClippedRow)
-DEMONSTRATED: Final = _schema(row_types.DemonstratedRow)
-REJECTED: Final = _schema(row_types.RejectedRow)
+INGESTED: Final = _schema(stage_rows.IngestedRow)
+VALIDATED: Final = _schema(stage_rows.ValidatedRow)
+CASE: Final = _schema(stage_rows.CaseRow)
+SKETCHED: Final = _schema(stage_rows.SketchRow)
+RENDERED: Final = _schema(stage_rows.RenderedRow)
+FILMED: Final = _schema(stage_rows.FilmedRow)
+CLIPPED: Final = _schema(stage_rows.ClippedRow)
+DEMONSTRATED: Final = _schema(stage_rows.DemonstratedRow)
+REJECTED: Final = _schema(stage_rows.RejectedRow)
 
-_VERSIONS: Final = _schema(row_types.VersionsRow)
+_VERSIONS: Final = _schema(published_rows.VersionsRow)
 
 TABLES: Final[dict[str, pa.Schema]] = {
     table: pa.schema([*schema, *_VERSIONS], metadata=schema.metadata)
     for table, schema in {
-        "activities": _schema(row_types.ActivityRow),
-        "descriptions": _schema(row_types.DescriptionRow, INGESTED),
-        "programs": _schema(row_types.ProgramRow, CASE),
-        "homes": _schema(row_types.HomeRow),
-        "home_nodes": _schema(row_types.HomeNodeRow),
-        "home_edges": _schema(row_types.HomeEdgeRow),
-        "environments": _schema(row_types.EnvironmentRow, CASE),
-        "executions": _schema(row_types.ExecutionRow, CASE),
-        "perturbations": _schema(row_types.PerturbedRow),
-        "repairs": _schema(row_types.RepairedRow),
-        "splits": _schema(row_types.SplitRow),
+        "activities": _schema(published_rows.ActivityRow),
+        "descriptions": _schema(published_rows.DescriptionRow, INGESTED),
+        "programs": _schema(published_rows.ProgramRow, CASE),
+        "homes": _schema(published_rows.HomeRow),
+        "home_nodes": _schema(published_rows.HomeNodeRow),
+        "home_edges": _schema(published_rows.HomeEdgeRow),
+        "environments": _schema(published_rows.EnvironmentRow, CASE),
+        "executions": _schema(published_rows.ExecutionRow, CASE),
+        "perturbations": _schema(published_rows.PerturbedRow),
+        "repairs": _schema(published_rows.RepairedRow),
+        "splits": _schema(published_rows.SplitRow),
         "sketches": SKETCHED,
-        "frames": _schema(row_types.FrameRow),
-        "videos": _schema(row_types.VideoRow),
-        "clips": _schema(row_types.ClipRow),
-        "demonstration_frames": _schema(row_types.DemonstrationFrameRow),
-        "vocabulary": _schema(row_types.NameRow),
-        "rejects": _schema(row_types.RejectRow),
-        "ledger": _schema(row_types.LedgerRow),
+        "frames": _schema(published_rows.FrameRow),
+        "videos": _schema(published_rows.VideoRow),
+        "clips": _schema(published_rows.ClipRow),
+        "demonstration_frames": _schema(published_rows.DemonstrationFrameRow),
+        "vocabulary": _schema(published_rows.NameRow),
+        "rejects": _schema(stage_rows.RejectRow),
+        "ledger": _schema(published_rows.LedgerRow),
     }.items()
 }
 """Published tables by name."""

@@ -8,7 +8,7 @@ from typing import Any
 from hearth.datasets.damage import reading
 from hearth.datasets.dataset import Dataset, Run
 from hearth.datasets.format.ids import names_of
-from hearth.schemas.row_types import ProgramRow
+from hearth.schemas.published_rows import ProgramRow
 
 _BATCH = 128
 

@@ -10,7 +10,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, programs, write
 from hearth.datasets.format.codecs import program_of
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.row_types import ProgramRow
+from hearth.schemas.published_rows import ProgramRow
 
 
 def code(dataset: Dataset, to: Path, wanted: Wanted) -> int:

@@ -11,7 +11,7 @@ from hearth.datasets.format.codecs import program_of
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.phrases import say
 from hearth.schemas.program import Program
-from hearth.schemas.row_types import ProgramRow
+from hearth.schemas.published_rows import ProgramRow
 
 ASKED = "How do you do this at home? Answer with one step a line."
 

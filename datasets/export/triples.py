@@ -7,7 +7,7 @@ from urllib.parse import quote
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, programs
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.row_types import ProgramRow
+from hearth.schemas.published_rows import ProgramRow
 
 PREFIX = "https://hearth.invalid/terms#"
 

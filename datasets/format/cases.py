@@ -19,7 +19,8 @@ from hearth.grounding.environments.sampling import Environment
 from hearth.grounding.environments.thinning import without
 from hearth.schemas.change import Change, State
 from hearth.schemas.graph import Edge
-from hearth.schemas.row_types import CaseRow, DifferenceRow, RunRow
+from hearth.schemas.row_types import DifferenceRow
+from hearth.schemas.stage_rows import CaseRow, RunRow
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
 from hearth.simulation.world.derived import changed

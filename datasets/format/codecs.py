@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.schemas import row_types as forms
+from hearth.schemas import stage_rows
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Failure
@@ -121,9 +122,9 @@ def edges_of(rows: Iterable[forms.EdgeRow]) -> Iterator[Edge]:
     return map(Edge._make, map(_EDGE, rows))
 
 
-def named(row: forms.NamedRow) -> forms.NamedRow:
+def named(row: stage_rows.NamedRow) -> stage_rows.NamedRow:
     """The columns of a row that a program keeps from stage to stage."""
-    return columns_of(forms.NamedRow, row)
+    return columns_of(stage_rows.NamedRow, row)
 
 
 def step_rows(program: Program) -> list[forms.StepRow]:

@@ -15,8 +15,8 @@ from types import MappingProxyType
 from typing import Any
 
 from hearth.datasets.format.near_duplicates import near_sequences, near_texts
+from hearth.schemas.published_rows import SplitRow
 from hearth.schemas.rng import derive
-from hearth.schemas.row_types import SplitRow
 
 NEAR = 0.9
 """Normalised LCS of steps, or similarity of texts, from which two programs are near duplicates."""

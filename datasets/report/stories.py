@@ -12,7 +12,8 @@ from hearth.datasets.format.codecs import change_of, edges_of, program_of
 from hearth.datasets.report.copied_pictures import shown_as
 from hearth.schemas.change import Change, WorkingGraph
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.row_types import ConditionRow, DifferenceRow, FailureRow, ProgramRow, RepairedRow, RepairRow, Row
+from hearth.schemas.published_rows import ProgramRow, RepairedRow
+from hearth.schemas.row_types import ConditionRow, DifferenceRow, FailureRow, RepairRow, Row
 from hearth.schemas.syntax import print_step
 
 DRAWN = frozenset({"ON", "INSIDE", "FACING", "HOLDS_RH", "HOLDS_LH"})

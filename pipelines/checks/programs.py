@@ -14,7 +14,8 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import NAME_OF
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.row_types import BindingRow, ConditionRow, GraphRow, GroundingRow
+from hearth.schemas.row_types import BindingRow, ConditionRow, GraphRow
+from hearth.schemas.stage_rows import GroundingRow
 from hearth.schemas.syntax import print_object, print_step
 
 _MADE = {"ON": "switched on", "OFF": "switched off", "OPEN": "opened", "CLOSED": "closed"}

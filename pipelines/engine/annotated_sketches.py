@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from hearth.datasets.format.codecs import steps_of
 from hearth.repair.sketch import inherited
-from hearth.schemas.row_types import ProgramRow, SketchRow
+from hearth.schemas.published_rows import ProgramRow
+from hearth.schemas.stage_rows import SketchRow
 from hearth.schemas.syntax import print_step
 
 PARENT = "_parent"

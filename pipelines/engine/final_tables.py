@@ -26,7 +26,7 @@ from hearth.pipelines.engine.annotated_sketches import inherited_annotations
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.stage import Job
 from hearth.pipelines.engine.stages import RECORDS, STAGES
-from hearth.schemas import row_types as forms
+from hearth.schemas import published_rows, stage_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row, columns_of
@@ -113,19 +113,19 @@ class _Activities:
     """Activities and descriptions, gathered from the ingested records and the published programs."""
 
     activities: dict[str, _Activity] = field(default_factory=dict)
-    descriptions: dict[str, forms.DescriptionRow] = field(default_factory=dict)
+    descriptions: dict[str, published_rows.DescriptionRow] = field(default_factory=dict)
     described: set[str] = field(default_factory=set)
 
-    def describe(self, row: forms.IngestedRow) -> None:
+    def describe(self, row: stage_rows.IngestedRow) -> None:
         """Add an ingested row; a description's own row replaces a copy that came with a program."""
         name, own = row["description_id"], row["kind"] == "description"
         if name not in self.descriptions or (own and name not in self.described):
             words = {**row, "activity_id": activity_id(row["title"]), "programs": 0}
-            self.descriptions[name] = columns_of(forms.DescriptionRow, words)
+            self.descriptions[name] = columns_of(published_rows.DescriptionRow, words)
         if own:
             self.described.add(name)
 
-    def count(self, program: forms.ProgramRow) -> None:
+    def count(self, program: published_rows.ProgramRow) -> None:
         """Add a published program."""
         activity = self.activities.setdefault(program["activity_id"], _Activity())
         activity.programs += 1
@@ -142,7 +142,7 @@ class _Activities:
             if row["scene"]:
                 activity.scenes.add(row["scene"])
 
-    def activity_rows(self) -> Iterator[forms.ActivityRow]:
+    def activity_rows(self) -> Iterator[published_rows.ActivityRow]:
         for name, activity in sorted(self.activities.items()):
             title = min(activity.titles, key=lambda title: (-activity.titles[title], title))
             yield {
@@ -153,11 +153,14 @@ class _Activities:
                 "programs": activity.programs,
             }
 
-    def description_rows(self) -> Iterator[forms.DescriptionRow]:
+    def description_rows(self) -> Iterator[published_rows.DescriptionRow]:
         yield from (row for _, row in sorted(self.descriptions.items()))
 
 
-_WORDS = [*(name for name in forms.DescriptionRow.__annotations__ if name not in ("activity_id", "programs")), "kind"]
+_WORDS = [
+    *(name for name in published_rows.DescriptionRow.__annotations__ if name not in ("activity_id", "programs")),
+    "kind",
+]
 
 
 def _activities(job: Job) -> _Activities:
@@ -177,7 +180,7 @@ def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
         yield from read_rows(path, columns)
 
 
-def _sketches(job: Job) -> Iterator[forms.SketchRow]:
+def _sketches(job: Job) -> Iterator[stage_rows.SketchRow]:
     """Inferred and inherited sketches, annotated ones, and what augmented programs inherit of these."""
     yield from _rows(job, "augment", "sketches")
     annotations = list(_annotated(job))
@@ -186,7 +189,7 @@ def _sketches(job: Job) -> Iterator[forms.SketchRow]:
     yield from inherited_annotations(_programs(job, ["program_id", "parent_id", "steps"]), of_program)
 
 
-def _annotated(job: Job) -> Iterator[forms.SketchRow]:
+def _annotated(job: Job) -> Iterator[stage_rows.SketchRow]:
     """Annotated sketches of published programs: their description's id names the program."""
     published = {row["program_id"] for row in _programs(job, ["program_id"])}
     for row in _rows(job, "ingest", columns=["kind", "description_id", "keep", "text"]):
@@ -223,7 +226,7 @@ def _used_homes(job: Job) -> list[str]:
     return sorted(names)
 
 
-def _homes(job: Job, homes: Homes) -> Iterator[forms.HomeRow]:
+def _homes(job: Job, homes: Homes) -> Iterator[published_rows.HomeRow]:
     for name in _used_homes(job):
         home = homes.home(name)
         rooms = [node for node in map(home.node, range(len(home))) if home.rooms >> home.index[node.id] & 1]
@@ -237,13 +240,13 @@ def _homes(job: Job, homes: Homes) -> Iterator[forms.HomeRow]:
         }
 
 
-def _home_nodes(job: Job, homes: Homes) -> Iterator[forms.HomeNodeRow]:
+def _home_nodes(job: Job, homes: Homes) -> Iterator[published_rows.HomeNodeRow]:
     for name in _used_homes(job):
         for node in World.start(homes.home(name)).graph().nodes:
             yield {"home": name, **node_row(node)}
 
 
-def _home_edges(job: Job, homes: Homes) -> Iterator[forms.HomeEdgeRow]:
+def _home_edges(job: Job, homes: Homes) -> Iterator[published_rows.HomeEdgeRow]:
     for name in _used_homes(job):
         for edge in sorted(homes.edges(name)):
             yield {"home": name, "source": edge.source, "relation": edge.relation, "target": edge.target}
@@ -261,7 +264,7 @@ def _frames(job: Job, kind: str) -> Iterator[Row]:
             yield row
 
 
-def _splits(job: Job) -> Iterable[forms.SplitRow]:
+def _splits(job: Job) -> Iterable[published_rows.SplitRow]:
     known, seed = job.context.assignment, job.settings.seed
     same = {each.program_id: each.program_id for each in known.programs}
     runs: list[splits.Run] = []
@@ -302,7 +305,7 @@ def _copy_folder(source: Path, folder: Path) -> None:
         sync_folder(folder)
 
 
-def _vocabulary(knowledge: Knowledge) -> Iterator[forms.NameRow]:
+def _vocabulary(knowledge: Knowledge) -> Iterator[published_rows.NameRow]:
     for action in sorted(knowledge.actions.values(), key=lambda action: action.id):
         yield _name("action", action.id, action.name, action.arity, action.executed)
     for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
@@ -314,11 +317,13 @@ def _vocabulary(knowledge: Knowledge) -> Iterator[forms.NameRow]:
         yield _name("failure", code.number, str(code))
 
 
-def _name(kind: str, number: int, name: str, arity: int | None = None, simulated: bool | None = None) -> forms.NameRow:
+def _name(
+    kind: str, number: int, name: str, arity: int | None = None, simulated: bool | None = None
+) -> published_rows.NameRow:
     return {"kind": kind, "id": number, "name": name, "arity": arity, "simulated": simulated}
 
 
-def _rejects(job: Job) -> Iterator[forms.RejectRow]:
+def _rejects(job: Job) -> Iterator[stage_rows.RejectRow]:
     for stage in STAGES:
         folder = job.folder if stage == job.stage.name else job.settings.folder(stage)
         for row in read_rows(folder / "rejects.parquet"):
@@ -326,7 +331,7 @@ def _rejects(job: Job) -> Iterator[forms.RejectRow]:
             yield row
 
 
-def _ledger(job: Job, counts: Counts) -> Iterator[forms.LedgerRow]:
+def _ledger(job: Job, counts: Counts) -> Iterator[published_rows.LedgerRow]:
     for order, stage in enumerate(STAGES):
         stage_counts = counts if stage == job.stage.name else _manifest(job, stage).counts
         codes = sorted(stage_counts.codes.items(), key=lambda item: (-item[1], item[0]))

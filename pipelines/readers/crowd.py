@@ -17,7 +17,8 @@ from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_faul
 from hearth.pipelines.readers.item import Item, record, refused
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import IngestedRow, QuantityRow
+from hearth.schemas.row_types import QuantityRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.syntax import normal_name
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject

@@ -12,7 +12,8 @@ from typing import Any, BinaryIO
 from hearth.schemas.decoding import LOOKED_AT, encoding_of, western
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import ConditionRow, IngestedRow, PartRow, QuantityRow, WrittenGroundingRow
+from hearth.schemas.row_types import ConditionRow, QuantityRow
+from hearth.schemas.stage_rows import IngestedRow, PartRow, WrittenGroundingRow
 from hearth.storage.archives import Place, raw
 from hearth.storage.rejects import Reject
 

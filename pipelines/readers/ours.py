@@ -22,7 +22,8 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.row_types import IngestedRow, QuantityRow, WrittenGroundingRow
+from hearth.schemas.row_types import QuantityRow
+from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.syntax import normal_name, print_lines
 from hearth.storage.archives import Place
 from hearth.storage.names import leaves

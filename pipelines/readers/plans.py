@@ -7,7 +7,7 @@ from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 

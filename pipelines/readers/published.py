@@ -14,7 +14,7 @@ from hearth.datasets.format.splits import RULES
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.syntax import print_lines
 from hearth.storage.archives import DamagedError
 from hearth.storage.files import read_json

@@ -19,7 +19,8 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EdgeColumns, read_node
 from hearth.schemas.numbers import stored
-from hearth.schemas.row_types import ChangeRow, ConditionRow, GraphRow, IngestedRow, WrittenGroundingRow
+from hearth.schemas.row_types import ChangeRow, ConditionRow, GraphRow
+from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
 from hearth.storage.archives import archive, members, refusal_of
 from hearth.storage.files import file_digest, walk
 from hearth.storage.names import leaves

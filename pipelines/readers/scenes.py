@@ -9,7 +9,8 @@ from hearth.pipelines.readers.item import Item, home_of, record, refused
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
-from hearth.schemas.row_types import IngestedRow, NodeRow, WrittenGroundingRow
+from hearth.schemas.row_types import NodeRow
+from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.world.home import Home
 from hearth.storage.archives import Place

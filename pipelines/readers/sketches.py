@@ -12,7 +12,7 @@ from hearth.pipelines.readers.crowd import WRITTEN
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, record, refused
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 

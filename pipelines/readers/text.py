@@ -8,7 +8,7 @@ from hearth.pipelines.readers.text_blocks import LONGEST_PROGRAM, Block, blocks
 from hearth.schemas.decoding import western
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import IngestedRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.syntax import MAX_LINE
 from hearth.storage.archives import Place, size_of
 from hearth.storage.rejects import Reject

@@ -20,8 +20,10 @@ from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers.recognise import recognise
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.published_rows import ProgramRow
 from hearth.schemas.rng import rng
-from hearth.schemas.row_types import IngestedRow, ProgramRow, Row, StepRow
+from hearth.schemas.row_types import Row, StepRow
+from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.rejects import Reject
 
 _PROGRAM = "Watch TV\nFrom the sofa.\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[Special] <yawn>\n"

@@ -6,7 +6,7 @@ from types import UnionType
 import pyarrow as pa
 import pytest
 
-from hearth.schemas import row_types, tables
+from hearth.schemas import stage_rows, tables
 from hearth.schemas.row_types import Arrow, Long
 
 SCHEMAS = {
@@ -46,13 +46,13 @@ def fits(value, hint):
 @pytest.mark.parametrize(
     ("row", "schema"),
     [
-        (row_types.IngestedRow, tables.INGESTED),
-        (row_types.ValidatedRow, tables.VALIDATED),
-        (row_types.CaseRow, tables.CASE),
-        (row_types.SketchRow, tables.SKETCHED),
-        (row_types.RenderedRow, tables.RENDERED),
-        (row_types.FilmedRow, tables.FILMED),
-        (row_types.RejectedRow, tables.REJECTED),
+        (stage_rows.IngestedRow, tables.INGESTED),
+        (stage_rows.ValidatedRow, tables.VALIDATED),
+        (stage_rows.CaseRow, tables.CASE),
+        (stage_rows.SketchRow, tables.SKETCHED),
+        (stage_rows.RenderedRow, tables.RENDERED),
+        (stage_rows.FilmedRow, tables.FILMED),
+        (stage_rows.RejectedRow, tables.REJECTED),
     ],
     ids=lambda each: getattr(each, "__name__", ""),
 )
