@@ -29,3 +29,11 @@ def unreadable(error: Exception, place: Path | str) -> HearthError:
     message = f"its tables cannot be read: {type(error).__name__} {said}"
     remedy = "`verify` names the files that are damaged; fetch or publish the dataset again"
     return HearthError.of(Code.DAMAGED_FILE, message, file=str(place), suggestion=remedy)
+
+
+def refused_question(error: Exception, folder: Path) -> HearthError:
+    """What is said of a question that DuckDB did not answer: it, or a table of the folder, is at fault."""
+    message = str(error).split("\n\n", 1)[0]
+    if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
+        return unreadable(error, folder)
+    return HearthError.of(Code.SYNTAX, message)

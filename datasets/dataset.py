@@ -6,17 +6,17 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from hearth.datasets.damage import reading, unreadable
+from hearth.datasets.damage import reading, refused_question
 from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
 from hearth.datasets.format.ids import names_of
+from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
+from hearth.datasets.stored_homes import StoredHome
 from hearth.schemas.change import WorkingGraph, in_states
-from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.explained import explained
-from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.literals import RENAMED
 from hearth.schemas.program import Program
@@ -25,7 +25,7 @@ from hearth.schemas.row_types import ConditionRow
 from hearth.schemas.stage_rows import SketchRow
 from hearth.schemas.tables import TABLES
 from hearth.storage.files import read_json
-from hearth.storage.manifest import FORMAT, NAME
+from hearth.storage.manifest import NAME
 
 if TYPE_CHECKING:
     import networkx
@@ -79,17 +79,7 @@ class Dataset:
         folder = fetched(path)
         if not (folder / NAME).exists() and (present(folder / "publish") / NAME).exists():
             folder = present(folder / "publish")
-        opened, content = version(folder), read_json(folder / NAME)
-        if not isinstance(content, dict) or content.get("stage") != "publish":
-            suggestion = "name the folder that `build` gave with --out, or the dataset inside it"
-            raise HearthError.of(Code.MISSING_FILE, "no dataset here", file=str(path), suggestion=suggestion)
-        if not _names_its_form(content):
-            message = "its manifest does not name a format, a version and its files"
-            remedy = "fetch or publish the dataset again"
-            raise HearthError.of(Code.BAD_JSON, message, file=str(folder / NAME), suggestion=remedy)
-        if content["format"] > FORMAT:
-            message = f"a dataset of format {content['format']}; this version of Hearth reads {FORMAT}"
-            raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion="install a newer Hearth")
+        opened, content = version(folder), published_manifest(folder, str(path))
         dataset = cls(folder, content, failures)
         dataset._version = opened
         return dataset
@@ -157,7 +147,7 @@ class Dataset:
                 _ = self._described
             return self.connection.sql(query, params=parameters or None)
         except duckdb.Error as error:
-            raise _refused(error, self.folder) from error
+            raise refused_question(error, self.folder) from error
 
     @explained
     def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
@@ -170,7 +160,7 @@ class Dataset:
                 found = relation if limit is None or self._explains(query) else relation.limit(limit)
                 return list(relation.columns), without_zones(found).fetchall()
             except duckdb.Error as error:
-                raise _refused(error, self.folder) from error
+                raise refused_question(error, self.folder) from error
 
         return steady(self.folder, ask)
 
@@ -230,8 +220,8 @@ class Dataset:
         return self._homes(name).graph
 
     @cached_property
-    def _homes(self) -> Callable[[str], _Home]:
-        return cache(partial(_Home.read, self))
+    def _homes(self) -> Callable[[str], StoredHome]:
+        return cache(partial(StoredHome.read, self._rows))
 
     @explained
     def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
@@ -404,36 +394,3 @@ class Run:
         change = environment_change(self.row["environment"])
         added = tuple(in_states(node, node.states) for node in change.added_nodes)
         return self.dataset._homes(self.home).working.copy().apply(replace(change, added_nodes=added))
-
-
-class _Home(NamedTuple):
-    """A published home, and its working graph with sorted states, from which runs start."""
-
-    graph: EnvironmentGraph
-    working: WorkingGraph
-
-    @classmethod
-    def read(cls, dataset: Dataset, name: str) -> _Home:
-        from hearth.datasets.format.codecs import edges_of, node_of
-
-        nodes = tuple(map(node_of, dataset._rows("SELECT * FROM home_nodes WHERE home = $id ORDER BY id", name)))
-        if not nodes:
-            raise KeyError(name)
-        edges = sorted(set(edges_of(dataset._rows("SELECT * FROM home_edges WHERE home = $id", name))))
-        working = WorkingGraph((in_states(node, node.states) for node in nodes), edges)
-        return cls(EnvironmentGraph(nodes, tuple(edges)), working)
-
-
-def _refused(error: Exception, folder: Path) -> HearthError:
-    message = str(error).split("\n\n", 1)[0]
-    if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
-        return unreadable(error, folder)
-    return HearthError.of(Code.SYNTAX, message)
-
-
-def _names_its_form(manifest: dict[str, Any]) -> bool:
-    """Whether a manifest has what every reader of a dataset asks it for."""
-    form = manifest.get("format")
-    texts = [manifest.get(name) for name in ("version", "action_set")]
-    numbered = isinstance(form, int) and not isinstance(form, bool) and form > 0
-    return numbered and all(isinstance(text, str) for text in texts) and isinstance(manifest.get("files"), dict)

@@ -1,7 +1,7 @@
 """How rows are declared, and what stands within them: graphs, changes, steps, failures.
 
-`stage_rows` has what the stages pass on, `published_rows` what is published. Nested types are used where a thing belongs
-to its row. Each column has its meaning beside its type, for dataset cards.
+`stage_rows` has what the stages pass on, `published_rows` what is published. Nested types are used where a thing
+belongs to its row. Each column has its meaning beside its type, for dataset cards.
 Node ids are those of the environment's graph; steps and ticks count from 0. In a file any column may be null; `| None`
 marks those that are. `schemas.tables` makes Arrow schemas of these declarations, column by column.
 """

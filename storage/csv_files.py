@@ -13,6 +13,13 @@ from hearth.storage.input_files import LARGEST, read_input
 LONGEST = 131_072
 """Characters of a cell: the usual limit of `csv`, which readers of corpora raise for the whole process."""
 
+DELIMITERS = ",;\t|"
+
+
+def delimiter_of(line: str) -> str:
+    """What separates the cells of a table, by its first line: the most frequent of `DELIMITERS`."""
+    return max(DELIMITERS, key=line.count)
+
 
 class CsvTable:
     """A table of a file.
@@ -30,9 +37,10 @@ class CsvTable:
         text = decode(read_input(path, largest), str(path))
         if isinstance(text, Diagnostic):
             raise HearthError(text)
-        delimiter = max(",;\t", key=text.partition("\n")[0].count)
         self._path = path
-        self._rows = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, restval="")
+        self._rows = csv.DictReader(
+            io.StringIO(text, newline=""), delimiter=delimiter_of(text.partition("\n")[0]), restval=""
+        )
         try:
             names = self._rows.fieldnames or []
         except csv.Error as error:

@@ -176,8 +176,8 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
     from hearth.schemas.tables import TABLES
 
     parts = {table: [*(folder / table).glob("*.parquet")] for table in TABLES}
-    for path in (path for paths in parts.values() for path in paths if not path.is_file()):
-        raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(path), suggestion="move it elsewhere")
+    if pipe := next((path for paths in parts.values() for path in paths if not path.is_file()), None):
+        raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(pipe), suggestion="move it elsewhere")
     missing = [table for table, paths in parts.items() if not paths]
     published = {name.partition("/")[0] for name in content["files"]}
     lost = [f"`{table}`" for table in missing if table in published]

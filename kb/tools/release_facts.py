@@ -22,9 +22,9 @@ def read_release(directory: Path) -> dict[str, set[Fact]]:
     Raises:
         HearthError: a file is not JSON or not of its form.
     """
-    found = {}
     import orjson
 
+    found = {}
     for file, table, facts in _FILES:
         path = directory / file
         if not path.is_file():

@@ -12,6 +12,7 @@ from hearth.pipelines.readers.item import LARGEST_FILE, fault_of, lines
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
+from hearth.storage.csv_files import delimiter_of
 
 LONGEST_RECORD = 2_000
 """Lines of one row at most: a longer one has a quote that is never closed, and reading continues after its line."""
@@ -20,7 +21,6 @@ LONGEST_ANSWER = 2_000_000
 """Characters of one row at most, likewise."""
 
 _LOOK_AHEAD = 200
-_DELIMITERS = ",;\t|"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Layout:
 
 def layout_of(line: str, delimiter: str = "") -> Layout:
     """Read a first line; the most frequent delimiter is that of the table unless given."""
-    delimiter = delimiter or max(_DELIMITERS, key=line.count)
+    delimiter = delimiter or delimiter_of(line)
     return Layout(tuple(cell.strip() for cell in next(csv.reader([line], delimiter=delimiter), [])), delimiter)
 
 

@@ -21,7 +21,8 @@ OVER_LEGS = 0.32
 """Height in metres of a blanket that covers somebody's legs."""
 
 COVER, SPREAD = (0.84, 0.8), 0.8
-"""Width of a spread blanket and its least depth, and the depth from which one is spread, metres."""
+"""Width of a spread blanket and its least depth, and the depth from which one is spread, metres.
+The recipe `folded` drapes what is as wide or as deep."""
 
 OPENED = 0.34
 """Depth in metres of a blanket that is folded back to the foot of the bed."""

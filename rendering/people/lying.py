@@ -32,10 +32,10 @@ RAISED = 0.06
 """Metres by which feet are raised over the edge of a bed."""
 
 
-def lying_down(edge_: Actor, lying: Actor, bed: Remade) -> list[Segment]:
+def lying_down(sits: Actor, lying: Actor, bed: Remade) -> list[Segment]:
     """From sitting on the edge of a bed, or on a couch, to lying there."""
     up = sitting_up(lying)
-    found = [_swung(edge_, up)]
+    found = [_swung(sits, up)]
     over = bed.over
     if over is None:
         return [*found, changed(up, lying, LAY)]
@@ -67,19 +67,19 @@ def sitting_up(lying: Actor) -> Actor:
     return replace(lying, spot=(x, z), body_pose=BodyPose("sitting", seat, feet=feet))
 
 
-def _swung(edge_: Actor, up: Actor) -> Segment:
+def _swung(sits: Actor, up: Actor) -> Segment:
     """The legs are raised onto the bed while the body turns along it."""
     ends = feet_of(up.body_pose, up.body.proportions)
-    starts = feet_of(edge_.body_pose, edge_.body.proportions)
+    starts = feet_of(sits.body_pose, sits.body.proportions)
 
     def at(share: float) -> Actor:
         if share <= 0 or share >= 1:
-            return up if share >= 1 else edge_
+            return up if share >= 1 else sits
         raised, turned = eased(share / 0.5), eased((share - 0.15) / 0.85)
         feet = [_between(a, b, raised, turned) for a, b in zip(starts, ends, strict=True)]
         pose = replace(up.body_pose, feet=(feet[0], feet[1]))
-        yaw = edge_.yaw + angle(edge_.yaw, up.yaw) * turned
-        return replace(up, spot=between(edge_.spot, up.spot, turned), yaw=yaw, body_pose=pose)
+        yaw = sits.yaw + angle(sits.yaw, up.yaw) * turned
+        return replace(up, spot=between(sits.spot, up.spot, turned), yaw=yaw, body_pose=pose)
 
     return Segment(SWING, at)
 

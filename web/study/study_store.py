@@ -145,8 +145,8 @@ def opened_store(source: Path, url: str, name: str, known: Callable[[], Knowledg
         known: gives the knowledge.
 
     Raises:
-        HearthError: MISSING_FILE; UNKNOWN_ID: there is no such study, or several, and none was named; BAD_JSON: what
-            happened is not of the study.
+        HearthError: MISSING_FILE; UNKNOWN_ID: it has no study of that name, or several where `name` is empty;
+            BAD_JSON: an event does not belong to the study.
     """
     names = names_in(source, url)
     if (name or len(names) != 1) and name not in names:
