@@ -127,7 +127,7 @@ class Bars(Progress):
         self._done += records
         self._rejects += rejects
         rate = self._done / max(time.monotonic() - self._began, 1e-3)
-        self._rich.update(self._task, completed=self._done, rate=f"{rate:,.0f}", rejects=self._rejects)
+        self._rich.update(self._task, completed=self._done, rate=_shown(rate), rejects=self._rejects)
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
         """Replace the bar by a line."""
@@ -144,7 +144,7 @@ def line(stage: str, counts: Counts, seconds: float, fresh: bool) -> str:
     rate = counts.records_in / max(seconds, 1e-3)
     return (
         f"{stage:>8}  {counts.records_in:,} in, {counts.through:,} through, {counts.rejected:,} rejected, "
-        f"{counts.rows.total():,} rows in {seconds:.1f} s ({rate:,.0f}/s)"
+        f"{counts.rows.total():,} rows in {seconds:.1f} s ({_shown(rate)}/s)"
     )
 
 
@@ -152,3 +152,8 @@ def for_terminal(stream: TextIO | None = None) -> Progress:
     """Bars on a terminal, lines elsewhere."""
     stream = stream or sys.stderr
     return Bars() if stream.isatty() else Lines(stream)
+
+
+def _shown(rate: float) -> str:
+    """A rate as people read it: films take minutes each."""
+    return f"{rate:,.0f}" if rate >= 10 else f"{rate:.2g}"
