@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import accumulate
+from itertools import accumulate, groupby
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
-from hearth.analysis.synthesis_wording import HELD_OUT, TYPO, Speaker, Wording, load_words, mistyped, paraphrase
+from hearth.analysis.synthesis_wording import (
+    HELD_OUT,
+    TYPO,
+    Speaker,
+    Wording,
+    load_words,
+    mistyped,
+    paraphrase,
+    slots_of,
+)
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -96,11 +105,19 @@ class Grammar:
     words: Wording
 
 
+class ChosenPart(NamedTuple):
+    """A part of a task that was drawn, and objects by slot: all of the task, or those that a clause names."""
+
+    task: str
+    part: Part
+    chosen: Mapping[str, str]
+
+
 @dataclass(frozen=True, slots=True)
 class Synthetic:
     """A synthetic program: title, steps as (action, objects), distinct descriptions, and its tasks.
 
-    `held_out` says of each description whether it uses the paraphrases that are held out.
+    `held_out` says of each description whether it uses the paraphrases that are held out, `told` what it tells.
     """
 
     title: str
@@ -108,6 +125,7 @@ class Synthetic:
     descriptions: tuple[str, ...]
     tasks: tuple[str, ...] = ()
     held_out: tuple[bool, ...] = ()
+    told: tuple[tuple[ChosenPart, ...], ...] = ()
 
     def lines(self) -> list[str]:
         """The steps as text."""
@@ -200,13 +218,6 @@ def _faults(task: Task, known: Knowledge, words: Wording, file: str) -> Iterator
                         yield Diagnostic(Code.NOT_AFFORDED, message, file, found=name)
 
 
-class ChosenPart(NamedTuple):
-    """A drawn part, and the objects of its task by slot."""
-
-    part: Part
-    chosen: dict[str, str]
-
-
 def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -> Iterator[Synthetic]:
     """Distinct programs, the same for the same seed; a larger count begins with a smaller one's.
 
@@ -247,37 +258,45 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
     for name in names:
         task = grammar.tasks[name]
         chosen = {slot: weighted.draw(chance) for slot, weighted in task.slots.items()}
-        parts += [ChosenPart(part, chosen) for part in task.parts if part.chance >= 1 or chance.random() < part.chance]
+        drawn = (part for part in task.parts if part.chance >= 1 or chance.random() < part.chance)
+        parts += [ChosenPart(name, part, chosen) for part in drawn]
     steps = _steps(parts, grammar.known)
     if not steps:
         return None
     aims = [aim for name in names for aim in grammar.tasks[name].aims]
-    ways: dict[str, bool] = {}
+    ways: dict[str, tuple[bool, tuple[ChosenPart, ...]]] = {}
     for _ in range(descriptions):
         held_out = chance.random() < 1 / HELD_OUT
-        ways.setdefault(_describe(parts, aims, grammar, held_out, chance), held_out)
+        text, told = _describe(parts, aims, grammar, held_out, chance)
+        ways.setdefault(text, (held_out, told))
     title = chance.choice(grammar.tasks[names[0]].titles)
-    return Synthetic(title, tuple(steps), tuple(ways), tuple(names), tuple(ways.values()))
+    out, told_of = zip(*ways.values(), strict=True) if ways else ((), ())
+    return Synthetic(title, tuple(steps), tuple(ways), tuple(names), out, told_of)
+
+
+def joined(parts: Iterable[ChosenPart], known: Knowledge) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The steps of some parts with their objects, and standing up before one walks away."""
+    seated = False
+    for _, part, chosen in parts:
+        for action, slots in part.steps:
+            if seated and action in known.group("goes"):
+                yield "StandUp", ()
+                seated = False
+            yield action, tuple(chosen.get(slot, slot) for slot in slots)
+            seated = action == "Sit" or (seated and action != "StandUp")
 
 
 def _steps(parts: Sequence[ChosenPart], known: Knowledge) -> list[tuple[str, tuple[str, ...]]]:
-    """The steps of the parts with their objects; empty if they contradict each other or hands are full."""
-    steps: list[tuple[str, tuple[str, ...]]] = []
+    """The steps of the parts, none twice in a row; empty if they contradict each other or hands are full."""
     made: dict[tuple[str, str], str] = {}
     held: set[str] = set()
     seated = False
-    for part, chosen in parts:
-        for action, slots in part.steps:
-            names = tuple(chosen.get(slot, slot) for slot in slots)
-            if seated and action in known.group("goes"):
-                steps.append(("StandUp", ()))
-                seated = False
-            if not _possible(action, names, made, held, known) or (action == "StandUp" and not seated):
-                return []
-            seated = action == "Sit" or (seated and action != "StandUp")
-            if not steps or steps[-1] != (action, names):
-                steps.append((action, names))
-    return steps
+    steps = list(joined(parts, known))
+    for action, names in steps:
+        if not _possible(action, names, made, held, known) or (action == "StandUp" and not seated):
+            return []
+        seated = action == "Sit" or (seated and action != "StandUp")
+    return [step for step, _ in groupby(steps)]
 
 
 def _possible(
@@ -311,16 +330,17 @@ def _possible(
 
 def _describe(
     parts: Sequence[ChosenPart], aims: Sequence[str], grammar: Grammar, held_out: bool, chance: Random
-) -> str:
-    """A description of the parts; commonsense ones may be omitted (thesis 3.3)."""
+) -> tuple[str, tuple[ChosenPart, ...]]:
+    """A description of the parts, and those that it tells; commonsense ones may be omitted (thesis 3.3)."""
     speaker = Speaker(grammar.words, chance.random() < grammar.first, chance)
     said = [each for each in parts if chance.random() < each.part.described] or list(parts[:1])
-    clauses = [
-        speaker.clause(paraphrase(part.say, held_out, chance), chosen, next(iter(part.steps[-1][1]), ""))
-        for part, chosen in said
-    ]
+    clauses, told = [], []
+    for task, part, chosen in said:
+        template, subject = paraphrase(part.say, held_out, chance), next(iter(part.steps[-1][1]), "")
+        clauses.append(speaker.clause(template, chosen, subject))
+        told.append(ChosenPart(task, part, {slot: chosen[slot] for slot in slots_of(template, subject, chosen)}))
     text = " ".join(speaker.sentences(clauses, aims or grammar.words.aims, grammar.join))
-    return mistyped(text, chance) if chance.random() < TYPO else text
+    return mistyped(text, chance) if chance.random() < TYPO else text, tuple(told)
 
 
 def record(found: Synthetic, number: int, seed: int, splits: Mapping[str, str | None]) -> dict[str, Any]:

@@ -140,6 +140,15 @@ def _of_kind(say: tuple[str, ...], held_out: bool) -> tuple[str, ...]:
     return tuple(each for each in say if is_held_out(each) == held_out)
 
 
+def slots_of(template: str, subject: str, objects: Collection[str]) -> set[str]:
+    """The slots of objects that a clause names: see `Speaker.clause`."""
+    return {*_SLOT.findall(_with_subject(template, subject, objects))}
+
+
+def _with_subject(template: str, subject: str, objects: Collection[str]) -> str:
+    return _FIRST_IT.sub(rf"\1the {{{subject}}}", template, count=1) if subject in objects else template
+
+
 class Speaker:
     """Somebody who describes a program: remembers the last thing named, and speaks in one person."""
 
@@ -156,8 +165,7 @@ class Speaker:
             objects: by slot.
             subject: the slot that an `it` before any slot stands for, since a clause about it may have been left out.
         """
-        if subject in objects:
-            template = _FIRST_IT.sub(rf"\1the {{{subject}}}", template, count=1)
+        template = _with_subject(template, subject, objects)
         text = self.words.reworded(template, self.chance)
         found = _THE_SLOT.sub(lambda match: self._named(objects[match[2]], bool(match[1])), text)
         self.last = next((objects[slot] for slot in _SLOT.findall(template)), self.last)

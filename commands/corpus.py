@@ -60,7 +60,8 @@ def synthesize(
 
     Programs have one to three tasks of the grammar. Each says in which part it is of splits that hold out paraphrases,
     tasks, pairs of tasks, or objects: a build publishes them among its splits. With --splits a table has the parts of
-    all descriptions; --json then has their sizes. With --described: the programs, drawn once, whose descriptions were
+    all descriptions; --json then has their sizes. It also has the mean LCS of an ideal reader, who understands all that
+    is told and knows how likely the rest is. With --described: the programs, drawn once, whose descriptions were
     written one by one.
 
     \b
@@ -74,7 +75,7 @@ def synthesize(
     import orjson
 
     from hearth.analysis import described as written
-    from hearth.analysis import synthesis
+    from hearth.analysis import ideal_reader, synthesis
     from hearth.analysis import synthesis_splits as numbers
     from hearth.storage.files import replacing
 
@@ -91,6 +92,8 @@ def synthesize(
         if splits:
             numbers.write(rows, seed, splits)
         figures, parts = numbers.figures(drawn, rows if splits else ()), numbers.of_first(rows)
+        if as_json:
+            figures["ideal_reader"] = ideal_reader.figures(drawn, rows, weights)
         records = (synthesis.record(one, number, seed, parts[number]) for number, one in enumerate(drawn, 1))
     lines = (orjson.dumps(record) + b"\n" for record in records)
     if out is None:
