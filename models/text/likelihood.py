@@ -15,6 +15,9 @@ from hearth.models.training import Task
 AT_ONCE = 64
 """Texts or films that are read at once in prediction."""
 
+TOGETHER = 20
+"""Batches whose examples are put in the order of their lengths."""
+
 Asked = TypeVar("Asked")
 """What a program is written for: a text, or what is seen in a film."""
 
@@ -38,13 +41,27 @@ def likelihood(
     """
 
     def batches(random: Random) -> Iterator[tuple[InputBatch, StepBatch]]:
-        order = random.sample(range(len(data)), len(data))
-        for start in range(0, len(order), batch):
-            rows = [data[place] for place in order[start : start + batch]]
+        for places in alike([len(steps) for _, steps in data], batch, random):
+            rows = [data[place] for place in places]
             inputs = read([asked for asked, _ in rows], random)
             yield inputs, step_batch([steps for _, steps in rows], writer.device, longest)
 
     return Task(writer, batches, lambda each: writer.loss(*each), validate, identity)
+
+
+def alike(lengths: Sequence[int], batch: int, random: Random) -> list[list[int]]:
+    """Places of examples in batches of about the same length, in random order.
+
+    Twenty batches' examples, drawn at random, are put in the order of their lengths before they are parted: a batch
+    takes as many steps as its longest program.
+    """
+    order = random.sample(range(len(lengths)), len(lengths))
+    found = []
+    for start in range(0, len(order), batch * TOGETHER):
+        some = sorted(order[start : start + batch * TOGETHER], key=lambda place: lengths[place])
+        found += [some[first : first + batch] for first in range(0, len(some), batch)]
+    random.shuffle(found)
+    return found
 
 
 def written(

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import torch
 from torch import nn
-from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
 
 from hearth.models.text.text_batches import InputBatch
 
@@ -45,6 +44,37 @@ def word_embedding(vectors: torch.Tensor) -> nn.Embedding:
     return nn.Embedding.from_pretrained(vectors.clone(), freeze=False, padding_idx=0)
 
 
+def both_ways(lstm: nn.LSTM, inputs: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
+    """What a bidirectional LSTM of one layer makes of sequences that end before the padding; 0 past their ends.
+
+    The same as of packed sequences, in a third of the time: each direction is one call, the second on sequences that
+    were turned round within their lengths.
+
+    Args:
+        lstm: with `batch_first`.
+        inputs: (B, L, W).
+        lengths: (B,) on the same device.
+
+    Returns:
+        (B, L, H), first the forward states.
+    """
+    place = torch.arange(inputs.shape[1], device=inputs.device).expand(len(inputs), -1)  # (B, L)
+    real = place < lengths[:, None]
+    turned = torch.where(real, lengths[:, None] - 1 - place, place)[..., None]
+    weights, of_turned = lstm.all_weights
+    forward = _one_way(inputs, weights)
+    backward = _one_way(inputs.take_along_dim(turned, 1), of_turned).take_along_dim(turned, 1)
+    states = torch.cat((forward, backward), -1)
+    return states * real[..., None]
+
+
+def _one_way(inputs: torch.Tensor, weights: list[torch.Tensor]) -> torch.Tensor:
+    """(B, L, H / 2) the states of one direction, from the first place on."""
+    begin = inputs.new_zeros(1, len(inputs), weights[1].shape[1])
+    states: torch.Tensor = torch.lstm(inputs, (begin, begin), weights, True, 1, 0.0, False, False, True)[0]
+    return states
+
+
 class Seq2SeqBody(nn.Module):
     """The encoder, and the decoder without its head; `features` is the size of what it gives to the head."""
 
@@ -62,11 +92,9 @@ class Seq2SeqBody(nn.Module):
         self.features = 2 * hidden
 
     def encode(self, batch: InputBatch) -> Memory:
-        """Read texts. Packing keeps the padding out: a text's code depends on no other text."""
+        """Read texts: a text's code depends on no other text."""
         words = self.dropout(self.words(batch.inputs))  # (B, L, W)
-        packed = pack_padded_sequence(words, batch.lengths, batch_first=True, enforce_sorted=False)
-        states, _ = pad_packed_sequence(self.encoder(packed)[0], batch_first=True)  # (B, L, H)
-        states = self.dropout(states)
+        states = self.dropout(both_ways(self.encoder, words, batch.lengths.to(words.device)))  # (B, L, H)
         return Memory(states, self.of_encoder(states), batch.mask, batch.mentioned)
 
     def start(self, memory: Memory) -> State:
