@@ -24,7 +24,6 @@ from hearth.schemas.published_rows import ProgramRow, RepairedRow, StoredRunRow
 from hearth.schemas.row_types import ConditionRow
 from hearth.schemas.stage_rows import SketchRow
 from hearth.schemas.tables import TABLES
-from hearth.storage.files import read_json
 from hearth.storage.manifest import NAME
 
 if TYPE_CHECKING:
@@ -105,7 +104,8 @@ class Dataset:
         After a build has replaced the dataset, a new connection to the current one is made.
 
         Raises:
-            HearthError: MISSING_FILE, if a table is missing; DAMAGED_FILE, if one cannot be read.
+            HearthError: MISSING_FILE, if a table is missing; DAMAGED_FILE, if one cannot be read; errors of
+                `published_manifest`, if what replaced the dataset is none.
         """
         now = version(self.folder)
         if now is not None and now != self._version:
@@ -123,7 +123,7 @@ class Dataset:
 
     def _reopen(self, now: tuple[int, int]) -> None:
         """Read the dataset that replaced the opened one."""
-        self.manifest, self._version = read_json(self.folder / NAME) or self.manifest, now
+        self.manifest, self._version = published_manifest(self.folder, str(self.folder)), now
         for name in ("_attached", "_described", "_homes", "knowledge", "vocabulary_ids"):
             self.__dict__.pop(name, None)
 

@@ -120,8 +120,15 @@ def embedded(out: Path) -> Path:
 
 
 def private(out: Path) -> Path:
-    """The folder within a server's own for its own files; `build` reads no hidden folder."""
+    """The folder within a server's own for its own files; `build` reads no hidden folder.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is a link, which would lead the server's files elsewhere.
+    """
     folder = out / ".server"
+    if folder.is_symlink():
+        remedy = "remove the link, or name another folder with --out"
+        raise HearthError.of(Code.BAD_ARGUMENT, "`.server` is a link", file=str(folder), suggestion=remedy)
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     return folder
 

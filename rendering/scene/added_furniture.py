@@ -11,7 +11,7 @@ import numpy as np
 
 from hearth.homes.plans import raster
 from hearth.rendering.scene.floor_cells import CELL, cells_of, eroded, is_in_the_way
-from hearth.rendering.scene.places import Location, Places, Pose, locations_of
+from hearth.rendering.scene.places import BUILDING, Location, Places, Pose, locations_of
 from hearth.rendering.scene.routes import NARROW, Cells
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.rendering.scene.swept import Floors
@@ -45,7 +45,7 @@ def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places
         if number in places.poses or location is None or not _stands(node, location, nodes, places):
             continue
         holder = location.holder
-        if nodes[holder].class_name == "wall" and holder in locations:
+        if nodes[holder].class_name in BUILDING and holder in locations:
             holder = locations[holder].holder
         room = nodes.get(holder)
         room = room if room is not None and room.category == ROOM_CATEGORY else None
@@ -58,11 +58,12 @@ def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places
 
 
 def _stands(node: Node, location: Location, nodes: Mapping[int, Node], places: Places) -> bool:
-    """Whether a node is furniture on the floor of a room, or at one of its walls."""
+    """Whether a node is furniture in a room: on its floor, said or not, or at one of its walls."""
     movable = "GRABBABLE" in node.properties or node.category in (CHARACTER_CATEGORY, ROOM_CATEGORY, "BodyParts")
     holder = nodes.get(location.holder)
-    at_wall = location.kind == "on" and holder is not None and holder.class_name == "wall"
-    stands = location.kind == "room" or (at_wall and min(places.size_of(node)) > DEEP)
+    support = holder.class_name if location.kind == "on" and holder is not None else ""
+    at_wall = support == "wall" and min(places.size_of(node)) > DEEP
+    stands = location.kind == "room" or support == "floor" or at_wall
     return stands and not movable and node.box is None
 
 

@@ -255,6 +255,21 @@ def test_a_wrong_query_says_why(ds):
         ds.rows("SELECT title::INT FROM programs")
 
 
+@pytest.mark.parametrize(
+    ("manifest", "message"),
+    [("[1]", "no dataset here"), ('{"stage": "publish"}', "does not name"), (None, "install a newer")],
+)
+def test_what_replaces_an_open_dataset_is_looked_at_as_well(made, tmp_path, manifest, message):
+    folder = shutil.copytree(made.out / "publish", tmp_path / "copy")
+    dataset = Dataset.open(folder)
+    assert dataset.rows("SELECT 1")[1] == [(1,)]
+    newer = (folder / "manifest.json").read_text().replace('"format": 2', '"format": 99')
+    (folder / "other.json").write_text(manifest or newer)
+    (folder / "other.json").replace(folder / "manifest.json")
+    with pytest.raises(HearthError, match=message):
+        dataset.rows("SELECT 1")
+
+
 def test_no_dataset_and_a_newer_one(made, tmp_path):
     with pytest.raises(HearthError, match="no dataset here"):
         hearth.load(tmp_path)

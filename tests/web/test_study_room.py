@@ -23,7 +23,7 @@ from hearth.studies.simulated_people import simulated_person
 from hearth.studies.study_file import study_of
 from hearth.studies.study_trials import tasks_of
 from hearth.web.play.game_tables import GAMES
-from hearth.web.store import embedded
+from hearth.web.store import default_url, embedded
 from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, TRIAL_GAMES
 from hearth.web.study.study_store import StoreLedger, conducted, opened_store
 from hearth.web.web_tables import SESSIONS
@@ -297,6 +297,15 @@ def test_a_store_that_is_a_link_to_another_file_is_not_written_to(tmp_path):
     with pytest.raises(HearthError, match="DAMAGED_FILE"):
         opened_store(tmp_path / "given", "", "", default)
     assert other.read_bytes() == b""
+
+
+def test_a_folder_whose_own_folder_is_a_link_is_refused(tmp_path):
+    (tmp_path / "other").mkdir()
+    (tmp_path / "given").mkdir()
+    (tmp_path / "given/.server").symlink_to(tmp_path / "other")
+    with pytest.raises(HearthError, match="is a link"):
+        default_url(tmp_path / "given")
+    assert not list((tmp_path / "other").iterdir())
 
 
 def test_a_study_that_has_begun_does_not_change(judging, tmp_path):
