@@ -50,6 +50,9 @@ EPOCHS: Mapping[str, int] = MappingProxyType(dict.fromkeys(CLASSIFIERS, 16))
 
 USUAL_RATE, USUAL_EPOCHS = 1e-3, 30
 
+MANY = ("dropout=0.2", "batch=64")
+"""Settings of the first phase with drawn programs: of many texts less has to be left out, and more fit in a batch."""
+
 
 class Needed(NamedTuple):
     """A model that a table needs."""
@@ -70,6 +73,12 @@ class Needed(NamedTuple):
     def before(self) -> Needed | None:
         """The model that its training goes on from."""
         return self._replace(name=STARTS[self.name], changed="") if self.name in STARTS else None
+
+    def settings(self, out: Path) -> list[str]:
+        """Those that are not the usual ones, as `model train --set` takes them."""
+        many = MANY if self.data == "drawn" and self.name in LSTM else ()
+        start = [f"start={self.before.folder(out)}"] if self.before else []
+        return [*start, *many, *([self.changed] if self.changed else [])]
 
     @property
     def chain(self) -> list[Needed]:
@@ -176,11 +185,9 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
             rmtree(folder / STATE, ignore_errors=True)  # of a training that was stopped at its very end
             return False
         rmtree(folder)  # of a dataset that was built anew since
-    before = needed.before
-    changed = [*([f"start={before.folder(out)}"] if before else []), *([needed.changed] if needed.changed else [])]
     rate, epochs = RATES.get(needed.name, USUAL_RATE), EPOCHS.get(needed.name, USUAL_EPOCHS)
     how = {"epochs": epochs, "minutes": minutes, "rate": rate, "seed": needed.seed}
-    fit(needed.name, dataset, folder, needed.split, changed, how=how, seen=seen)
+    fit(needed.name, dataset, folder, needed.split, needed.settings(out), how=how, seen=seen)
     return True
 
 

@@ -34,6 +34,16 @@ def test_a_model_is_trained_once_and_after_the_one_that_it_goes_on_from():
     assert {each.split for each in needed if each.data == "drawn"} == {"pairs", "paraphrases"}
 
 
+def test_models_of_drawn_programs_leave_out_less_and_others_go_on_from_them(tmp_path):
+    settings = {(each.data, each.name): each.settings(tmp_path) for each in training(chosen(["4.4-pairs", "4.5"]), 1)}
+    assert settings["drawn", "mle"] == settings["drawn", "mle-composed"] == ["dropout=0.2", "batch=64"]
+    assert settings["people", "mle"] == settings["people", "transformer"] == []
+    start = training(chosen(["4.4-pairs"]), 1)[1].folder(tmp_path)
+    assert start.name == "drawn.pairs.mle.0"
+    (given,) = settings["drawn", "pg-lcs"]
+    assert given == f"start={start.with_name('drawn.pairs.mle-composed.0')}"
+
+
 def test_tables_are_chosen_by_number_or_name():
     assert [plan.name for plan in chosen(["4.4"])] == ["4.4-pairs", "4.4-paraphrases"]
     assert [plan.name for plan in chosen(["4.4-pairs", "5.2"])] == ["4.4-pairs", "5.2"]
