@@ -52,7 +52,7 @@ def changed(one: Actor, other: Actor, seconds: float) -> Segment:
         former = Between(one.body_pose, offset, turn, eased(share))
         return replace(other, body_pose=replace(other.body_pose, between=former))
 
-    return Segment(max(seconds, _seconds(one, other)), at)
+    return Segment(max(seconds, least_seconds(one, other)), at)
 
 
 def blended(one: Actor, other: Actor, seconds: float) -> Segment:
@@ -61,10 +61,10 @@ def blended(one: Actor, other: Actor, seconds: float) -> Segment:
     def at(share: float) -> Actor:
         return other if share >= 1 else blend(one, other, eased(share))
 
-    return Segment(max(seconds, _seconds(one, other)), at)
+    return Segment(max(seconds, least_seconds(one, other)), at)
 
 
-def _seconds(one: Actor, other: Actor) -> float:
+def least_seconds(one: Actor, other: Actor) -> float:
     """The least time of an eased motion between two poses."""
     a, b = one.figure().joints(), other.figure().joints()
     least = 0.0

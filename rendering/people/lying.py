@@ -5,18 +5,19 @@ Getting up is the same backwards.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import pi, sin
 
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.bedding import Remade, drawn, edge, glided
-from hearth.rendering.people.blends import Segment, blended, changed
+from hearth.rendering.people.blends import Segment, blended, changed, effort_between, least_seconds
 from hearth.rendering.people.body_pose import BodyPose, Foot, Hand
 from hearth.rendering.people.gait import angle, between, eased
 from hearth.rendering.people.skeleton import feet_of
 from hearth.schemas.graph import Point
 
-SWING, LAY, COVERING, MAKING, REACH, BACK = 1.8, 1.8, 1.4, 1.6, 0.6, 0.4
+RELAX, SWING, LAY, COVERING, MAKING, REACH, BACK = 0.3, 1.8, 1.8, 1.4, 1.6, 0.6, 0.4
 """Seconds, at least."""
 
 STRETCHED = 0.997
@@ -35,13 +36,14 @@ RAISED = 0.06
 def lying_down(sits: Actor, lying: Actor, bed: Remade) -> list[Segment]:
     """From sitting on the edge of a bed, or on a couch, to lying there."""
     up = sitting_up(lying)
-    found = [_swung(sits, up)]
+    ready = _ready(sits, up)
+    found = [blended(sits, ready, RELAX), _swung(ready, up)]
     over = bed.over
     if over is None:
         return [*found, changed(up, lying, LAY)]
-    start, end = (_holding(up, edge(drawn(over, share))) for share in (0.0, 1.0))
-    covered = Segment(COVERING, lambda share: _holding(up, edge(drawn(over, eased(share)))), "cover")
-    return [*found, blended(up, start, REACH), covered, changed(end, lying, LAY)]
+    covering = _moving(up, lambda share: edge(drawn(over, share)))
+    covered = Segment(COVERING, lambda share: covering(eased(share)), "cover")
+    return [*found, blended(up, covering(0.0), REACH), covered, changed(covering(1.0), lying, LAY)]
 
 
 def made_ready(stands: Actor, bed: Remade) -> list[Segment]:
@@ -50,12 +52,13 @@ def made_ready(stands: Actor, bed: Remade) -> list[Segment]:
         return []
     ways = bed.moved.get(bed.cover) or next(iter(bed.moved.values()))
 
-    def at(share: float) -> Actor:
+    def top(share: float) -> Point:
         box = glided(*ways, share).box
-        return _holding(stands, (box.center[0], box.center[1] + box.size[1] / 2, box.center[2]))
+        return box.center[0], box.center[1] + box.size[1] / 2, box.center[2]
 
-    making = Segment(MAKING, lambda share: at(eased(share)), "make")
-    return [blended(stands, at(0.0), REACH), making, blended(at(1.0), stands, BACK)]
+    making = _moving(stands, top)
+    made = Segment(MAKING, lambda share: making(eased(share)), "make")
+    return [blended(stands, making(0.0), REACH), made, blended(making(1.0), stands, BACK)]
 
 
 def sitting_up(lying: Actor) -> Actor:
@@ -65,6 +68,12 @@ def sitting_up(lying: Actor) -> Actor:
     ahead = (body.thigh + body.shin) * STRETCHED
     feet = Foot(body.hip, ahead, seat + HEEL, 8.0, -75.0), Foot(-body.hip, ahead, seat + HEEL, -8.0, -75.0)
     return replace(lying, spot=(x, z), body_pose=BodyPose("sitting", seat, feet=feet))
+
+
+def _ready(sits: Actor, up: Actor) -> Actor:
+    """Who sits on an edge or in a seat, arms and back as they will be when the legs are up."""
+    pose = replace(up.body_pose, seat=sits.body_pose.seat, feet=feet_of(sits.body_pose, sits.body.proportions))
+    return replace(sits, body_pose=pose)
 
 
 def _swung(sits: Actor, up: Actor) -> Segment:
@@ -77,11 +86,12 @@ def _swung(sits: Actor, up: Actor) -> Segment:
             return up if share >= 1 else sits
         raised, turned = eased(share / 0.5), eased((share - 0.15) / 0.85)
         feet = [_between(a, b, raised, turned) for a, b in zip(starts, ends, strict=True)]
-        pose = replace(up.body_pose, feet=(feet[0], feet[1]))
+        seat = sits.body_pose.seat + (up.body_pose.seat - sits.body_pose.seat) * turned
+        pose = replace(up.body_pose, seat=seat, feet=(feet[0], feet[1]))
         yaw = sits.yaw + angle(sits.yaw, up.yaw) * turned
         return replace(up, spot=between(sits.spot, up.spot, turned), yaw=yaw, body_pose=pose)
 
-    return Segment(SWING, at)
+    return Segment(max(SWING, least_seconds(sits, up)), at)
 
 
 def _between(one: Foot, other: Foot, raised: float, turned: float) -> Foot:
@@ -90,6 +100,20 @@ def _between(one: Foot, other: Foot, raised: float, turned: float) -> Foot:
     x, z, yaw, pitch = (a + (b - a) * turned for a, b in zip(*flat, strict=True))
     lift = one.lift + (other.lift - one.lift) * raised + RAISED * sin(pi * turned)
     return Foot(x, z, lift, yaw, pitch)
+
+
+def _moving(actor: Actor, way: Callable[[float], Point]) -> Callable[[float], Actor]:
+    """The actor at each share of a way along which both hands take something.
+
+    The body stoops evenly: how far it has to for each point alone changes by leaps.
+    """
+    first, last = (_holding(actor, way(share)) for share in (0.0, 1.0))
+
+    def at(share: float) -> Actor:
+        now = _holding(actor, way(share))
+        return replace(now, body_pose=replace(now.body_pose, effort=effort_between(first, last, share)))
+
+    return at
 
 
 def _holding(actor: Actor, at: Point) -> Actor:
