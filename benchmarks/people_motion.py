@@ -53,6 +53,7 @@ SOFT = (
     "pillow",
     "duvet",
     "blanket",
+    "comforter",
     "sheets",
     "towel",
     "carpet",
@@ -141,14 +142,16 @@ def _things(shown: list[Frame], found: Found) -> None:
     seen: set[Thing] = set()
     for frame in shown:
         people = {actor.node.id for actor in frame.actors}
-        new = {thing for thing in frame.scene.things if thing.id not in people} - seen
+        # What flows from a held thing has its id, and comes after it.
+        first = {thing.id: thing for thing in reversed(frame.scene.things) if thing.id not in people}
+        new = {*first.values()} - seen
         seen |= new
         for thing in new:
             at = np.array(thing.position)
             if thing.id in before and np.linalg.norm(at - before[thing.id]) > 2 * JUMP:
                 found.jumps["thing"] += 1
                 found.places[f"jump {thing.class_name}"] += 1
-        before |= {thing.id: np.array(thing.position) for thing in frame.scene.things}
+        before |= {number: np.array(thing.position) for number, thing in first.items()}
         for actor in frame.actors:
             _held(frame, actor, found)
 

@@ -23,6 +23,9 @@ from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 ARM = 0.85
 """Greatest distance in metres at which hands are used without a step nearer."""
 
+LEANING = 1.2
+"""Greatest distance in metres at which who sits uses hands without getting up."""
+
 WEARABLE_TOP = ("shirt", "jacket", "dress", "pajamas")
 
 
@@ -112,10 +115,15 @@ def room_of(graph: EnvironmentGraph, node_id: int) -> int:
 def moved(
     actor: Actor, graph: EnvironmentGraph, places: Places, floor: FreeFloor, step: Step | None, others: list[Spot]
 ) -> Actor:
-    """The character at the position where it performs a step, seated if the step says so; hands in default pose."""
+    """The character at the position where it performs a step, hands in default pose.
+
+    It is seated if the graph says so, and gets up only for what hands cannot reach from there.
+    """
     room = room_of(graph, actor.node.id) or actor.room
     if _states(graph, actor.node.id) & {"SITTING", "LYING"}:
-        return _seated(replace(actor, room=room), graph, places, step)
+        actor = _seated(replace(actor, room=room), graph, places, step)
+        if not _out_of_reach(actor, places, step):
+            return actor
     if actor.place:
         actor = _risen(actor, places, floor, others)
     actor = replace(actor, body_pose=BodyPose(), place=0)
@@ -147,6 +155,13 @@ def elsewhere(
     for spot in floor.spots_for(pose.box, front, room, actor.spot, others, top):
         if _gap(spot, pose.box) < ARM:
             yield replace(actor, spot=spot, yaw=_towards(spot, pose.box.center, actor.yaw), room=room)
+
+
+def _out_of_reach(seated: Actor, places: Places, step: Step | None) -> bool:
+    """Whether a step needs hands at something that is not at a seat."""
+    target = _goal(step)
+    pose, _ = reachable(target, places) if target and gesture_of(step).near else (None, None)
+    return pose is not None and _gap(seated.spot, pose.box) > LEANING
 
 
 def _goal(step: Step | None) -> int:

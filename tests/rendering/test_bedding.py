@@ -1,5 +1,7 @@
 """Bedding makes way for who lies in the bed: a pillow under the head, a blanket over the legs, the rest aside."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,9 @@ from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.models.drape import EMPTY, drape
 from hearth.rendering.models.paint import Paint
-from hearth.rendering.people.bedding import OPENED, SPREAD, drawn, edge, turned_back
+from hearth.rendering.people.bedding import OPENED, SPREAD, Remade, drawn, edge, turned_back
+from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.lying import lying_down
 from hearth.rendering.people.motion import frames
 from hearth.rendering.people.tracks import track
 from hearth.rendering.scene.prepared import local_size
@@ -28,14 +32,14 @@ def rested(name, bed, more=(), last="StandUp"):
     return trajectory.keyframes, place
 
 
-def filmed(name, bed, more=(), last="StandUp"):
+def filmed(name, bed, more=(), last="StandUp", first=()):
     graph = library.load_graph(name, KNOWN)
     home = Home.from_graph(graph, name, KNOWN)
     (place, *_) = [node.id for node in graph.nodes if node.class_name == bed]
     nodes = [Node(2000 + n, each, "Props", ("GRABBABLE", "MOVABLE")) for n, each in enumerate(more)]
     home = extended(home, nodes, [Edge(node.id, "ON", place) for node in nodes])
     seat = ObjectRef(bed, 1, place)
-    steps = (Step("Walk", (seat,)), Step("Lie", (seat,)), Step(last))
+    steps = (Step("Walk", (seat,)), *(Step(action, (seat,)) for action in first), Step("Lie", (seat,)), Step(last))
     execution = attempt(Program("Rest", steps=steps), home, 0, default_state=False, add=False).execution
     assert execution.executable
     return trajectory_of(execution, graph, KNOWN), place
@@ -131,6 +135,28 @@ def test_in_a_film_bedding_is_moved_and_never_jumps(film):
         assert len(way) == len(shown), "it is drawn once in each picture"
         steps = np.abs(np.diff(np.array(way), axis=0)).max(axis=1)
         assert steps.max() < 0.2, bedding[number].class_name
+
+
+@pytest.mark.parametrize(
+    ("name", "bed", "first"), [("birch", "bed", ()), ("larch", "bed", ()), ("birch", "couch", ("Sit",))]
+)
+def test_heads_and_hands_of_who_lies_down_and_gets_up_do_not_jump(name, bed, first):
+    trajectory, _ = filmed(name, bed, first=first)
+    shown = [frame.actors[0] for frame in frames(trajectory, 10.0) if frame.tick > len(first)]
+    for joint in ("head", "palm_r", "palm_l"):
+        way = np.array([actor.world(tuple(actor.figure().joints()[joint])) for actor in shown])
+        assert np.linalg.norm(np.diff(way, 2, axis=0), axis=1).max() < 0.17, joint
+
+
+def test_a_raised_hand_is_lowered_before_the_legs_are_swung_onto_the_bed(maple_bed):
+    keyframes, place = maple_bed
+    lying = keyframes[2].actors[0]
+    edge_of = replace(lying, yaw=lying.yaw + 90.0, body_pose=BodyPose("sitting", 0.5, right=(0.4, 1.2, 0.3)))
+    bed = Remade.between(keyframes[1].places, keyframes[2].places, place)
+    shares = np.linspace(0.0, 1.0, 60)
+    shown = [segment.at(share) for segment in lying_down(edge_of, lying, bed) for share in shares]
+    way = np.array([actor.hand("right") for actor in shown])
+    assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < 0.08
 
 
 def test_hands_draw_the_blanket_over_the_legs_and_back(maple_bed):

@@ -8,9 +8,11 @@ pytest.importorskip("open3d")
 from hearth.kb.loading.load import default
 from hearth.rendering.film.contact import caption, contact_sheet
 from hearth.rendering.film.snapshots import _put_down_at, keyframes, snapshots
+from hearth.rendering.people.acting import moved
 from hearth.rendering.scene.places import Places, locations_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
 from hearth.simulation.world.home import Home
@@ -100,6 +102,20 @@ def test_who_sits_sits_on_the_seat(filmed):
     assert abs(actor.spot[0] - 1.6) < 0.15
     assert abs(actor.spot[1] - 0.3) < 0.2
     assert 0.3 < actor.body_pose.seat < 0.6
+
+
+def test_who_sits_gets_up_for_what_hands_do_not_reach(filmed):
+    keyframe = filmed[6]
+    (actor,), graph = keyframe.actors, keyframe.places.graph
+
+    def doing(action, name, node):
+        step = Step(action, (ObjectRef(name, 1, node),))
+        return moved(actor, graph, keyframe.places, keyframe.floor, step, [])
+
+    far = doing("Touch", "kitchen_counter", SHELF)
+    assert far.body_pose.posture == "standing" and abs(far.spot[0] + 1.8) < 1.2
+    assert doing("Touch", "table", TABLE).body_pose.posture == "sitting"
+    assert doing("LookAt", "kitchen_counter", SHELF).body_pose.posture == "sitting"
 
 
 def test_who_sits_puts_things_down_beside_itself(filmed):
