@@ -9,6 +9,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
+from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.lines import Source
 from hearth.storage.input_files import LARGEST_TABLE, read_input
 
@@ -29,7 +30,7 @@ Named = Callable[[Mapping[str, Any]], Sequence[str]]
 """Gives the ids of a row without `id` by its other columns; empty if it lacks them too."""
 
 
-def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: Named | None = None) -> Iterator[Row]:
+def rows_of(path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None) -> Iterator[Row]:
     """The rows with all of these columns, the first of which is the id; faults of other rows are added to `faults`.
 
     Args:
@@ -54,7 +55,7 @@ def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic], named:
             continue
         name = values[columns[0]]
         if isinstance(name, bool) or not isinstance(name, str | int) or name == "":
-            faults.append(_fault(path, line, f"`{columns[0]}` is {name!r}", "a text or a whole number"))
+            faults.append(_fault(path, line, f"`{columns[0]}` is {repr(name)[:60]}", "a text or a whole number"))
             continue
         yield Row(str(name), values, line)
 
@@ -87,7 +88,7 @@ def _step(item: Any) -> Step | None:
         return None
 
 
-def _json_lines(data: bytes, path: Path, faults: list[Diagnostic]) -> Iterator[tuple[int, dict[str, Any]]]:
+def _json_lines(data: bytes, path: Path, faults: FirstFaults) -> Iterator[tuple[int, dict[str, Any]]]:
     import orjson
 
     text = decode(data, str(path))

@@ -9,11 +9,9 @@ from hearth.datasets.format.ids import names_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_steps
+from hearth.scoring.first_faults import SHOWN, FirstFaults
 from hearth.scoring.lines import Lines, Reader, Source, read, steps_of
 from hearth.scoring.prediction_rows import Named, Row, rows_of, source_of
-
-SHOWN = 20
-"""Faults of one kind that are listed; the rest are counted."""
 
 EXAMPLE = '{"id": "p1", "predicted": "[Walk] <kitchen> (1)", "reference": ["[Walk] <kitchen> (1)"]}'
 
@@ -59,7 +57,7 @@ def read_pairs(
         HearthError: unreadable files, missing columns, rows that are not objects, duplicate and unknown ids; each with
             the file and its line.
     """
-    faults: list[Diagnostic] = []
+    faults = FirstFaults()
     if references is None:
         rows = _rows(path, ("id", "predicted", "reference"), faults)
         pairs = [_pair(row, _program(row, "reference", path, reader, faults), path, reader, faults) for row in rows]
@@ -73,7 +71,7 @@ def read_pairs(
             for name, lines in known.items()
         ]
     if faults:
-        raise HearthError(_shortened(faults))
+        raise HearthError(faults)
     return pairs
 
 
@@ -82,14 +80,14 @@ def _as_known(row: Row, known: Mapping[str, Lines]) -> Row:
     return replace(row, id=next((name for name in names_of(row.id) if name in known), row.id))
 
 
-def _references(references: Path | Mapping[str, Source], reader: Reader, faults: list[Diagnostic]) -> dict[str, Lines]:
+def _references(references: Path | Mapping[str, Source], reader: Reader, faults: FirstFaults) -> dict[str, Lines]:
     if isinstance(references, Path):
         rows = _rows(references, ("id", "reference"), faults)
         return {row.id: _program(row, "reference", references, reader, faults) for row in rows}
     return {name: read(source, reader) for name, source in references.items()}
 
 
-def _rows(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: Named | None = None) -> list[Row]:
+def _rows(path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None) -> list[Row]:
     """The rows of a file with unique ids; faults of the others are added to `faults`."""
     rows: dict[str, Row] = {}
     for row in rows_of(path, columns, faults, named):
@@ -102,13 +100,13 @@ def _rows(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: N
     return list(rows.values())
 
 
-def _pair(row: Row, reference: Lines, path: Path, reader: Reader, faults: list[Diagnostic]) -> Pair:
+def _pair(row: Row, reference: Lines, path: Path, reader: Reader, faults: FirstFaults) -> Pair:
     more = {key: value for key, value in row.values.items() if key not in ("id", "predicted", "reference")}
     predicted = None if row.values["predicted"] is None else _program(row, "predicted", path, reader, faults)
     return Pair(row.id, predicted, reference, row.line, more)
 
 
-def _program(row: Row, column: str, path: Path, reader: Reader, faults: list[Diagnostic]) -> Lines:
+def _program(row: Row, column: str, path: Path, reader: Reader, faults: FirstFaults) -> Lines:
     source = source_of(row.values[column])
     lines = () if source is None else read(source, reader)
     found = type(row.values[column]).__name__ if source is None else "text without a step" if lines else ""
@@ -129,15 +127,3 @@ def _unknown_ids(rows: Iterable[Row], known: Mapping[str, Lines], path: Path) ->
         yield Diagnostic(
             Code.UNKNOWN_ID, f"no reference has the id `{row.id}`", str(path), row.line, suggestion=suggestion
         )
-
-
-def _shortened(faults: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
-    """The first faults of each kind, and the number of further ones."""
-    counts: dict[Code, int] = {}
-    for fault in faults:
-        counts[fault.code] = counts.get(fault.code, 0) + 1
-        if counts[fault.code] <= SHOWN:
-            yield fault
-    for code, count in counts.items():
-        if count > SHOWN:
-            yield Diagnostic(code, f"and {count - SHOWN:,} more of this kind", faults[0].file)

@@ -4,12 +4,13 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
+from hearth.scoring.first_faults import SHOWN, FirstFaults
 from hearth.scoring.lines import read
 from hearth.scoring.prediction_rows import rows_of, source_of
-from hearth.scoring.predictions import SHOWN, Pair, read_pairs
+from hearth.scoring.predictions import Pair, read_pairs
 
 WALK = read(["[Walk] <sofa> (1)"])
 
@@ -153,7 +154,16 @@ def test_a_step_of_a_table_may_be_another_agents():
 def test_a_table_may_name_its_rows_otherwise(tmp_path):
     path = tmp_path / "p.parquet"
     parquet.write_table(pa.table({"program": ["p1"], "predicted": ["x"]}), path)
-    found = rows_of(path, ("id", "predicted"), [], lambda row: [f"{row['program']}@{n}" for n in (1, 2)])
+    found = rows_of(path, ("id", "predicted"), FirstFaults(), lambda row: [f"{row['program']}@{n}" for n in (1, 2)])
     assert sorted(each.id for each in found) == ["p1@1", "p1@2"]
     with pytest.raises(HearthError, match="no column `id`"):
-        list(rows_of(path, ("id", "predicted"), []))
+        list(rows_of(path, ("id", "predicted"), FirstFaults()))
+
+
+def test_of_many_faults_the_first_of_each_kind_are_kept_and_the_others_counted():
+    found = FirstFaults()
+    assert not found
+    found.extend(Diagnostic(Code.BAD_TABLE, str(n), "f", n) for n in range(1_000))
+    found.append(Diagnostic(Code.DUPLICATE, "again", "f", 7))
+    assert found and len(found._kept) == SHOWN + 1
+    assert [fault.message for fault in found][-3:] == ["19", "again", f"and {1_000 - SHOWN} more of this kind"]
