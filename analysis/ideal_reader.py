@@ -1,4 +1,4 @@
-"""How much of drawn programs their descriptions tell: what an ideal reader would make of them.
+"""How much of drawn programs their descriptions say: what an ideal reader would make of them.
 
 Half of a program's parts go unsaid, as in the thesis's corpora (3.3; table 4.1 has 3.4 sentences for 9.6 steps). No
 model can know those but by chance: scores of models are to be read beside those of a reader who understands every
@@ -19,30 +19,31 @@ from hearth.schemas.syntax import parse_program
 from hearth.scoring.metrics.lcs import score_pairs
 
 LIKELY = 0.4
-"""A part that is not told is guessed from this probability on: the best of .2, .3 to .6 in mean LCS."""
+"""A part that is not mentioned is guessed from this probability on: the best of .2, .3 to .6 in mean LCS."""
 
 
-class Told(NamedTuple):
+class Reading(NamedTuple):
     """A program, and which of its descriptions is read."""
 
     program: Synthetic
     description: int
 
 
-def ideal(asked: Told, grammar: Grammar) -> Synthetic:
+def ideal(asked: Reading, grammar: Grammar) -> Synthetic:
     """The program that an ideal reader of a description writes.
 
-    Told parts are understood, and the objects that their clauses name; the title gives the first task. Other parts of
-    these tasks are written if they are likely, with the likeliest objects. Tasks of which nothing is told are left out.
+    Mentioned parts are understood, and the objects that their clauses name; the title gives the first task. Other parts
+    of these tasks are written if they are likely, with the likeliest objects. Tasks that are not mentioned are left
+    out.
     """
     steps = [step for step, _ in groupby(joined(_parts(asked, grammar), grammar.known))]
     return replace(asked.program, steps=tuple(steps))
 
 
-def _parts(asked: Told, grammar: Grammar) -> Iterator[ChosenPart]:
-    told = asked.program.told[asked.description]
+def _parts(asked: Reading, grammar: Grammar) -> Iterator[ChosenPart]:
+    mentioned = asked.program.mentioned[asked.description]
     for name in asked.program.tasks:
-        own = [each for each in told if each.task == name]
+        own = [each for each in mentioned if each.task == name]
         if not own and name != asked.program.tasks[0]:
             continue
         task = grammar.tasks[name]
@@ -65,7 +66,7 @@ def unsaid(part: Part) -> float:
     return silent / (silent + 1 - part.chance) if silent else 0.0
 
 
-def mean_lcs(asked: Sequence[Told], grammar: Grammar) -> float:
+def mean_lcs(asked: Sequence[Reading], grammar: Grammar) -> float:
     """The mean LCS (of steps, actions and objects) of ideal readers' programs with the true ones; 0 for none."""
     pairs = ((_steps(ideal(each, grammar)), _steps(each.program)) for each in asked)
     scores = score_pairs(pairs)
@@ -80,10 +81,10 @@ def figures(programs: Sequence[Synthetic], rows: Sequence[SplitText], grammar: G
         rows: the parts of their descriptions in splits; see `synthesis_splits.splits`.
         grammar: that they were drawn from.
     """
-    tests: dict[str, list[Told]] = {"all": [Told(each, 0) for each in programs]}
+    tests: dict[str, list[Reading]] = {"all": [Reading(each, 0) for each in programs]}
     for row in rows:
         if row.description == 0 and row.part == "test":
-            tests.setdefault(row.split, []).append(Told(programs[row.program - 1], 0))
+            tests.setdefault(row.split, []).append(Reading(programs[row.program - 1], 0))
     return {name: round(mean_lcs(asked, grammar), 3) for name, asked in tests.items()}
 
 

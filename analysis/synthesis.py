@@ -117,7 +117,8 @@ class ChosenPart(NamedTuple):
 class Synthetic:
     """A synthetic program: title, steps as (action, objects), distinct descriptions, and its tasks.
 
-    `held_out` says of each description whether it uses the paraphrases that are held out, `told` what it tells.
+    Of each description `held_out` says whether it uses the paraphrases that are held out, `mentioned` which parts it
+    mentions.
     """
 
     title: str
@@ -125,7 +126,7 @@ class Synthetic:
     descriptions: tuple[str, ...]
     tasks: tuple[str, ...] = ()
     held_out: tuple[bool, ...] = ()
-    told: tuple[tuple[ChosenPart, ...], ...] = ()
+    mentioned: tuple[tuple[ChosenPart, ...], ...] = ()
 
     def lines(self) -> list[str]:
         """The steps as text."""
@@ -267,11 +268,11 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
     ways: dict[str, tuple[bool, tuple[ChosenPart, ...]]] = {}
     for _ in range(descriptions):
         held_out = chance.random() < 1 / HELD_OUT
-        text, told = _describe(parts, aims, grammar, held_out, chance)
-        ways.setdefault(text, (held_out, told))
+        text, mentioned = _describe(parts, aims, grammar, held_out, chance)
+        ways.setdefault(text, (held_out, mentioned))
     title = chance.choice(grammar.tasks[names[0]].titles)
-    out, told_of = zip(*ways.values(), strict=True) if ways else ((), ())
-    return Synthetic(title, tuple(steps), tuple(ways), tuple(names), out, told_of)
+    held = tuple(each for each, _ in ways.values())
+    return Synthetic(title, tuple(steps), tuple(ways), tuple(names), held, tuple(each for _, each in ways.values()))
 
 
 def joined(parts: Iterable[ChosenPart], known: Knowledge) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -331,16 +332,16 @@ def _possible(
 def _describe(
     parts: Sequence[ChosenPart], aims: Sequence[str], grammar: Grammar, held_out: bool, chance: Random
 ) -> tuple[str, tuple[ChosenPart, ...]]:
-    """A description of the parts, and those that it tells; commonsense ones may be omitted (thesis 3.3)."""
+    """A description of the parts, and those that it mentions; commonsense ones may be omitted (thesis 3.3)."""
     speaker = Speaker(grammar.words, chance.random() < grammar.first, chance)
     said = [each for each in parts if chance.random() < each.part.described] or list(parts[:1])
-    clauses, told = [], []
+    clauses, mentioned = [], []
     for task, part, chosen in said:
         template, subject = paraphrase(part.say, held_out, chance), next(iter(part.steps[-1][1]), "")
         clauses.append(speaker.clause(template, chosen, subject))
-        told.append(ChosenPart(task, part, {slot: chosen[slot] for slot in slots_of(template, subject, chosen)}))
+        mentioned.append(ChosenPart(task, part, {slot: chosen[slot] for slot in slots_of(template, subject, chosen)}))
     text = " ".join(speaker.sentences(clauses, aims or grammar.words.aims, grammar.join))
-    return mistyped(text, chance) if chance.random() < TYPO else text, tuple(told)
+    return mistyped(text, chance) if chance.random() < TYPO else text, tuple(mentioned)
 
 
 def record(found: Synthetic, number: int, seed: int, splits: Mapping[str, str | None]) -> dict[str, Any]:

@@ -61,7 +61,7 @@ def synthesize(
     Programs have one to three tasks of the grammar. Each says in which part it is of splits that hold out paraphrases,
     tasks, pairs of tasks, or objects: a build publishes them among its splits. With --splits a table has the parts of
     all descriptions; --json then has their sizes. It also has the mean LCS of an ideal reader, who understands all that
-    is told and knows how likely the rest is. With --described: the programs, drawn once, whose descriptions were
+    is said and knows how likely the rest is. With --described: the programs, drawn once, whose descriptions were
     written one by one.
 
     \b

@@ -1,4 +1,4 @@
-"""The ideal reader: right wherever all is told, no better than the likeliest program where nothing is."""
+"""The ideal reader: right wherever all is mentioned, no better than the likeliest program where nothing is."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hearth.analysis import synthesis, synthesis_splits
-from hearth.analysis.ideal_reader import Told, figures, ideal, likeliest, mean_lcs, unsaid
+from hearth.analysis.ideal_reader import Reading, figures, ideal, likeliest, mean_lcs, unsaid
 from hearth.analysis.synthesis import Part, Weighted
 
 
@@ -30,14 +30,14 @@ def with_parts(grammar, **changes):
     return replace(grammar, tasks=tasks)
 
 
-def test_who_is_told_every_part_writes_every_action(grammar):
+def test_who_reads_of_every_part_writes_every_action(grammar):
     everything = with_parts(grammar, described=1.0)
     for one in synthesis.synthesize(100, 1, everything):
-        found = ideal(Told(one, 0), everything)
+        found = ideal(Reading(one, 0), everything)
         assert [action for action, _ in found.steps] == [action for action, _ in one.steps]
 
 
-def test_who_is_told_every_part_in_clauses_that_name_all_writes_the_program(grammar):
+def test_who_reads_of_every_part_in_clauses_that_name_all_writes_the_program(grammar):
     tasks = {
         name: replace(
             task,
@@ -50,30 +50,30 @@ def test_who_is_told_every_part_in_clauses_that_name_all_writes_the_program(gram
     }
     naming = replace(grammar, tasks=tasks)
     programs = list(synthesis.synthesize(100, 1, naming))
-    assert mean_lcs([Told(one, 0) for one in programs], naming) == 1
+    assert mean_lcs([Reading(one, 0) for one in programs], naming) == 1
 
 
-def test_the_more_is_told_the_better(grammar):
+def test_the_more_is_mentioned_the_better(grammar):
     def of(described):
         weights = with_parts(grammar, described=described)
-        return mean_lcs([Told(one, 0) for one in synthesis.synthesize(300, 2, weights)], weights)
+        return mean_lcs([Reading(one, 0) for one in synthesis.synthesize(300, 2, weights)], weights)
 
     assert of(0.1) < of(0.5) < of(0.9)
 
 
-def test_a_task_of_which_nothing_is_told_is_left_out_unless_the_title_names_it(grammar, drawn):
+def test_a_task_that_is_not_mentioned_is_left_out_unless_the_title_names_it(grammar, drawn):
     one = next(each for each in drawn if len(each.tasks) == 2)
-    silent = replace(one, told=((),))
-    found = ideal(Told(silent, 0), grammar)
-    again = ideal(Told(replace(silent, tasks=one.tasks[:1]), 0), grammar)
+    silent = replace(one, mentioned=((),))
+    found = ideal(Reading(silent, 0), grammar)
+    again = ideal(Reading(replace(silent, tasks=one.tasks[:1]), 0), grammar)
     assert found.steps == again.steps != ()
 
 
-def test_what_is_told_does_not_depend_on_the_program(drawn, grammar):
-    """The reader sees what clauses tell, and nothing else: other true steps change nothing."""
+def test_what_is_mentioned_does_not_depend_on_the_program(drawn, grammar):
+    """The reader sees what clauses mention, and nothing else: other true steps change nothing."""
     one = drawn[0]
     other = replace(one, steps=(("StandUp", ()),))
-    assert ideal(Told(one, 0), grammar).steps == ideal(Told(other, 0), grammar).steps
+    assert ideal(Reading(one, 0), grammar).steps == ideal(Reading(other, 0), grammar).steps
 
 
 @given(st.floats(0, 1), st.floats(0, 1))
@@ -93,4 +93,4 @@ def test_figures_are_of_all_and_of_the_test_of_each_split(drawn, grammar):
     assert set(found) == {"all", *synthesis_splits.SPLITS}
     assert all(0.6 < value < 0.95 for value in found.values()), "descriptions leave out half of the parts"
     pairs = [row.program for row in rows if (row.split, row.part, row.description) == ("pairs", "test", 0)]
-    assert found["pairs"] == round(mean_lcs([Told(drawn[number - 1], 0) for number in pairs], grammar), 3)
+    assert found["pairs"] == round(mean_lcs([Reading(drawn[number - 1], 0) for number in pairs], grammar), 3)
