@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from attack import Attack, Ground
 
-from hearth.models.films import film_input
+from hearth.models.films import film_files, film_input
 
 
 @cache
@@ -31,7 +31,7 @@ def video() -> bytes:
 
 def watched(path: Path) -> Any:
     """What `model show` reads of a video."""
-    return film_input.read_pictures(film_input.film_file(path)).shape
+    return film_input.read_pictures(film_files.film_file(path)).shape
 
 
 LISTS = {
@@ -54,7 +54,7 @@ LISTS = {
 
 def videos() -> Iterator[Attack]:
     """Lists of other films, names that stand for several, and films of which something was changed."""
-    for suffix in film_input.VIDEOS:
+    for suffix in film_files.VIDEOS:
         for name, data in LISTS.items():
             yield Attack("films", f"video: {name}{suffix}", lambda ground, s=suffix, d=data: _another(ground, s, d))
     for name in ("film%02d.webm", "film*.webm", "pipe:0.webm", "-.webm", "concat:other.webm|other.webm"):

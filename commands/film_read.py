@@ -36,7 +36,8 @@ def show(
     from hearth.commands.inputs import read_knowledge
     from hearth.homes import library
     from hearth.models.films.clip_tables import classifier
-    from hearth.models.films.film_input import ARRAYS, film_file, read_masks, read_pictures
+    from hearth.models.films.film_files import ARRAYS, film_file
+    from hearth.models.films.film_input import read_masks, read_pictures
     from hearth.models.films.film_shown import show_film
     from hearth.simulation.world.home import Home
 
@@ -79,7 +80,7 @@ def _beside(
     from html import escape
 
     from hearth.commands.model_shown import film_of
-    from hearth.models.films.film_input import VIDEOS
+    from hearth.models.films.film_files import VIDEOS
     from hearth.rendering.film.clips import RATE
     from hearth.rendering.film.mask_film import write_masks
     from hearth.storage.names import inside

@@ -290,7 +290,7 @@ def show(
     """
     from hearth.commands import model_shown
     from hearth.models.demonstrations.demonstration_data import is_demonstration
-    from hearth.models.films.film_input import is_film
+    from hearth.models.films.film_files import is_film
 
     if is_film(text) and not is_demonstration(text):
         from hearth.commands import film_read

@@ -129,6 +129,7 @@ def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Con
 def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Context) -> Iterator[ClippedRow]:
     """Write a film's arrays, and give the rows of its clips."""
     from hearth.rendering.film import clips
+    from hearth.rendering.film.clip_file import FILE
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.scene.variation import drawn
 
@@ -137,7 +138,7 @@ def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Co
     numbers = {thing.name: thing.id for thing in known.objects.values()}
     coloured = clip_cases.coloured(name, job.settings.seed)
     film = clips.clip_film(trajectory, place.graph, numbers, clips.MODALITIES if coloured else clips.MASKS_ONLY)
-    file = f"{FILMS}/{_folder(name)}/{clips.FILE}"
+    file = f"{FILMS}/{_folder(name)}/{FILE}"
     path = job.folder / file
     path.parent.mkdir(parents=True, exist_ok=True)
     write_bytes(path, clips.stored(film))

@@ -45,9 +45,6 @@ MASKS_ONLY = (MASKS,)
 MODALITIES = (MASKS, "rgb", "depth")
 """Of films that have more."""
 
-FILE = "clips.npz"
-"""Name of a film's arrays in its folder."""
-
 
 class Clip(NamedTuple):
     """A clip of a film.

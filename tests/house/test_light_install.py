@@ -102,6 +102,19 @@ def test_commands_that_draw_report_what_to_install(results, line):
     assert "pip install '.[pictures]'" in output and "Traceback" not in output
 
 
+def test_models_of_texts_and_sketches_need_no_pictures(tmp_path):
+    pytest.importorskip("torch")
+    lines = [
+        "model list",
+        "model show mle-composed 'Turn on the TV and sit down' --home maple",
+        "model show mle-composed 'Turn on the TV and sit down' --home maple --writer chooser",
+    ]
+    command = [sys.executable, "-c", SCRIPT, json.dumps(lines)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert [status for status, *_ in json.loads(done.stdout).values()] == [0, 0, 0], done.stdout
+
+
 def test_a_build_reports_and_records_that_pictures_are_left_out(results):
     build, rejects, ledger = (results[line] for line in WORK if line.startswith(("build", "query")))
     assert "pictures are left out: cv2, matplotlib, numba, open3d not installed" in build[1]

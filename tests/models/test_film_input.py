@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hearth.models.films.film_input import film_file, is_film, read_masks, read_pictures
+from hearth.models.films.film_files import film_file, is_film
+from hearth.models.films.film_input import read_masks, read_pictures
 from hearth.rendering.film.clips import RATE, SIZE
 from hearth.rendering.film.video import Writer
 from hearth.schemas.diagnostics import HearthError
