@@ -32,6 +32,9 @@ WALKING, RUNNING = 1.1, 1.8
 RELAX, RISE, REACH, BACK, HOLD = 0.3, 1.2, 0.6, 0.4, 0.5
 """Seconds, at least."""
 
+CARRIED = 1.2
+"""Least height of the hands of who has got up, as a share of that of the hips."""
+
 AT_BED = 0.5
 """Metres from where one stands beside a bed to the hips of who sits on its edge."""
 
@@ -198,10 +201,18 @@ def _got_up(segments: list[Segment], one: Actor, ways: WalkableFloor | None, bed
         side = _on_edge(one, stop)
         side = replace(side, body_pose=BodyPose("sitting", one.body_pose.seat))
         segments += [part.reversed() for part in reversed(lying_down(side, one, bed))]
-    up = replace(side, spot=stop, body_pose=with_hands(BodyPose(), side.body_pose), place=0)
+    low = one.body.proportions.pelvis * CARRIED
+    raised = with_hands(BodyPose(), side.body_pose)
+    raised = replace(raised, right=_not_below(raised.right, low), left=_not_below(raised.left, low))
+    up = replace(side, spot=stop, body_pose=raised, place=0)
     sitting = _seating(up, side)
     segments.append(sitting.reversed())
     return up
+
+
+def _not_below(hand: Point | None, low: float) -> Point | None:
+    """A hand that comes along as one rises from the floor, so that one need not stoop for it."""
+    return hand and (hand[0], max(hand[1], low), hand[2])
 
 
 def _beside(rests: Actor, ways: WalkableFloor | None, near: Spot) -> Spot:
@@ -236,9 +247,19 @@ def _seating(up: Actor, down: Actor) -> Segment:
         part = eased(share)
         effort = effort_between(up, down, part)
         pose = replace(with_hands(BodyPose("sitting"), down.body_pose), seat=high + (low - high) * part, effort=effort)
+        right, left = (_way(up.body_pose.target(side), down.body_pose.target(side), part) for side in "rl")
+        pose = replace(pose, right=right, left=left)
         yaw = up.yaw + angle(up.yaw, down.yaw) * part
         now = replace(up, spot=between(up.spot, down.spot, part), yaw=yaw, body_pose=pose)
         return replace(now, body_pose=replace(pose, feet=stepping(planted(now, up), down, share)))
 
     far = hypot(up.spot[0] - down.spot[0], up.spot[1] - down.spot[1]) + abs(high - low)
     return Segment(max(RISE, far * pi / 2 / HEADS), at)
+
+
+def _way(one: Point | None, other: Point | None, share: float) -> Point | None:
+    """Where a hand is between two places; at the second if it has none at first."""
+    if one is None or other is None:
+        return other
+    x, y, z = (a + (b - a) * share for a, b in zip(one, other, strict=True))
+    return x, y, z

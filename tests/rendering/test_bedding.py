@@ -15,7 +15,7 @@ from hearth.rendering.people.bedding import OPENED, SPREAD, Remade, drawn, edge,
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.lying import lying_down
 from hearth.rendering.people.motion import frames
-from hearth.rendering.people.tracks import track
+from hearth.rendering.people.tracks import _got_up, track
 from hearth.rendering.scene.prepared import local_size
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -157,6 +157,18 @@ def test_a_raised_hand_is_lowered_before_the_legs_are_swung_onto_the_bed(maple_b
     shown = [segment.at(share) for segment in lying_down(edge_of, lying, bed) for share in shares]
     way = np.array([actor.hand("right") for actor in shown])
     assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < 0.08
+
+
+def test_who_rises_from_the_floor_takes_the_hand_along_and_does_not_stoop_for_it(maple_bed):
+    keyframes, _ = maple_bed
+    actor = keyframes[1].actors[0]
+    on_floor = replace(actor, place=7, body_pose=BodyPose("sitting", 0.05, right=(0.18, 0.36, 0.47)))
+    bed = Remade.between(keyframes[1].places, keyframes[1].places, 7)
+    segments = []
+    up = _got_up(segments, on_floor, None, bed)
+    shown = [segment.at(share) for segment in segments for share in np.linspace(0.0, 1.0, 60)]
+    way = np.array([each.world(tuple(each.figure().joints()["head"])) for each in (*shown, up)])
+    assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < 0.06
 
 
 def test_hands_draw_the_blanket_over_the_legs_and_back(maple_bed):
