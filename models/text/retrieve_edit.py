@@ -12,6 +12,8 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.text.mentions import mentions
@@ -19,7 +21,7 @@ from hearth.models.text.retrieval import Memory, Similarity, text_of
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_words import words
 from hearth.schemas.program import Step
-from hearth.scoring.metrics.lcs import score_pairs
+from hearth.scoring.metrics.lcs import LEVELS, matrix
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
@@ -131,7 +133,10 @@ def consensus(programs: Sequence[Steps], weights: Sequence[float]) -> Steps:
     """The program with the highest weighted mean LCS (of steps, actions, objects) with all; of equal ones the first."""
     if not programs:
         return ()
-    distinct = list(dict.fromkeys(programs))
-    scores = iter(score_pairs((one, other) for one in distinct for other in programs))
-    totals = [round(sum(next(scores).mean * weight for weight in weights), 9) for _ in distinct]
-    return distinct[totals.index(max(totals))]
+    shares: dict[Steps, float] = {}
+    for program, weight in zip(programs, weights, strict=True):
+        shares[program] = shares.get(program, 0.0) + weight
+    distinct = list(shares)
+    alike = sum(matrix(distinct, distinct, level, workers=1).astype(float) for level in LEVELS)  # (N, N)
+    totals = np.round(alike @ np.array(list(shares.values())), 5)
+    return distinct[int(totals.argmax())]

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from random import Random
+
+import pytest
+
 from hearth.models.interface import Request, Training
 from hearth.schemas.syntax import parse_steps
+from hearth.scoring.metrics.lcs import score_pairs
 
 
 def lines(steps):
@@ -32,3 +37,21 @@ def test_the_consensus_is_what_most_do():
     assert consensus([odd, one, two], [1, 1, 1]) in (one, two)
     assert consensus([odd, one, two], [9, 1, 1]) == odd
     assert consensus([], []) == ()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_consensus_is_that_of_each_pair_apart(seed):
+    from hearth.models.text.retrieve_edit import consensus
+
+    random = Random(seed)
+    lines = ["[Walk] <sofa> (1)", "[Sit] <sofa> (1)", "[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[StandUp]"]
+    known = [parse_steps(line)[0] for line in lines]
+    programs = [tuple(random.choices(known, k=random.randint(0, 6))) for _ in range(12)]
+    programs += random.choices(programs, k=6)
+    weights = [random.random() for _ in programs]
+
+    def total(one):
+        scores = score_pairs([(one, other) for other in programs])
+        return sum(score.mean * weight for score, weight in zip(scores, weights, strict=True))
+
+    assert total(consensus(programs, weights)) == pytest.approx(max(map(total, programs)), abs=1e-4)
