@@ -12,14 +12,14 @@ from dataclasses import replace
 from itertools import groupby
 from typing import NamedTuple
 
-from hearth.analysis.synthesis import ChosenPart, Grammar, Part, Synthetic, Weighted, joined
+from hearth.analysis.synthesis import ChosenPart, Grammar, Part, Synthetic, joined
 from hearth.analysis.synthesis_splits import SplitText
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import parse_program
 from hearth.scoring.metrics.lcs import score_pairs
 
 LIKELY = 0.4
-"""A part that is not mentioned is guessed from this probability on: the best of .2, .3 to .6 in mean LCS."""
+"""A part that is not mentioned is guessed from this probability on."""
 
 
 class Reading(NamedTuple):
@@ -47,17 +47,11 @@ def _parts(asked: Reading, grammar: Grammar) -> Iterator[ChosenPart]:
         if not own and name != asked.program.tasks[0]:
             continue
         task = grammar.tasks[name]
-        chosen = {slot: likeliest(weighted) for slot, weighted in task.slots.items()}
+        chosen = {slot: weighted.likeliest for slot, weighted in task.slots.items()}
         for each in own:
             chosen |= each.chosen
         said = {id(each.part) for each in own}
         yield from (ChosenPart(name, part, chosen) for part in task.parts if id(part) in said or unsaid(part) >= LIKELY)
-
-
-def likeliest(weighted: Weighted) -> str:
-    """The name with the greatest weight; of several the first."""
-    weights = [after - before for before, after in zip((0.0, *weighted.sums), weighted.sums, strict=False)]
-    return weighted.things[weights.index(max(weights))]
 
 
 def unsaid(part: Part) -> float:

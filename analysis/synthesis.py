@@ -63,6 +63,12 @@ class Weighted:
         """A random name."""
         return chance.choices(self.things, cum_weights=self.sums)[0]
 
+    @property
+    def likeliest(self) -> str:
+        """The name with the greatest weight; of several the first."""
+        weights = [after - before for before, after in zip((0.0, *self.sums), self.sums, strict=False)]
+        return self.things[weights.index(max(weights))]
+
 
 @dataclass(frozen=True, slots=True)
 class Part:

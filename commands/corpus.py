@@ -92,7 +92,7 @@ def synthesize(
         if splits:
             numbers.write(rows, seed, splits)
         figures, parts = numbers.figures(drawn, rows if splits else ()), numbers.of_first(rows)
-        if as_json:
+        if as_json and out is not None:
             figures["ideal_reader"] = ideal_reader.figures(drawn, rows, weights)
         records = (synthesis.record(one, number, seed, parts[number]) for number, one in enumerate(drawn, 1))
     lines = (orjson.dumps(record) + b"\n" for record in records)

@@ -50,7 +50,7 @@ EPOCHS: Mapping[str, int] = MappingProxyType(dict.fromkeys(CLASSIFIERS, 16))
 
 USUAL_RATE, USUAL_EPOCHS = 1e-3, 30
 
-MANY = ("dropout=0.2", "batch=64")
+DRAWN_SETTINGS = ("dropout=0.2", "batch=64")
 """Settings of the first phase with drawn programs: of many texts less has to be left out, and more fit in a batch."""
 
 
@@ -76,7 +76,7 @@ class Needed(NamedTuple):
 
     def settings(self, out: Path) -> list[str]:
         """Those that are not the usual ones, as `model train --set` takes them."""
-        many = MANY if self.data == "drawn" and self.name in LSTM else ()
+        many = DRAWN_SETTINGS if self.data == "drawn" and self.name in LSTM else ()
         start = [f"start={self.before.folder(out)}"] if self.before else []
         return [*start, *many, *([self.changed] if self.changed else [])]
 

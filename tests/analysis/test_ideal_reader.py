@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hearth.analysis import synthesis, synthesis_splits
-from hearth.analysis.ideal_reader import Reading, figures, ideal, likeliest, mean_lcs, unsaid
+from hearth.analysis.ideal_reader import Reading, figures, ideal, mean_lcs, unsaid
 from hearth.analysis.synthesis import Part, Weighted
 
 
@@ -84,7 +84,15 @@ def test_an_unsaid_part_is_as_likely_as_counting_says(chance, described):
 
 
 def test_the_likeliest_is_the_first_with_the_greatest_weight():
-    assert likeliest(Weighted.of({"cup": 1, "glass": 3, "mug": 3})) == "glass"
+    assert Weighted.of({"cup": 1, "glass": 3, "mug": 3}).likeliest == "glass"
+
+
+@pytest.mark.parametrize("other", [0.1, 0.2, 0.6, 0.9])
+def test_other_thresholds_are_not_better(drawn, grammar, monkeypatch, other):
+    asked = [Reading(one, 0) for one in drawn]
+    usual = mean_lcs(asked, grammar)
+    monkeypatch.setattr("hearth.analysis.ideal_reader.LIKELY", other)
+    assert mean_lcs(asked, grammar) < usual + 0.01
 
 
 def test_figures_are_of_all_and_of_the_test_of_each_split(drawn, grammar):
