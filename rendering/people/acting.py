@@ -26,6 +26,9 @@ ARM = 0.85
 LEANING = 1.2
 """Greatest distance in metres at which who sits uses hands without getting up."""
 
+LONG = 1.5
+"""Metres of depth from which on one lies along a thing, as in a bed; on less one lies across it, as on a couch."""
+
 WEARABLE_TOP = ("shirt", "jacket", "dress", "pajamas")
 
 
@@ -174,11 +177,17 @@ def _goal(step: Step | None) -> int:
 def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -> Actor:
     """The actor standing in front of the seat that it used, or beside the bed, with the back to it."""
     pose, lay = places.poses.get(actor.place), actor.body_pose.posture == "lying"
-    front = pose.yaw if pose and not lay else None
+    front = (open_side(pose) if lay else pose.yaw) if pose else None
     spot = floor.spot_for(pose.box, front, actor.room, actor.spot, others) if pose else None
     if lay and spot is not None:
         actor = replace(actor, yaw=_towards(actor.spot, (spot[0], 0.0, spot[1]), actor.yaw))
     return replace(actor, spot=spot or actor.spot)
+
+
+def open_side(pose: Pose) -> float | None:
+    """The direction of the front of a couch, the only side from which one lies down there; None for beds."""
+    yaw = pose.yaw or 0.0
+    return None if local_size(pose.box.size, yaw)[2] >= LONG else yaw
 
 
 def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
@@ -227,10 +236,10 @@ def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | 
         turn, rests = (-90.0 if size[0] >= size[2] else 0.0), BodyPose("sitting", seat_height)
         at = (size[0] / 2 - BACK, 0.0, 0.0) if turn else (0.0, 0.0, BACK - size[2] / 2)
     elif "LYING" in states:
-        turn = 0.0 if size[2] >= 1.5 else 90.0
-        side = size[0] * -0.22 if size[0] > 1.25 and size[2] >= 1.5 else 0.0
+        turn = 0.0 if size[2] >= LONG else 90.0
+        side = size[0] * -0.22 if size[0] > 1.25 and size[2] >= LONG else 0.0
         at, rests = (side, 0.0, 0.0), BodyPose("lying", seat_height)
-    elif size[2] >= 1.5 and size[0] > 0.85:
+    elif size[2] >= LONG and size[0] > 0.85:
         # Sitting on the side of a bed, feet on the floor.
         at, turn, rests = (size[0] / 2 - 0.2, 0.0, 0.15), 90.0, BodyPose("sitting", seat_height)
     else:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import atan2, degrees, hypot, pi, sin
+from math import atan2, cos, degrees, hypot, pi, radians, sin
 from typing import TYPE_CHECKING
 
 from hearth.kb.modifiers import SPEEDS, value
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.acting import Actor, open_side
 from hearth.rendering.people.bedding import Remade
 from hearth.rendering.people.blends import HEADS, Segment, blended, effort_between, with_hands
 from hearth.rendering.people.body_pose import BodyPose
@@ -34,6 +34,9 @@ RELAX, RISE, REACH, BACK, HOLD = 0.3, 1.2, 0.6, 0.4, 0.5
 
 CARRIED = 1.2
 """Least height of the hands of who has got up, as a share of that of the hips."""
+
+AT_COUCH = 0.5
+"""Metres from the middle of who lies on a couch to the floor in front of it."""
 
 AT_BED = 0.5
 """Metres from where one stands beside a bed to the hips of who sits on its edge."""
@@ -150,12 +153,12 @@ def _approach(
         return there
     speed = RUNNING if step is not None and step.action == "Run" else WALKING
     if before != "standing":
-        one = _got_up(segments, one, ways, _bed(keyframes, one.place))
+        one = _got_up(segments, one, ways, _bed(keyframes, one.place), _front(one, keyframes[0]))
     if after == "standing":
         there = replace(other, body_pose=with_hands(BodyPose(tucked=other.body_pose.tucked), one.body_pose))
         route = led_on(ways, path(ways, one.spot, other.spot), other.spot)
         return _walked(segments, one, there, route, speed, solids)
-    stop, bed = _beside(other, ways, one.spot), _bed(keyframes, other.place)
+    stop, bed = _beside(other, ways, one.spot, _front(other, keyframes[1])), _bed(keyframes, other.place)
     side = other if after == "sitting" else _on_edge(other, stop)
     turned = replace(side, spot=stop, body_pose=with_hands(BodyPose(), one.body_pose), place=0)
     route = led_on(ways, path(ways, one.spot, stop), stop)
@@ -193,9 +196,11 @@ def _walked(
     return other
 
 
-def _got_up(segments: list[Segment], one: Actor, ways: WalkableFloor | None, bed: Remade) -> Actor:
-    """Append getting up from a seat or bed; returns the actor beside it."""
-    stop = _beside(one, ways, one.spot)
+def _got_up(
+    segments: list[Segment], one: Actor, ways: WalkableFloor | None, bed: Remade, front: float | None = None
+) -> Actor:
+    """Append getting up from a seat or bed; returns the actor beside it, in front of a couch."""
+    stop = _beside(one, ways, one.spot, front)
     side = one
     if one.body_pose.posture == "lying":
         side = _on_edge(one, stop)
@@ -215,9 +220,17 @@ def _not_below(hand: Point | None, low: float) -> Point | None:
     return hand and (hand[0], max(hand[1], low), hand[2])
 
 
-def _beside(rests: Actor, ways: WalkableFloor | None, near: Spot) -> Spot:
+def _front(rests: Actor, keyframe: Keyframe) -> float | None:
+    """The direction of the front of the couch on which somebody lies; None for who does not, or lies in a bed."""
+    pose = keyframe.places.poses.get(rests.place)
+    return open_side(pose) if pose and rests.body_pose.posture == "lying" else None
+
+
+def _beside(rests: Actor, ways: WalkableFloor | None, near: Spot, front: float | None) -> Spot:
     """Where one stands before sitting or lying down: the walkable point nearest to the front of the hips."""
     x, _, z = rests.world((0.0, 0.0, 0.35 if rests.body_pose.posture == "sitting" else 0.0))
+    if front is not None:
+        x, z = x + AT_COUCH * sin(radians(front)), z + AT_COUCH * cos(radians(front))
     if ways is not None:
         for cells in (ways.wide, ways.narrow):
             entry = ways.entry(cells, (x, z)) or ways.entry(cells, rests.spot)

@@ -214,6 +214,19 @@ def test_who_gets_up_stands_beside_the_bed(film):
     assert np.cos(np.radians(up.yaw) - np.arctan2(*away)) > 0.9, "with the back to it"
 
 
+@pytest.mark.parametrize(("name", "couch"), [("maple", "couch"), ("larch", "couch"), ("birch", "couch")])
+def test_nobody_climbs_over_the_back_of_a_couch(name, couch):
+    trajectory, place = filmed(name, couch)
+    pose = trajectory.keyframes[2].places.poses[place]
+    front = np.sin(np.radians(pose.yaw)), np.cos(np.radians(pose.yaw))
+    for frame in (frame for frame in frames(trajectory, 10.0) if frame.tick >= 2):
+        (actor,) = frame.actors
+        ahead = np.dot(np.subtract(actor.spot, (pose.box.center[0], pose.box.center[2])), front)
+        if actor.body_pose.posture != "standing":
+            assert ahead > -0.2, frame.time
+    assert ahead > 0.3, "one stands in front of it"
+
+
 def test_a_blanket_over_legs_is_highest_over_the_feet_and_an_empty_one_is_even():
     over = drape(0.84, 0.32, 1.0, Paint("#808080"), Paint("#ffffff"))
     points = over.corners.reshape(-1, 3)
