@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from hearth.schemas.libraries import library
+
+Batch = TypeVar("Batch")
 
 
 def device() -> Any:
@@ -19,3 +21,16 @@ def device() -> Any:
     torch = library("torch")
     torch.set_num_threads(1)
     return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+
+
+def place_of(network: Any) -> Any:
+    """The torch device that has a network's weights."""
+    return next(network.parameters()).device
+
+
+def moved(batch: Batch, place: Any) -> Batch:
+    """A batch on a torch device: a tensor, or a tuple, list or named tuple of what is moved alike."""
+    if not isinstance(batch, tuple | list):
+        return batch.to(place)  # type: ignore[attr-defined,no-any-return]
+    parts = [moved(part, place) for part in batch]
+    return type(batch)(*parts) if hasattr(batch, "_fields") else type(batch)(parts)

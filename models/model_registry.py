@@ -93,6 +93,13 @@ MODELS: dict[str, Entry] = {
         "ours",
         {"context": True},
     ),
+    "clips-predicted": Entry(
+        "films.seen_model:SeenModel",
+        "film",
+        "The same; it learns from masks as a network predicts them (--set masks=FOLDER), too.",
+        "ours",
+        {"context": True, "masks": "masks"},
+    ),
     "films-mle": Entry(
         "films.film_writer:FilmWriter",
         "film",

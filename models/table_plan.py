@@ -25,7 +25,10 @@ LSTM = ("mle", "mle-composed")
 CRITICS = ("pg-lcs", "pg-lcs-sim")
 
 CLASSIFIERS = ("clips-seen", "clips-context")
-"""Of clips by masks."""
+"""Of clips by true masks."""
+
+PREDICTED = "clips-predicted"
+"""The one that learns from predicted masks, too."""
 
 WRITERS = ("films-mle", "films-pg-lcs", "films-pg-lcs-sim")
 """Of programs of films."""
@@ -33,19 +36,23 @@ WRITERS = ("films-mle", "films-pg-lcs", "films-pg-lcs-sim")
 STARTS: Mapping[str, str] = MappingProxyType({
     **dict.fromkeys((*CRITICS, "consensus"), "mle-composed"),
     "consensus-sketch": "desc2sketch",
+    PREDICTED: "masks",
     **dict(zip(WRITERS, ("clips-context", *WRITERS), strict=False)),
 })  # fmt: skip
 """Models that go on from another one of the same seed, or read its answers."""
+
+ONCE = ("masks",)
+"""Of these, those that are trained with one seed alone: films of all seeds' classifiers are the same."""
 
 GRAPHS = ("unaries", "graph", "fcactgraph", "gruactgraph", "resactgraph")
 
 RATES: Mapping[str, float] = MappingProxyType({
     **dict.fromkeys((*LSTM, "desc2sketch", "films-mle"), 3e-3),
-    **dict.fromkeys((*CLASSIFIERS, "masks"), 2e-3),
+    **dict.fromkeys((*CLASSIFIERS, PREDICTED, "masks"), 2e-3),
 })  # fmt: skip
 """Rates of learning that are not the usual one."""
 
-EPOCHS: Mapping[str, int] = MappingProxyType(dict.fromkeys(CLASSIFIERS, 16))
+EPOCHS: Mapping[str, int] = MappingProxyType(dict.fromkeys((*CLASSIFIERS, PREDICTED), 16))
 """Passes over the examples, at most, that are not the usual number."""
 
 USUAL_RATE, USUAL_EPOCHS = 1e-3, 30
@@ -72,12 +79,16 @@ class Needed(NamedTuple):
     @property
     def before(self) -> Needed | None:
         """The model that its training goes on from."""
-        return self._replace(name=STARTS[self.name], changed="") if self.name in STARTS else None
+        if self.name not in STARTS:
+            return None
+        name = STARTS[self.name]
+        return self._replace(name=name, changed="", seed=0 if name in ONCE else self.seed)
 
     def settings(self, out: Path) -> list[str]:
         """Those that are not the usual ones, as `model train --set` takes them."""
         many = DRAWN_SETTINGS if self.data == "drawn" and self.name in LSTM else ()
-        start = [f"start={self.before.folder(out)}"] if self.before else []
+        word = "masks" if self.name == PREDICTED else "start"
+        start = [f"{word}={self.before.folder(out)}"] if self.before else []
         return [*start, *many, *([self.changed] if self.changed else [])]
 
     @property
@@ -135,7 +146,7 @@ PLANS: dict[str, Plan] = {plan.name: plan for plan in (
     _SKETCHES,
     replace(_SKETCHES, table="5.3", seeded=("unaries", "resactgraph"), varied=_ROUNDS),
     Plan("5.4", "people", "activities", ("retrieve-sketch", "chooser"), ("desc2sketch", "consensus-sketch")),
-    Plan("4.2", "clips", "activities", ("masks",), CLASSIFIERS),
+    Plan("4.2", "clips", "activities", ("masks",), (*CLASSIFIERS, PREDICTED)),
     Plan("4.3", "clips", "activities", (), CLASSIFIERS),
     Plan("4.3b", "clips", "activities", (), ("clips-rgb",)),
     Plan("4.6", "clips", "activities", (), ("clips-context", *WRITERS)),

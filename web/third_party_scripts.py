@@ -9,6 +9,8 @@ import shutil
 from pathlib import Path
 from typing import NamedTuple
 
+from hearth.schemas.libraries import CHECKOUT
+
 HERE = Path(__file__).resolve().parent
 FETCHED = HERE / "fetched"
 """What the server serves under `/fetched/`; the wheel contains it."""
@@ -56,7 +58,7 @@ THIRD_PARTY: dict[str, Script] = {
 THREE = "/fetched/three/build/three.module.js"
 """The address that scripts import three.js from."""
 
-REMEDY = "run `make web` (it needs npm)"
+REMEDY = "run `make web` (it needs npm)" if CHECKOUT.is_file() else "install a wheel that was built after `make web`"
 
 
 def missing() -> list[str]:

@@ -12,6 +12,7 @@ import torch
 from numpy.typing import NDArray
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.devices import device, moved, place_of
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clips, Instruction, no_programs
@@ -60,9 +61,10 @@ class ClipModel(Settings):
         checked = Clips.of(dataset, "validation", array=COLOURS)
         labels = Labels.of(learned)
         torch.manual_seed(how.seed)
-        model = TrainedClipModel(self, labels, self.network(labels))
+        model = TrainedClipModel(self, labels, self.network(labels).to(device()))
         wanted = np.array([labels.numbers(clip.done) for clip in learned.clips])
-        weights = [torch.tensor(each, dtype=torch.float32) for each in self._weights(wanted, labels)]
+        place = place_of(model.network)
+        weights = [torch.tensor(each, dtype=torch.float32, device=place) for each in self._weights(wanted, labels)]
         pictures, looked_at = pictures_of(learned), pictures_of(checked)
 
         def batches(random: Random) -> Iterator[tuple[torch.Tensor, torch.Tensor]]:
@@ -74,7 +76,8 @@ class ClipModel(Settings):
                 yield frames, torch.from_numpy(wanted[which])
 
         def loss(batch: tuple[torch.Tensor, torch.Tensor]) -> torch.Tensor:
-            return loss_of(model.network(batch[0]), batch[1], weights)
+            frames, numbers = moved(batch, place)
+            return loss_of(model.network(frames), numbers, weights)
 
         def validate() -> float:
             done = [clip.done for clip in checked.clips]
@@ -101,7 +104,7 @@ class ClipModel(Settings):
     def restored(cls, checkpoint: Checkpoint) -> TrainedClipModel:
         """The model of a checkpoint."""
         settings, labels = cls.of(checkpoint.settings), Labels.read(checkpoint.content["labels"])
-        network = filled(lambda: settings.network(labels), checkpoint.weights)
+        network = filled(lambda: settings.network(labels), checkpoint.weights).to(device())
         return TrainedClipModel(settings, labels, network, dict(checkpoint.trained))
 
 
@@ -125,7 +128,7 @@ class TrainedClipModel:
 
     def scores_of(self, clips: Clips, pictures: Pictures, relations: Iterable[Sequence[int]]) -> NDArray[np.float32]:
         """The same by the pictures of the clips' films."""
-        rows = torch.from_numpy(self.labels.rows)  # (I, 3)
+        rows = torch.from_numpy(self.labels.rows).to(place_of(self.network))  # (I, 3)
         ways = list(relations)
         self.network.eval()
         found = []
@@ -133,7 +136,7 @@ class TrainedClipModel:
             which = range(start, min(start + AT_ONCE, len(clips)))
             with torch.no_grad():
                 each = [self._parts(frames_of(clips, pictures, which, taken), rows) for taken in ways]
-            found.append(torch.stack(each).mean(0).numpy())
+            found.append(torch.stack(each).mean(0).cpu().numpy())
         return np.concatenate(found)
 
     def readings(self, clips: Clips) -> Iterator[Reading]:
@@ -142,7 +145,7 @@ class TrainedClipModel:
             yield Reading(self.labels.instructions, self.scores(part))
 
     def _parts(self, frames: NDArray[np.uint8], rows: torch.Tensor) -> torch.Tensor:
-        heads = self.network(torch.from_numpy(frames))
+        heads = self.network(torch.from_numpy(frames).to(rows.device))
         return torch.stack([scores[:, rows[:, place]] for place, scores in enumerate(heads)]).sum(0)
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
@@ -155,5 +158,5 @@ class TrainedClipModel:
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""
-        weights = {name: value.numpy() for name, value in self.network.state_dict().items()}
+        weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         return Checkpoint(NAME, asdict(self.settings), {"labels": self.labels.document()}, weights, self.facts)

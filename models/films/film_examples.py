@@ -80,7 +80,7 @@ def film_probabilities(
         part, most: as of `film_examples`.
         reader: the classifier.
     """
-    weights = {name: value.numpy().tobytes().hex() for name, value in reader.network.state_dict().items()}
+    weights = {name: value.cpu().numpy().tobytes().hex() for name, value in reader.network.state_dict().items()}
     about = value_digest([asdict(reader.settings), reader.table.document(), weights])
     return _read(_Question(facts_of(dataset)["digest"], part, most, about, clips, reader))
 

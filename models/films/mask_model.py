@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from torch.nn import functional
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.devices import device, moved, place_of
 from hearth.models.filled import filled
 from hearth.models.films.clip_data import Clips, no_programs
 from hearth.models.films.film_arrays import COLOURS, MASKS
@@ -41,7 +42,7 @@ RAREST = 1e-4
 
 
 class Frames:
-    """Frames of films: their pictures, and the palette's numbers of half of their pixels each way.
+    """Frames of films: their pictures and masks.
 
     Args:
         clips: of a part, with coloured films.
@@ -52,7 +53,7 @@ class Frames:
         coloured = Clips.of(dataset, part, films, array=COLOURS)
         masks = Clips.of(dataset, part, films, array=MASKS, coloured=True)
         self.pictures = np.concatenate([film[::every] for film in coloured.films])
-        self.masks = np.concatenate([film[::every, 1::2, 1::2] for film in masks.films])
+        self.masks = np.concatenate([film[::every] for film in masks.films])
 
     def __len__(self) -> int:
         return len(self.pictures)
@@ -68,6 +69,7 @@ class MaskModel(Settings):
         frames: pictures of an epoch, drawn from all; 0 for all.
         every: frames from one that is learned from to the next one: neighbours are alike.
         balance: the power of a class's share of pixels by which its loss is divided.
+        light: how much brighter or darker, as a share, pictures are made in training; their colours change by a third.
         films: of training, at most; 0 for all.
     """
 
@@ -76,6 +78,7 @@ class MaskModel(Settings):
     frames: int = 800
     every: int = 3
     balance: float = 0.5
+    light: float = 0.3
     films: int = 0
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedMaskModel:
@@ -84,7 +87,9 @@ class MaskModel(Settings):
         checked = Frames(dataset, "validation", CHECKED)
         classes, weights = self._classes(learned.masks)
         torch.manual_seed(how.seed)
-        model = TrainedMaskModel(self, classes, self.network(classes))
+        model = TrainedMaskModel(self, classes, self.network(classes).to(device()))
+        place = place_of(model.network)
+        weights = weights.to(place)
         wanted, compared = model.palette[learned.masks], model.palette[checked.masks]
 
         def batches(random: Random) -> Iterator[tuple[torch.Tensor, torch.Tensor]]:
@@ -94,10 +99,11 @@ class MaskModel(Settings):
                 which = order[start : start + self.batch]
                 mirror = 1 if random.random() < 0.5 else -1
                 pictures, masks = learned.pictures[which][:, :, ::mirror], wanted[which][:, :, ::mirror]
-                yield torch.from_numpy(pictures.copy()), torch.from_numpy(masks.astype(np.int64))
+                yield self._lit(pictures, random), torch.from_numpy(masks.copy())
 
         def loss(batch: tuple[torch.Tensor, torch.Tensor]) -> torch.Tensor:
-            return functional.cross_entropy(model.network(batch[0]), batch[1], weights)
+            pictures, masks = moved(batch, place)
+            return functional.cross_entropy(model.network(pictures), masks.long(), weights)
 
         def validate() -> float:
             found = np.concatenate([*model.numbers(checked.pictures)])
@@ -106,6 +112,13 @@ class MaskModel(Settings):
         task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(classes)])
         model.facts.update({"pictures": len(learned), "seed": how.seed, **train(task, how, seen).record()})
         return model
+
+    def _lit(self, pictures: NDArray[np.uint8], random: Random) -> torch.Tensor:
+        """(B, H, W, 3) pictures in another light, each in one of its own."""
+        draw = np.random.Generator(np.random.PCG64(random.getrandbits(64)))
+        bright = 1 + self.light * draw.uniform(-1, 1, (len(pictures), 1, 1, 1))
+        tint = 1 + self.light / 3 * draw.uniform(-1, 1, (len(pictures), 1, 1, 3))
+        return torch.from_numpy(np.minimum(pictures * (bright * tint).astype(np.float32), 255))
 
     def _classes(self, masks: NDArray[np.uint16]) -> tuple[tuple[int, ...], torch.Tensor]:
         """The classes that are learned, the commonest first, and the weights of the palette's numbers."""
@@ -123,7 +136,7 @@ class MaskModel(Settings):
     def restored(cls, checkpoint: Checkpoint) -> TrainedMaskModel:
         """The model of a checkpoint."""
         settings, classes = cls.of(checkpoint.settings), read_classes(checkpoint.content)
-        network = filled(lambda: settings.network(classes), checkpoint.weights)
+        network = filled(lambda: settings.network(classes), checkpoint.weights).to(device())
         return TrainedMaskModel(settings, classes, network, dict(checkpoint.trained))
 
 
@@ -177,18 +190,17 @@ class TrainedMaskModel:
     def masks(self, pictures: NDArray[np.uint8]) -> NDArray[np.uint16]:
         """(T, H, W, 3) colours -> (T, H, W) class numbers as true masks have them."""
         classes = np.array([0, *self.classes], np.uint16)
-        found = np.concatenate([*self.numbers(pictures)])
-        height, width = pictures.shape[1:3]
-        large: NDArray[np.uint16] = classes[found].repeat(2, 1).repeat(2, 2)[:, :height, :width]
-        return large
+        found: NDArray[np.uint16] = classes[np.concatenate([*self.numbers(pictures)])]
+        return found
 
     def numbers(self, pictures: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
-        """(T, H, W, 3) colours -> the palette's numbers for half of the pixels each way, `AT_ONCE` frames at a time."""
+        """(T, H, W, 3) colours -> the palette's numbers, `AT_ONCE` frames at a time."""
         self.network.eval()
+        place = place_of(self.network)
         for start in range(0, len(pictures), AT_ONCE):
             with torch.no_grad():
-                scores = self.network(torch.from_numpy(pictures[start : start + AT_ONCE].copy()))
-                found = scores.argmax(1).to(torch.uint8).numpy()
+                scores = self.network(torch.from_numpy(pictures[start : start + AT_ONCE].copy()).to(place))
+                found = scores.argmax(1).to(torch.uint8).cpu().numpy()
             yield found
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
@@ -201,5 +213,5 @@ class TrainedMaskModel:
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""
-        weights = {name: value.numpy() for name, value in self.network.state_dict().items()}
+        weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         return Checkpoint(NAME, asdict(self.settings), {"classes": [*self.classes]}, weights, self.facts)

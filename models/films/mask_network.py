@@ -1,6 +1,8 @@
 """A small network with dilated convolutions that predicts the class of each pixel of a picture (thesis 4.3.3).
 
-Its layers see a picture at a quarter of its size, the last at half of it; masks have half of it, too.
+Its layers see a picture whole, at half and at a quarter of its size; those in the middle are dilated, and know the mean
+of the picture, which says what room it is. What they find is brought back to the whole size, where most things that are
+grabbed are a few pixels.
 """
 
 from __future__ import annotations
@@ -12,8 +14,8 @@ from torch.nn import functional
 DILATIONS = (1, 2, 4, 8, 1)
 """Of the layers in the middle."""
 
-FINE, LAST = 24, 32
-"""Numbers for a pixel of the first and of the last layer, at half of the size."""
+LARGE, MEDIUM = 24, 48
+"""Numbers for a pixel at the whole size and at half of it."""
 
 
 def _layer(one: int, other: int, size: int = 3, *, stride: int = 1, dilation: int = 1) -> nn.Sequential:
@@ -24,7 +26,7 @@ def _layer(one: int, other: int, size: int = 3, *, stride: int = 1, dilation: in
 
 
 class MaskNetwork(nn.Module):
-    """Scores of classes for each pixel of half the size.
+    """Scores of classes for each pixel.
 
     Args:
         classes: numbers of the palette, 0 included.
@@ -33,19 +35,29 @@ class MaskNetwork(nn.Module):
 
     def __init__(self, classes: int, width: int) -> None:
         super().__init__()
-        self.fine = nn.Sequential(_layer(3, FINE, 5, stride=2), _layer(FINE, FINE))
-        self.small = _layer(FINE, width, stride=2)
+        self.large = _layer(3, LARGE, 5)
+        self.medium = nn.Sequential(_layer(LARGE, MEDIUM, stride=2), _layer(MEDIUM, MEDIUM))
+        self.small = _layer(MEDIUM, width, stride=2)
+        self.room = nn.Linear(width, width)
         self.middle = nn.ModuleList(_layer(width, width, dilation=dilation) for dilation in DILATIONS)
-        self.large = _layer(width, LAST, 1)
-        self.last = _layer(LAST + FINE, LAST)
-        self.scores = nn.Conv2d(LAST, classes, 1)
+        self.to_medium = _layer(width + MEDIUM, MEDIUM)
+        self.to_large = _layer(MEDIUM + LARGE, LARGE)
+        self.scores = nn.Conv2d(LARGE, classes, 1)
 
     def forward(self, pictures: Tensor) -> Tensor:
-        """(B, H, W, 3) colours from 0 to 255 -> (B, classes, H / 2, W / 2)."""
-        fine = self.fine(pictures.permute(0, 3, 1, 2).float() / 128 - 1)
-        found = self.small(fine)
+        """(B, H, W, 3) colours from 0 to 255 -> (B, classes, H, W)."""
+        large = self.large(pictures.permute(0, 3, 1, 2).float() / 128 - 1)
+        medium = self.medium(large)
+        found = self.small(medium)
+        found = found + self.room(found.mean((2, 3)))[:, :, None, None]
         for layer in self.middle:
             found = found + layer(found)
-        large = functional.interpolate(self.large(found), fine.shape[-2:], mode="bilinear", align_corners=False)
-        scores: Tensor = self.scores(self.last(torch.cat((large, fine), 1)))
+        found = self.to_medium(torch.cat((_enlarged(found, medium), medium), 1))
+        found = self.to_large(torch.cat((_enlarged(found, large), large), 1))
+        scores: Tensor = self.scores(found)
         return scores
+
+
+def _enlarged(small: Tensor, large: Tensor) -> Tensor:
+    """(B, C, h, w) as large as another."""
+    return functional.interpolate(small, large.shape[-2:], mode="bilinear", align_corners=False)

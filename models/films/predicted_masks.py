@@ -3,12 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, overload
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.models.films.clip_data import Clips
+from hearth.models.films.film_arrays import COLOURS
 from hearth.models.films.mask_model import TrainedMaskModel
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+if TYPE_CHECKING:
+    from hearth.datasets.dataset import Dataset
+
+
+def predicted(model: str, dataset: Dataset, part: str) -> Clips:
+    """The clips of a part's coloured films as a network predicts their masks.
+
+    Args:
+        model: a checkpoint of `masks`: its folder, or the name of one that comes with Hearth.
+        dataset: with clips.
+        part: of the clips.
+
+    Raises:
+        HearthError: the checkpoint is missing; BAD_ARGUMENT, if it is of another model; errors of `Clips.of`.
+    """
+    from hearth.models.model_registry import restore
+
+    name, network = restore(model)
+    if not isinstance(network, TrainedMaskModel):
+        message = f"`{name}` does not predict masks"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="a checkpoint of `masks`")
+    clips = Clips.of(dataset, part, array=COLOURS)
+    return replace(clips, films=PredictedMasks(clips.films, network))
 
 
 class PredictedMasks(Sequence[NDArray[np.uint16]]):

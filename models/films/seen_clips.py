@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
@@ -39,6 +39,11 @@ class SeenClips(NamedTuple):
     def part(self, which: NDArray[np.int64] | slice) -> SeenClips:
         """Some of the clips."""
         return SeenClips(*(getattr(self, name)[which] for name in self._fields))
+
+
+def joined(parts: Sequence[SeenClips]) -> SeenClips:
+    """The clips of several parts, one after another."""
+    return SeenClips(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 def offsets(frames: int, context: bool) -> NDArray[np.int64]:

@@ -13,12 +13,14 @@ import torch
 from numpy.typing import NDArray
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.devices import device, moved, place_of
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import PLACES, ClassTable
 from hearth.models.films.clip_data import Clips, Instruction, no_programs
 from hearth.models.films.film_readings import Reading, reading
-from hearth.models.films.seen_clips import SeenClips, offsets, seen_clips
+from hearth.models.films.predicted_masks import predicted
+from hearth.models.films.seen_clips import SeenClips, joined, offsets, seen_clips
 from hearth.models.films.seen_network import FRAMES, SeenBatch, SeenNetwork, loss_of
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Request, Settings, Steps, Training
@@ -60,6 +62,8 @@ class SeenModel(Settings):
         balance: the power of a class's share by which its loss is divided: 0 counts clips, 1 classes.
         films: of training, at most; 0 for all.
         context: whether seconds before and after a clip are looked at, too, which the thesis's networks do not see.
+        masks: a checkpoint of `masks`: films with colours are learned from as it predicts them, too, and those of
+            `validation` alone decide when to stop; "" for true masks alone.
     """
 
     width: int = 96
@@ -71,19 +75,27 @@ class SeenModel(Settings):
     balance: float = 0.5
     films: int = 0
     context: bool = False
+    masks: str = ""
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedSeenModel:
-        """Train on the clips of `train`; those of `validation` decide when to stop."""
-        learned, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
-        table = ClassTable.of(dataset.knowledge, [clip.done for clip in learned.clips])
-        shown, looked_at = (seen_clips(each, table, self.context) for each in (learned, checked))
+        """Train on the clips of `train`; those of `validation` decide when to stop.
+
+        Raises:
+            HearthError: errors of `Clips.of`; the checkpoint of `masks` is missing, or is another model.
+        """
+        true, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
+        parts = [true]
+        if self.masks:
+            known, checked = (predicted(self.masks, dataset, part) for part in ("train", "validation"))
+            parts.append(known)
+        learned = [clip.done for part in parts for clip in part.clips]
+        table = ClassTable.of(dataset.knowledge, learned)
+        shown = joined([seen_clips(part, table, self.context) for part in parts])
+        looked_at = seen_clips(checked, table, self.context)
         torch.manual_seed(how.seed)
-        model = TrainedSeenModel(self, table, StepOrder.of(programs_of(learned)), self.network(table))
-        wanted = torch.tensor([table.numbers(clip.done) for clip in learned.clips])
-        labels: tuple[Sequence[Hashable], ...] = (
-            [clip.done.action for clip in learned.clips],
-            [clip.done.objects for clip in learned.clips],
-        )
+        model = TrainedSeenModel(self, table, StepOrder.of(programs_of(true)), self.network(table).to(device()))
+        wanted = torch.tensor([*map(table.numbers, learned)])
+        labels: tuple[Sequence[Hashable], ...] = ([each.action for each in learned], [each.objects for each in learned])
         weights = torch.tensor(np.stack([*map(self._weights, labels)], 1), dtype=torch.float32)
 
         def batches(random: Random) -> Iterator[tuple[SeenBatch, torch.Tensor, torch.Tensor]]:
@@ -94,7 +106,7 @@ class SeenModel(Settings):
                 yield batch, wanted[which], weights[which]
 
         def loss(batch: tuple[SeenBatch, torch.Tensor, torch.Tensor]) -> torch.Tensor:
-            return loss_of(model.network, *batch)
+            return loss_of(model.network, *moved(batch, place_of(model.network)))
 
         def validate() -> float:
             return accuracies([clip.done for clip in checked.clips], model.named_of(looked_at))["mean"]
@@ -121,7 +133,7 @@ class SeenModel(Settings):
     def restored(cls, checkpoint: Checkpoint) -> TrainedSeenModel:
         """The model of a checkpoint."""
         settings, table = cls.of(checkpoint.settings), ClassTable.read(checkpoint.content["table"])
-        network = filled(lambda: settings.network(table), checkpoint.weights)
+        network = filled(lambda: settings.network(table), checkpoint.weights).to(device())
         order = StepOrder.read(checkpoint.content["order"])
         return TrainedSeenModel(settings, table, order, network, dict(checkpoint.trained))
 
@@ -176,14 +188,15 @@ class TrainedSeenModel:
 
     def _scored(self, shown: SeenClips) -> Iterator[Scored]:
         self.network.eval()
-        every = torch.arange(len(self.table.actions))[None]
+        place = place_of(self.network)
+        every = torch.arange(len(self.table.actions), device=place)[None]
         for start in range(0, len(shown.classes), AT_ONCE):
             with torch.no_grad():
-                batch = tensors(shown.part(slice(start, start + AT_ONCE)))
+                batch = moved(tensors(shown.part(slice(start, start + AT_ONCE))), place)
                 clip, classes = self.network.read(batch)
                 asked = every.expand(len(clip), -1)
-                objects = [self.network.objects(batch, clip, classes, asked, place) for place in range(PLACES)]
-                found = Scored(self.network.actions(clip).numpy(), torch.stack(objects, 1).numpy())
+                objects = [self.network.objects(batch, clip, classes, asked, number) for number in range(PLACES)]
+                found = Scored(self.network.actions(clip).cpu().numpy(), torch.stack(objects, 1).cpu().numpy())
             yield found  # outside: generators that take turns would leave gradients off
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
@@ -196,6 +209,6 @@ class TrainedSeenModel:
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""
-        weights = {name: value.numpy() for name, value in self.network.state_dict().items()}
+        weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         content = {"table": self.table.document(), "order": self.order.document()}
         return Checkpoint(NAME, asdict(self.settings), content, weights, self.facts)

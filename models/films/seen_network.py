@@ -42,7 +42,7 @@ class SeenBatch(NamedTuple):
 
     def mirrored(self, which: Tensor) -> SeenBatch:
         """The batch with some clips, (B,) of bool, left and right exchanged."""
-        signs = torch.ones(NUMBERS)
+        signs = torch.ones(NUMBERS, device=which.device)
         signs[list(MIRRORED)] = -1
         numbers = torch.where(which[:, None, None, None], self.numbers * signs, self.numbers)
         seen = self.people[..., :1]
@@ -125,7 +125,7 @@ class SeenNetwork(nn.Module):
         """(B, width) the clip and (B, K, width) its classes."""
         vectors = self.vector(batch.classes)
         if self.training:
-            vectors = vectors * (torch.rand(*batch.classes.shape, 1) >= self.unnamed)
+            vectors = vectors * (torch.rand(*batch.classes.shape, 1, device=vectors.device) >= self.unnamed)
         found = torch.cat((batch.numbers.flatten(2), self.traits[batch.classes], vectors), -1)
         person = self.person(batch.people, batch.crops, self.traits)
         tokens = torch.cat((person[:, None], self.token(found)), 1)

@@ -17,6 +17,9 @@ from hearth.schemas.graph import Spot
 STEP_TIME = 0.52
 """Seconds of a walking step."""
 
+LONGEST = 0.62
+"""Metres of a step of an adult, at most: who runs takes quicker steps; for longer ones the hips would drop."""
+
 ADULT = 1.65
 """Metres of height below which steps are shorter."""
 
@@ -194,16 +197,19 @@ class Gait:
         moves: what its body does.
         arms: how far both arms are drawn in at places every `SAMPLED` seconds, (n, 2); None draws in none.
         end: how far they are drawn in at the end.
+        speed: metres per second.
     """
 
     def __init__(
-        self, actor: Actor, moves: Sequence[Movement], arms: Arms | None = None, end: tuple[float, float] = (0.0, 0.0)
-    ) -> None:
+        self, actor: Actor, moves: Sequence[Movement], arms: Arms | None = None, end: tuple[float, float] = (0.0, 0.0),
+        speed: float = 1.0,
+    ) -> None:  # fmt: skip
         self.actor, self.moves, self.end = actor, moves, end
         self.effort = effort_of(actor.body_pose, actor.body.proportions)
         self.moving = sum(move.seconds for move in moves)
         # Who has shorter legs takes more steps.
-        self.count = max(1, ceil(self.moving / (STEP_TIME * min(actor.body.height / ADULT, 1.0))))
+        step = min(STEP_TIME, LONGEST / speed) * min(actor.body.height / ADULT, 1.0)
+        self.count = max(1, ceil(self.moving / step))
         self.step = self.moving / self.count
         self.seconds = self.moving + self.step
         self.prints = self._prints()

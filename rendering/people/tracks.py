@@ -187,7 +187,7 @@ def _walked(
     arms = one.body_pose
     moves = movements(Place(*one.spot, one.yaw), route, speed, other.yaw)
     if moves:
-        gait = Gait(one, moves, lambda places: arms_on_the_way(one, places, solids), other.body_pose.tucked)
+        gait = Gait(one, moves, lambda places: arms_on_the_way(one, places, solids), other.body_pose.tucked, speed)
         segments.append(Segment(gait.seconds, lambda share: gait.at(share * gait.seconds)))
         arms = gait.carried(gait.end)
     other = replace(other, body_pose=with_hands(other.body_pose, arms))
