@@ -118,11 +118,11 @@ models: .venv/.models $(call manifest,publish)  ## train the models that come wi
 	@$(MAKE) --no-print-directory -j 2 $(TRAINED:%=models/trained/%)
 
 film-models: .venv/.models  ## train the models of films on data_out/clips, which `make clips` makes, in models/trained
-	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 16 --rate 0.002
+	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 22 --rate 0.002
 	@$(HEARTH) model train masks $(OUT)/clips --seed $(SEED) --out models/trained/masks --epochs 22 --rate 0.002
 
 film-tables: .venv/.models  ## tables 4.2, 4.3 and 4.6 with three seeds, of data_out/clips, in data_out/tables: a night
-	@$(HEARTH) model tables $(OUT) --clips $(OUT)/clips --out $(OUT)/tables --table 4.2 --table 4.3 --table 4.3b --table 4.6
+	@$(HEARTH) model tables $(OUT) --clips $(OUT)/clips --out $(OUT)/tables --minutes 15 --table 4.2 --table 4.3 --table 4.3b --table 4.6
 
 tables: .venv/.models $(call manifest,publish)  ## tables 4.4, 4.5 and 5.2 to 5.4 with three seeds, in data_out/tables: a night
 	@$(HEARTH) corpus synthesize 20000 --seed $(SEED) --out $(OUT)/synthetic.jsonl

@@ -52,7 +52,7 @@ RATES: Mapping[str, float] = MappingProxyType({
 })  # fmt: skip
 """Rates of learning that are not the usual one."""
 
-EPOCHS: Mapping[str, int] = MappingProxyType(dict.fromkeys((*CLASSIFIERS, PREDICTED), 16))
+EPOCHS: Mapping[str, int] = MappingProxyType(dict.fromkeys((*CLASSIFIERS, PREDICTED), 22))
 """Passes over the examples, at most, that are not the usual number."""
 
 USUAL_RATE, USUAL_EPOCHS = 1e-3, 30
