@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from random import Random
+
 import numpy as np
 import pytest
 import torch
 from torch.nn import functional
 
 from hearth.models.checkpoint import load, save
+from hearth.models.films.clip_data import Clips
+from hearth.models.films.film_arrays import COLOURS
 from hearth.models.films.mask_model import MaskModel, TrainedMaskModel, mean_iou, read_classes
-from hearth.models.films.predicted_masks import PredictedMasks
+from hearth.models.films.predicted_masks import PredictedMasks, predicted
+from hearth.schemas.diagnostics import HearthError
 
 CLASSES = (300, 7)
 PAINT = {0: (40, 40, 40), 300: (200, 60, 60), 7: (60, 60, 220)}
@@ -87,3 +92,24 @@ def test_predicted_films_are_made_once(model, monkeypatch):
     assert len(films) == 2 and films[1].shape == (2, 48, 64) and len(films[:1]) == 1
     monkeypatch.setattr(type(model), "masks", None)
     assert films[1].dtype == np.uint16
+
+
+def test_pictures_in_another_light_keep_what_they_show():
+    """Each has a light of its own, brighter or darker by a share at most; the same draw gives the same."""
+    pictures = np.full((40, 2, 2, 3), 120, np.uint8)
+    found, again = (MaskModel(light=0.3)._lit(pictures, Random(1)) for _ in range(2))
+    assert torch.equal(found, again) and found.min() >= 120 * 0.7 * 0.9 and found.max() <= 120 * 1.3 * 1.1
+    assert (found.flatten(1, 2).std(1) < 1e-3).all() and found.mean((1, 2, 3)).std() > 5
+    assert torch.equal(MaskModel(light=0.0)._lit(pictures, Random(1)), torch.from_numpy(pictures).float())
+    assert MaskModel()._lit(np.full((9, 1, 1, 3), 250, np.uint8), Random(1)).max() == 255
+
+
+def test_only_a_network_of_masks_predicts_them(model, tmp_path, monkeypatch):
+    films = [drawn(9)[0], drawn(9)[0]]
+    monkeypatch.setattr(Clips, "of", lambda dataset, part, array: Clips((part, array), films, (), 9))
+    save(model.checkpoint(), tmp_path)
+    found = predicted(str(tmp_path), None, "train")
+    assert found.executions == ("train", COLOURS)
+    assert np.array_equal(found.films[0], model.masks(films[0]))
+    with pytest.raises(HearthError, match="does not predict masks"):
+        predicted("clips-context", None, "train")

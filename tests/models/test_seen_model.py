@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import hearth
 from hearth.commands import film_read
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
+from hearth.models.films import seen_model
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Clip, Clips, Instruction
@@ -19,10 +21,11 @@ from hearth.models.films.film_input import read_masks
 from hearth.models.films.film_readings import reading
 from hearth.models.films.film_shown import cut, show_film
 from hearth.models.films.seen_classes import CROP, seen_film
-from hearth.models.films.seen_clips import CONTEXT, offsets, seen_clips
+from hearth.models.films.seen_clips import CONTEXT, joined, offsets, seen_clips
 from hearth.models.films.seen_model import SeenModel, TrainedSeenModel, tensors
 from hearth.models.films.seen_network import loss_of
 from hearth.models.films.step_order import START, StepOrder, programs_of
+from hearth.models.interface import Training
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -66,6 +69,31 @@ def model(clips):
 
 def test_it_learns_clips_by_heart(model, clips):
     assert accuracies([clip.done for clip in clips.clips], model.named(clips))["mean"] == 1.0
+
+
+def test_it_learns_from_predicted_masks_beside_true_ones(clips, monkeypatch):
+    """Predicted masks alone have the second half of the clips, and validation has predicted ones."""
+    halves = replace(clips, clips=clips.clips[:6]), replace(clips, clips=clips.clips[6:])
+    parts = []
+
+    def predicted(model, dataset, part):
+        parts.append((model, part))
+        return halves[1]
+
+    monkeypatch.setattr(seen_model, "predicted", predicted)
+    monkeypatch.setattr(Clips, "of", lambda dataset, part, films=0: halves[0])
+    data = SimpleNamespace(knowledge=default())
+    both = SeenModel(width=16, layers=1, masks="network").fit(data, Training(epochs=1))
+    assert parts == [("network", "train"), ("network", "validation")]
+    assert both.facts["clips"] == 12
+    true = SeenModel(width=16, layers=1).fit(data, Training(epochs=1))
+    assert true.facts["clips"] == 6 and len(parts) == 2
+
+
+def test_clips_of_two_parts_are_those_of_both(clips, model):
+    whole = seen_clips(clips, model.table)
+    for one, other in zip(joined([whole.part(slice(0, 5)), whole.part(slice(5, None))]), whole, strict=True):
+        assert np.array_equal(one, other)
 
 
 def test_it_points_at_what_training_never_named(model, clips):
