@@ -8,6 +8,8 @@ from itertools import pairwise
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
 from typing import NamedTuple
 
+from numpy import interp
+
 from hearth.rendering.arrays import Floats
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import BodyPose, Foot, drawn_in
@@ -28,6 +30,12 @@ STARTING = 0.35
 
 TURNING = 130.0
 """Degrees per second."""
+
+CORNERING = 170.0
+"""Degrees per second at most of who walks round a corner: one slows down for sharp ones, where the head would fly."""
+
+LOOKED = 0.05
+"""Seconds between the moments of a walk at which it is looked how fast it turns."""
 
 ROUNDED = 0.16
 """Metres on either side over which the corners of a route are rounded."""
@@ -162,7 +170,20 @@ def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> M
         # Who walks backwards does not flip from one side to the other.
         return Place(*route.spot(way), straight + aside * ends * min(1.0, (180 - abs(aside)) / 120))
 
-    return Movement(route.seconds, at)
+    return slowed(Movement(route.seconds, at))
+
+
+def slowed(move: Movement) -> Movement:
+    """The same movement, slower where the body turns faster than `CORNERING`."""
+    count = max(1, ceil(move.seconds / LOOKED))
+    times = [move.seconds * k / count for k in range(count + 1)]
+    yaws = [move.at(time).yaw for time in times]
+    real = [0.0]
+    for (start, end), (one, other) in zip(pairwise(times), pairwise(yaws), strict=True):
+        real.append(real[-1] + max(end - start, abs(angle(one, other)) / CORNERING))
+    if real[-1] < move.seconds + 1e-6:
+        return move
+    return Movement(real[-1], lambda time: move.at(float(interp(time, real, times))))
 
 
 def movements(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> list[Movement]:
