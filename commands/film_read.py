@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from hearth.models.films.film_shown import FilmShown
 
 MASKS = "masks"
@@ -39,27 +36,15 @@ def show(
     from hearth.models.films.film_files import ARRAYS, film_file
     from hearth.models.films.film_input import read_masks, read_pictures
     from hearth.models.films.film_shown import show_film
+    from hearth.models.films.predicted_masks import mask_predictor
     from hearth.simulation.world.home import Home
 
     known, path, trained = read_knowledge(kb), film_file(film), classifier(model)[1]
-    seen = read_masks(path) if path.suffix == ARRAYS else _predicted(masks, read_pictures(path))
+    seen = read_masks(path) if path.suffix == ARRAYS else mask_predictor(masks).masks(read_pictures(path))
     place = Home.from_graph(library.load_graph(home, known, homes), home, known)
     found = show_film(trained, seen, place)
     pages = _beside(found, path, seen, home, homes, kb, out) if out else []
     return {"film": path, **_document(found), "home": home, "pages": pages}
-
-
-def _predicted(model: str, pictures: NDArray[np.uint8]) -> NDArray[np.uint16]:
-    from hearth.models.films.mask_model import TrainedMaskModel
-    from hearth.models.model_registry import restore
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
-
-    trained = restore(model)[1]
-    if not isinstance(trained, TrainedMaskModel):
-        message = f"`{model}` does not predict masks"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="a checkpoint of `masks`")
-    return trained.masks(pictures)
 
 
 def _document(found: FilmShown) -> dict[str, Any]:

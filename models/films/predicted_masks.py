@@ -19,16 +19,14 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 
-def predicted(model: str, dataset: Dataset, part: str) -> Clips:
-    """The clips of a part's coloured films as a network predicts their masks.
+def mask_predictor(model: str) -> TrainedMaskModel:
+    """A trained network that predicts masks.
 
     Args:
         model: a checkpoint of `masks`: its folder, or the name of one that comes with Hearth.
-        dataset: with clips.
-        part: of the clips.
 
     Raises:
-        HearthError: the checkpoint is missing; BAD_ARGUMENT, if it is of another model; errors of `Clips.of`.
+        HearthError: the checkpoint is missing; BAD_ARGUMENT, if it is of another model.
     """
     from hearth.models.model_registry import restore
 
@@ -36,7 +34,21 @@ def predicted(model: str, dataset: Dataset, part: str) -> Clips:
     if not isinstance(network, TrainedMaskModel):
         message = f"`{name}` does not predict masks"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="a checkpoint of `masks`")
-    clips = Clips.of(dataset, part, array=COLOURS)
+    return network
+
+
+def predicted(model: str, dataset: Dataset, part: str) -> Clips:
+    """The clips of a part's coloured films as a network predicts their masks.
+
+    Args:
+        model: as of `mask_predictor`.
+        dataset: with clips.
+        part: of the clips.
+
+    Raises:
+        HearthError: errors of `mask_predictor` and of `Clips.of`.
+    """
+    network, clips = mask_predictor(model), Clips.of(dataset, part, array=COLOURS)
     return replace(clips, films=PredictedMasks(clips.films, network))
 
 

@@ -43,6 +43,8 @@ class SeenClips(NamedTuple):
 
 def joined(parts: Sequence[SeenClips]) -> SeenClips:
     """The clips of several parts, one after another."""
+    if len(parts) == 1:
+        return parts[0]  # half a gigabyte is not copied
     return SeenClips(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
