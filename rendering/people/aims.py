@@ -13,7 +13,7 @@ from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, Held
 from hearth.rendering.people.holding import Hold, grip_point, hold_of_node
 from hearth.rendering.people.rotations import unit
-from hearth.rendering.people.skeleton import PELVIS_ON_SEAT
+from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, in_reach
 from hearth.rendering.scene.instances import own_mesh
 from hearth.rendering.scene.places import HANDS, Places, Pose
 from hearth.schemas.graph import EnvironmentGraph, Node, Point
@@ -78,7 +78,9 @@ def carrying(actor: Actor, held: Mapping[str, int], graph: EnvironmentGraph, pla
         # What is tall stands on the floor, or hangs above it.
         y = max(y + lower, hold.point[1] + 0.02)
         if not hold.both:
-            found[side] = Aim((x, y, z + (0.1 if lower else 0.0)), Hand(hold.grip, hold.palm))
+            palm = (x, y, z + (0.1 if lower else 0.0))
+            palm = in_reach(palm, actor.body_pose, actor.body.proportions)
+            found[side] = Aim(palm, Hand(hold.grip, hold.palm))
             continue
         deep = size[2] / 2 + 0.02
         x = abs(hold.point[0])

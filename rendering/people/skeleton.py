@@ -91,6 +91,21 @@ def effort_of(body_pose: BodyPose, body: Proportions) -> float:
     return high
 
 
+def in_reach(target: Point, body_pose: BodyPose, body: Proportions) -> Point:
+    """A target of a hand, raised until who does not stoop reaches it, or brought nearer where that is too little."""
+    drop, lean = _stooping(0.0, body_pose, body)
+    shoulder = _shoulders(_hips(body_pose, body, drop), body, lean)
+    way, reach = np.array(target) - shoulder, body.arm * REACH
+    far = float(np.linalg.norm(way))
+    if far <= reach:
+        return target
+    down = reach**2 - float(way[0] ** 2 + way[2] ** 2)
+    if down > 0 and way[1] < 0:
+        return target[0], float(shoulder[1]) - sqrt(down), target[2]
+    x, y, z = (shoulder + way * reach / far).tolist()
+    return x, y, z
+
+
 EFFORTS = 10
 """Number of steps in which stooping is tried."""
 

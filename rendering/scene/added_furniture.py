@@ -30,6 +30,9 @@ DEEP = 0.2
 FREE = 0.55
 """Metres in front of furniture that stay free, so that one can use it."""
 
+LEGS = 0.45
+"""Metres in front of a seat that the legs of who sits there need."""
+
 
 def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places:
     """The places of a home, with those of furniture that the graph adds to rooms.
@@ -58,8 +61,11 @@ def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places
 
 
 def _stands(node: Node, location: Location, nodes: Mapping[int, Node], places: Places) -> bool:
-    """Whether a node is furniture in a room: on its floor, said or not, or at one of its walls."""
-    movable = "GRABBABLE" in node.properties or node.category in (CHARACTER_CATEGORY, ROOM_CATEGORY, "BodyParts")
+    """Whether a node is furniture in a room, chairs that one can carry included: on its floor, said or not, or at one
+    of its walls.
+    """
+    carried = "GRABBABLE" in node.properties and "SITTABLE" not in node.properties
+    movable = carried or node.category in (CHARACTER_CATEGORY, ROOM_CATEGORY, "BodyParts")
     holder = nodes.get(location.holder)
     support = holder.class_name if location.kind == "on" and holder is not None else ""
     at_wall = support == "wall" and min(places.size_of(node)) > DEEP
@@ -86,7 +92,9 @@ def _pose(node: Node, room: Node, places: Places, floors: Floors) -> Pose | None
     if floor.walkable is None:
         return None
     free, origin = floor.walkable.free, floor.walkable.wide.floor.origin
-    found = [place for place in _candidates(size, room.box) if _fits(place, free, origin)]
+    fits = [place for place in _candidates(size, room.box) if _fits(place, free, origin)]
+    legroom = _with_legroom(free, origin, places)
+    found = [place for place in fits if legroom[_cells(place.spot, place.size, origin)].all()] or fits
     found.sort(key=lambda place: _cost(place, room.box or box))
     for place in found[:TRIES]:
         if _leaves_ways(place, free, origin, floor):
@@ -124,6 +132,21 @@ def _fits(place: Place, free: Cells, origin: Spot) -> bool:
     size = (place.size[0] + 2 * abs(front[0]), place.size[1] + 2 * abs(front[1]))
     part = free[_cells((place.spot[0] + front[0], place.spot[1] + front[1]), size, origin)]
     return part.size > 0 and bool(part.all())
+
+
+def _with_legroom(free: Cells, origin: Spot, places: Places) -> Cells:
+    """Free cells without those in front of seats."""
+    left = free.copy()
+    for node in places.graph.nodes:
+        pose = places.poses.get(node.id)
+        if "SITTABLE" not in node.properties or pose is None or pose.yaw is None:
+            continue
+        facing = (sin(radians(pose.yaw)), cos(radians(pose.yaw)))
+        (x, _, z), (width, _, depth) = pose.box.center, pose.box.size
+        ahead = [(side / 2 + LEGS / 2) * to for side, to in zip((width, depth), facing, strict=True)]
+        size = (LEGS, depth) if abs(facing[0]) > 0.5 else (width, LEGS)
+        left[_cells((x + ahead[0], z + ahead[1]), size, origin)] = False
+    return left
 
 
 def _leaves_ways(place: Place, free: Cells, origin: Spot, floor: FreeFloor) -> bool:

@@ -94,37 +94,3 @@ def test_doorways_have_two_posts_and_soft_things_give_way():
 def test_arms_of_who_rests_stay_as_they_are(posture):
     actor = replace(ACTOR, body_pose=BodyPose(posture, 0.45))
     assert at_rest(actor, WALL).body_pose.tucked == (0.0, 0.0)
-
-
-def test_a_cupboard_that_is_added_at_a_wall_stands_there_in_its_own_size():
-    from hearth.rendering.scene.added_furniture import furnished
-    from hearth.rendering.scene.places import Places
-    from hearth.rendering.scene.swept import Floors
-    from hearth.schemas.graph import Edge
-
-    room = Node(1, "kitchen", "Rooms", (), (), None, Box((0, 1.3, 0), (5, 2.6, 4)))
-    wall = Node(2, "wall", "Walls", (), (), None, Box((0, 1.3, -2.03), (5, 2.6, 0.06)), 0.0)
-    home = EnvironmentGraph((room, wall), (Edge(2, "INSIDE", 1),))
-    added = Node(1000, "kitchen_cabinet", "Furniture", ("CONTAINERS", "CAN_OPEN"), ("CLOSED",), None)
-    graph = EnvironmentGraph((room, wall, added), (*home.edges, Edge(1000, "INSIDE", 1), Edge(1000, "ON", 2)))
-    prepared = prepared_scene(home, default())
-    pose = furnished(Places.start(home, default(), prepared), graph, Floors(prepared)).poses[1000]
-    assert min(pose.box.size) > 0.3
-    assert abs(pose.box.center[1] - pose.box.size[1] / 2) < 0.01
-
-
-def test_a_table_that_is_added_to_a_floor_stands_at_a_wall_and_not_in_the_way():
-    from hearth.rendering.scene.added_furniture import furnished
-    from hearth.rendering.scene.places import Places
-    from hearth.rendering.scene.swept import Floors
-    from hearth.schemas.graph import Edge
-
-    room = Node(1, "kitchen", "Rooms", (), (), None, Box((0, 1.3, 0), (5, 2.6, 4)))
-    floor = Node(2, "floor", "Floor", (), (), None, Box((0, -0.05, 0), (5, 0.1, 4)))
-    home = EnvironmentGraph((room, floor), (Edge(2, "INSIDE", 1),))
-    added = Node(1000, "table", "Furniture", ("SURFACES", "MOVABLE"), (), None)
-    graph = EnvironmentGraph((room, floor, added), (*home.edges, Edge(1000, "INSIDE", 1), Edge(1000, "ON", 2)))
-    prepared = prepared_scene(home, default())
-    box = furnished(Places.start(home, default(), prepared), graph, Floors(prepared)).poses[1000].box
-    gaps = [2.5 - abs(box.center[0]) - box.size[0] / 2, 2.0 - abs(box.center[2]) - box.size[2] / 2]
-    assert min(gaps) < 0.2
