@@ -23,22 +23,23 @@ class StoredCaseRow(TypedDict):
     environment: DifferenceRow
 
 
-_RUNS = """SELECT execution_id, environment_id, program_id, home, rules, bindings{more} FROM executions
+_RUNS = """SELECT execution_id, environment_id, program_id, home, rules, bindings{more} FROM {{table}}
     SEMI JOIN (SELECT unnest($ids) AS execution_id) USING (execution_id) WHERE execution_id BETWEEN $low AND $high"""
 
 _ENVIRONMENTS = """SELECT environment_id, added_nodes, removed_nodes, added, removed, set_states, cleared_states
-    FROM environments SEMI JOIN (SELECT unnest($ids) AS environment_id) USING (environment_id)
+    FROM {table} SEMI JOIN (SELECT unnest($ids) AS environment_id) USING (environment_id)
     WHERE environment_id BETWEEN $low AND $high"""
 
-_PROGRAMS = """SELECT program_id, activity_id, title, description, steps FROM programs
+_PROGRAMS = """SELECT program_id, activity_id, title, description, steps FROM {table}
     SEMI JOIN (SELECT unnest($ids) AS program_id) USING (program_id) WHERE program_id BETWEEN $low AND $high"""
 
 
 def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = ()) -> Iterator[Any]:
     """Executions with the columns that running their programs needs, in the order of their names.
 
-    Three queries, each within its range of ids: for a join, DuckDB would read whole tables. Its rows come in an order
-    that another run may not have: models that learn from them would have other weights.
+    Three queries, each within its range of ids and over the files that have it: for a join, DuckDB would read whole
+    tables, and of many files each query would open all. Its rows come in an order that another run may not have: models
+    that learn from them would have other weights.
 
     Args:
         dataset: the dataset.
@@ -49,14 +50,16 @@ def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = (
         Rows as `StoredCaseRow`, with the further columns.
     """
 
-    def asked(query: str, ids: Sequence[str]) -> list[Any]:
-        bounds = {"ids": list(ids), "low": min(ids), "high": max(ids)}
-        return dataset.read(query, bounds)
+    def asked(table: str, query: str, ids: Sequence[str]) -> list[Any]:
+        return dataset.read(query, {"ids": list(ids), "low": min(ids), "high": max(ids)}, table) if ids else []
 
-    runs = asked(_RUNS.format(more="".join(f", {column}" for column in more)), names)
+    runs = asked("executions", _RUNS.format(more="".join(f", {column}" for column in more)), names)
     environments, programs = (
-        {row[key]: row for row in asked(query, sorted({run[key] for run in runs}))}
-        for query, key in ((_ENVIRONMENTS, "environment_id"), (_PROGRAMS, "program_id"))
+        {row[key]: row for row in asked(table, query, sorted({run[key] for run in runs}))}
+        for table, query, key in (
+            ("environments", _ENVIRONMENTS, "environment_id"),
+            ("programs", _PROGRAMS, "program_id"),
+        )
     )
     found = {run["execution_id"]: run for run in runs}
     for run in (found[name] for name in names if name in found):
