@@ -147,6 +147,7 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> An
     root = f"{folder.resolve()}/"
     connection = duckdb.connect()
     connection.execute("SET parquet_metadata_cache = true")
+    connection.execute("SET enable_external_file_cache = false")  # the system keeps files in memory, once for all
     text = statements(root)
     for table in TABLES:
         here = reading(table, format)
