@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets.damage import reading
-from hearth.datasets.dataset import Dataset, Run
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.entries import Run
 from hearth.datasets.format.ids import names_of
 from hearth.schemas.published_rows import ProgramRow
 

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 
-from hearth.datasets.dataset import Dataset, Run
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.entries import Run
 from hearth.datasets.export.batches import Wanted, runs, write
 from hearth.datasets.export.planning_domain import planning_domain, relation_predicate
 from hearth.datasets.format.codecs import change_of

@@ -5,7 +5,8 @@ from typing import Any
 
 import orjson
 
-from hearth.datasets.dataset import OWN, Dataset, Run
+from hearth.datasets.dataset import OWN, Dataset
+from hearth.datasets.entries import Run
 from hearth.datasets.export.batches import Wanted, programs, runs, write
 from hearth.datasets.format.codecs import program_of
 from hearth.schemas.graph import to_release
