@@ -52,7 +52,7 @@ full: $(READY)  ## our corpus and 5,193 synthetic programs, 30,000 augmented as 
 	@$(FULL) --strength mild --out $(OUT)/full
 	@$(FULL) --strength thesis --out $(OUT)/full-thesis
 
-clips: $(READY)  ## some 20,000 two-second clips of drawn programs in our homes, in data_out/clips
+clips: $(READY)  ## some 26,000 two-second clips of drawn programs in our homes, in data_out/clips
 	@mkdir -p $(OUT)
 	@$(HEARTH) corpus synthesize 700 --seed $(SEED) --out $(OUT)/clips.jsonl
 	@$(HEARTH) build $(OUT)/clips.jsonl --out $(OUT)/clips --seed $(SEED) --workers $(JOBS) --tier clips

@@ -12,11 +12,11 @@ def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> No
     """Query a published dataset in SQL.
 
     Tables: activities, descriptions, programs, steps, homes, home_nodes, home_edges, environments, executions, ticks,
-    perturbations, repairs, splits, sketches, frames, videos, vocabulary, rejects, ledger. Macros:
-    program_text(program_id), graph_nodes(execution_id, tick), graph_edges(execution_id, tick),
+    perturbations, repairs, splits, sketches, frames, videos, clips, demonstration_frames, vocabulary, rejects, ledger.
+    Macros: program_text(program_id), graph_nodes(execution_id, tick), graph_edges(execution_id, tick),
     final_state(execution_id). View start_relations: edges per relation at the start of all executions. The dataset is
-    opened read-only. What `challenge build` writes has tasks, demonstrations, episodes, trajectories, and the views
-    goal_predicates and demonstration_steps.
+    opened read-only. What `challenge build` writes has tasks, demonstrations, episodes, trajectories, posteriors, and
+    the views goal_predicates and demonstration_steps.
 
     \b
     Examples:

@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.damage import reading, refused_question
-from hearth.datasets.entries import Entry, Run
 from hearth.datasets.file_ranges import reading_between
 from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
 from hearth.datasets.format.ids import names_of
+from hearth.datasets.program_entries import Entry, Run
 from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
 from hearth.datasets.stored_homes import StoredHome
 from hearth.schemas.explained import explained
 from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.published_rows import StoredRunRow
 from hearth.schemas.tables import TABLES
 from hearth.storage.manifest import NAME
 
@@ -197,7 +198,7 @@ class Dataset:
             # With literal ids DuckDB reads only the row groups that contain them; a join would read all.
             wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
             runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
-        return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs), tuple(sketches))
+        return Entry(found[0], tuple(map(self.run_of, runs)), tuple(repairs), tuple(sketches))
 
     @property
     def included(self) -> str:
@@ -211,6 +212,10 @@ class Dataset:
             KeyError: the name is unknown.
         """
         return self.stored_home(name).graph
+
+    def run_of(self, row: StoredRunRow) -> Run:
+        """The execution of a row."""
+        return Run(row, self.stored_home, self.folder)
 
     @cached_property
     def stored_home(self) -> Callable[[str], StoredHome]:

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.entries import Run
 from hearth.datasets.format.codecs import Bindings, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.tensors import GraphSample, Tensors, to_tensors
@@ -98,7 +97,7 @@ class ExecutionGraphs(Sequence[GraphPair]):
     def _read(self, ids: Sequence[str]) -> list[GraphPair]:
         found = {}
         for row in stored_cases(self._dataset, ids, ("ticks",)) if ids else ():
-            run = Run(self._dataset, row)
+            run = self._dataset.run_of(row)
             pair = GraphPair(row["execution_id"], program_of(row), run.bindings(), run.start, run.final)
             found[pair.execution_id] = pair
         return [found[name] for name in ids]

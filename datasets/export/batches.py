@@ -7,8 +7,8 @@ from typing import Any
 
 from hearth.datasets.damage import reading
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.entries import Run
 from hearth.datasets.format.ids import names_of
+from hearth.datasets.program_entries import Run
 from hearth.schemas.published_rows import ProgramRow
 
 _BATCH = 128
@@ -56,7 +56,7 @@ def runs(dataset: Dataset, wanted: Wanted, included: str = "") -> Iterator[tuple
         WHERE e.program_id IN ({chosen}) AND {included or dataset.included} ORDER BY e.program_id, e.execution_id"""
     for row in stream(dataset, query, asked):
         run: Any = {**row["run"], "environment": row["environment"]}
-        yield row["program"], Run(dataset, run)
+        yield row["program"], dataset.run_of(run)
 
 
 def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]:

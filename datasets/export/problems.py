@@ -16,10 +16,10 @@ from itertools import combinations
 from pathlib import Path
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.entries import Run
 from hearth.datasets.export.batches import Wanted, runs, write
 from hearth.datasets.export.planning_domain import planning_domain, relation_predicate
 from hearth.datasets.format.codecs import change_of
+from hearth.datasets.program_entries import Run
 from hearth.datasets.verify import StoredHomes
 from hearth.kb.tools.pddl import LIMITS, limit_predicate, option_predicate, options, predicate, unary_predicates
 from hearth.schemas.change import compose

@@ -22,7 +22,7 @@ PACKAGES = (
 ENTRY_POINTS = {
     "A dataset": (
         "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:Dataset.to_tensors", "hearth:ExecutionGraphs",
-        "hearth.datasets.entries:Run.graph", "hearth:verify", "hearth:export",
+        "hearth.datasets.program_entries:Run.graph", "hearth:verify", "hearth:export",
     ),
     "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
     "Homes": (

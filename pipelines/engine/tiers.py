@@ -25,7 +25,7 @@ TIERS: dict[str, dict[str, int]] = {
 """`standard` has the whole embedded corpus, each program in two homes, and takes minutes; `first` its first part in all
 homes, as versions before built it; `mini` is small, for trying things out; `full` has all programs, augmented to
 30,000, as text and graphs; `frames` has every program about once, with many pictures and some films; `clips` films 600
-programs small, in the homes of their part, as some 20,000 clips of two seconds; `demos` has every program once, and
+programs small, in the homes of their part, as some 26,000 clips of two seconds; `demos` has every program once, and
 pictures 2,000 of them from above, with class masks."""
 
 

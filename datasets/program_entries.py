@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.damage import reading
+from hearth.datasets.stored_homes import StoredHome
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.literals import RENAMED
@@ -17,8 +20,6 @@ from hearth.schemas.stage_rows import SketchRow
 
 if TYPE_CHECKING:
     import networkx
-
-    from hearth.datasets.dataset import Dataset
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +59,17 @@ class Entry:
 
 @dataclass(frozen=True)
 class Run:
-    """One execution of a program: its row, and its graphs after each tick."""
+    """One execution of a program: its row, and its graphs after each tick.
 
-    dataset: Dataset = field(repr=False)
+    Attributes:
+        row: as in the table `executions`, with its environment.
+        homes: gives a home of its dataset by name.
+        folder: of its dataset, for messages.
+    """
+
     row: StoredRunRow
+    homes: Callable[[str], StoredHome] = field(repr=False)
+    folder: Path = field(repr=False)
 
     @property
     def home(self) -> str:
@@ -102,7 +110,7 @@ class Run:
         ticks = self.row["ticks"]
         if not 0 <= tick <= len(ticks):
             raise IndexError(f"tick {tick} of a run of {len(ticks)}")
-        with reading(self.dataset.folder):
+        with reading(self.folder):
             return self._start.copy().apply(*map(change_of, ticks[:tick])).graph()
 
     @property
@@ -137,4 +145,4 @@ class Run:
 
         change = environment_change(self.row["environment"])
         added = tuple(in_states(node, node.states) for node in change.added_nodes)
-        return self.dataset.stored_home(self.home).working.copy().apply(replace(change, added_nodes=added))
+        return self.homes(self.home).working.copy().apply(replace(change, added_nodes=added))
