@@ -42,10 +42,17 @@ _HANDS = 2
 
 @dataclass(frozen=True, slots=True)
 class Weighted:
-    """A weighted distribution over names."""
+    """A weighted distribution over names.
+
+    Attributes:
+        things: the names.
+        sums: of their weights up to each.
+        likeliest: the name with the greatest weight; of several the first.
+    """
 
     things: tuple[str, ...]
     sums: tuple[float, ...]
+    likeliest: str
 
     @classmethod
     def of(cls, weights: Mapping[Any, float]) -> Weighted:
@@ -57,17 +64,11 @@ class Weighted:
         kept = {str(thing): weight for thing, weight in weights.items() if weight > 0}
         if not kept or not sum(kept.values()) < LARGEST_WEIGHT:
             raise ValueError(f"weights {str(weights)[:60]}")
-        return cls(tuple(kept), tuple(accumulate(kept.values())))
+        return cls(tuple(kept), tuple(accumulate(kept.values())), max(kept, key=lambda name: kept[name]))
 
     def draw(self, chance: Random) -> str:
         """A random name."""
         return chance.choices(self.things, cum_weights=self.sums)[0]
-
-    @property
-    def likeliest(self) -> str:
-        """The name with the greatest weight; of several the first."""
-        weights = [after - before for before, after in zip((0.0, *self.sums), self.sums, strict=False)]
-        return self.things[weights.index(max(weights))]
 
 
 @dataclass(frozen=True, slots=True)

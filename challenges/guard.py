@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
+from asyncio import CancelledError
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -19,6 +20,13 @@ from hearth.simulation.observation.views import View
 
 SECONDS = 30.0
 """An agent may think about one tick as long as this."""
+
+AGAIN = 0.1
+"""Seconds between the interruptions of an agent that goes on after the first."""
+
+
+class _Late(BaseException):
+    """An agent takes too long; no `Exception`, which agents catch."""
 
 
 class AgentError(Exception):
@@ -85,14 +93,22 @@ class Guarded:
         try:
             with _within(self.seconds):
                 yield
-        except TimeoutError:
+        except _Late:
             message = f"no answer within {self.seconds:g} s"
             raise AgentError(Diagnostic(Code.TIMED_OUT, message), self.number) from None
-        except HearthError as error:
-            raise AgentError(error.diagnostics[0], self.number) from error
-        except (Exception, SystemExit) as error:
-            message = f"{type(error).__name__}: {error}"[:300]
-            raise AgentError(Diagnostic(Code.AGENT_FAILED, message), self.number) from error
+        except (Exception, SystemExit, CancelledError, GeneratorExit) as error:
+            raise AgentError(_fault_of(error), self.number) from error
+
+
+def _fault_of(error: BaseException) -> Diagnostic:
+    """What an agent raised, of whose text nothing is taken for granted."""
+    if isinstance(error, HearthError) and error.diagnostics:
+        return error.diagnostics[0]
+    try:
+        text = f": {error}"
+    except Exception:
+        text = ""
+    return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}{text}"[:300])
 
 
 @contextmanager
@@ -103,10 +119,10 @@ def _within(seconds: float) -> Iterator[None]:
         return
 
     def late(_number: int, _frame: FrameType | None) -> None:
-        raise TimeoutError
+        raise _Late
 
     before = signal.signal(signal.SIGALRM, late)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
     try:
         yield
     finally:

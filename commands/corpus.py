@@ -82,9 +82,11 @@ def synthesize(
     if actions not in ("animated", "all"):
         raise typer.BadParameter("`animated` or `all`", param_hint="--actions")
     figures: dict[str, Any] = {"programs": count}
+    if described and splits:
+        raise typer.BadParameter("not with --described", param_hint="--splits")
     if described:
         records: Iterable[dict[str, Any]] = tuple(written.described())
-        count = sum(1 for _ in records)
+        count = figures["programs"] = sum(1 for _ in records)
     else:
         weights = synthesis.load(grammar or synthesis.FILE, inputs.read_knowledge(kb), every_action=actions == "all")
         drawn = list(synthesis.synthesize(count, seed, weights, descriptions))

@@ -49,7 +49,10 @@ def _ranges(folder: str, table: str, key: str, _: tuple[int, int] | None) -> tup
 
 def _range(footer: Any, key: str) -> tuple[str, str]:
     """The least and the greatest id by a file's footer; all ids where it does not say."""
-    column = footer.schema.names.index(key) if key in footer.schema.names else 0
+    paths = [footer.schema.column(number).path for number in range(len(footer.schema))]
+    if key not in paths:
+        return "", _LAST
+    column = paths.index(key)
     groups = [footer.row_group(number).column(column).statistics for number in range(footer.num_row_groups)]
     if not groups or not all(group is not None and group.has_min_max for group in groups):
         return "", _LAST

@@ -260,14 +260,17 @@ def _replay(job: tuple[str, list[str]]) -> Wrong:
     folder, names = job
     dataset, homes = opened(folder)
     wrong: Wrong = []
+    missing = dict.fromkeys(names)
     for case in stored_cases(dataset, names, ("ticks", "failure")):
+        missing.pop(case["execution_id"], None)
         try:
             difference = difference_on_replay(case, homes)
         except (HearthError, KeyError, ValueError, TypeError) as error:
             difference = f"it cannot be run: {type(error).__name__} {error}"
         if difference:
             wrong.append((case["execution_id"], difference))
-    return wrong
+    # A file's statistics decide which of its rows are read.
+    return wrong + [(name, "it is not read: the statistics of its file say that it has no such id") for name in missing]
 
 
 @lru_cache(maxsize=1)

@@ -11,7 +11,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.checkpoint import save
 from hearth.models.data import corpus, facts_of
-from hearth.models.interface import Training
+from hearth.models.interface import Settings, Training
 from hearth.models.model_registry import MODELS, settings_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -68,20 +68,29 @@ def fit(
     return facts
 
 
+BOOLEANS = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
+"""How the value of a setting may be written that is true or false."""
+
+
 def _changed(name: str, changed: Sequence[str]) -> dict[str, Any]:
     """Settings as `NAME=VALUE`, the values of the types of their defaults."""
     defaults = settings_of(name)
     kinds = {each.name: type(getattr(defaults, each.name)) for each in fields(defaults)}  # type: ignore[arg-type]
-    found = {}
+    found: dict[str, Any] = {}
     for text in changed:
         key, _, value = text.partition("=")
         kind = kinds.get(key)
         try:
             if kind is None:
                 raise ValueError
-            found[key] = value in ("true", "yes", "1") if kind is bool else kind(value)
-        except ValueError:
+            found[key] = BOOLEANS[value.lower()] if kind is bool else kind(value)
+        except (ValueError, KeyError):
             known = ", ".join(f"{key}={getattr(defaults, key)}" for key in kinds) or "no settings"
             message = f"`{text}` is not a setting of `{name}`"
             raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"it has {known}") from None
+    if isinstance(defaults, Settings):
+        try:
+            type(defaults).of(found)
+        except ValueError as error:
+            raise HearthError.of(Code.BAD_ARGUMENT, f"{error}", suggestion=f"other settings of `{name}`") from None
     return found

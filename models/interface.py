@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args, get_origin, get_type_hints
 
 from hearth.schemas.program import Step
 from hearth.simulation.rules import DEFAULT, Rules
@@ -68,6 +68,16 @@ class Training:
     folder: Path | None = None
 
 
+POSITIVE = ("batch", "every", "passes", "width")
+"""Settings that are at least 1."""
+
+
+def _choices(settings: type, name: str) -> tuple[str, ...]:
+    """The values that a setting can have; none where it can have any."""
+    hint = get_type_hints(settings).get(name)
+    return get_args(hint) if get_origin(hint) is Literal else ()
+
+
 class Settings:
     """What settings share: they are made from a checkpoint's, and written to it."""
 
@@ -83,6 +93,10 @@ class Settings:
         for name, value in values.items():
             if not _like(value, defaults.get(name)):
                 raise ValueError(f"the setting `{name}` is {str(value)[:40]}")
+            if isinstance(value, str) and value not in (allowed := _choices(cls, name) or (value,)):
+                raise ValueError(f"the setting `{name}` is {value[:40]}, not one of {', '.join(allowed)}")
+            if name in POSITIVE and not value:
+                raise ValueError(f"the setting `{name}` is 0")
             if type(value) in (int, float) and not 0 <= value <= MOST.get(name, LARGEST_SETTING):
                 raise ValueError(f"the setting `{name}` is {value:g}, not 0 to {MOST.get(name, LARGEST_SETTING):,}")
         return cls(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})

@@ -1,7 +1,8 @@
 """The one training loop: seeds, a budget, early stopping, clipped gradients, curves, and resuming.
 
 It knows a module, batches, a loss and a validation score, and nothing of what they are about. Random numbers of an
-epoch are derived from the seed and its number: a run that was stopped and continued is the same as one that was not.
+epoch are derived from the seed and its number: on the processor a run that was stopped and continued is the same as one
+that was not.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from hashlib import blake2b
 from pathlib import Path
 from random import Random
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -83,10 +85,20 @@ class Outcome(NamedTuple):
         return {**facts, "curves": curves}
 
 
+def weights_digest(module: torch.nn.Module) -> str:
+    """A digest of a module's weights."""
+    found = blake2b(digest_size=16)
+    for name, values in sorted(module.state_dict().items()):
+        found.update(name.encode())
+        found.update(values.detach().cpu().contiguous().numpy().tobytes())
+    return found.hexdigest()
+
+
 def train(task: Task[B], how: Training, seen: Seen = unseen) -> Outcome:
     """Train until the epochs, the minutes or the patience are used up; the module then has its best weights.
 
-    A budget in minutes ends training between epochs only, so that the same number of epochs gives the same weights.
+    A budget in minutes ends training between epochs only, so that on the processor the same number of epochs gives the
+    same weights; a GPU adds some gradients in another order each time.
 
     Args:
         task: what is trained.

@@ -105,6 +105,9 @@ def _scored_share(job: Job) -> list[Scored]:
     cases = {
         case["execution_id"]: case for case in stored_cases(dataset, list(dict.fromkeys(pair.id for pair in pairs)))
     }
+    if missing := sorted({pair.id for pair in pairs} - cases.keys()):
+        message = f"the statistics of its file say that it has no such id: {missing[0]}"
+        raise HearthError.of(Code.DAMAGED_FILE, message, file=str(dataset.folder / "executions"))
     filled = [_filled(pair, cases[pair.id]) for pair in pairs]
     every = zip(filled, lcs_of(filled, options.instances), strict=True)
     groups = groupby(every, key=lambda each: each[0].id)

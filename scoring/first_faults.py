@@ -18,6 +18,7 @@ class FirstFaults:
     def __init__(self) -> None:
         self._kept: list[Diagnostic] = []
         self._counts: Counter[Code] = Counter()
+        self._files: dict[Code, str] = {}
 
     def __bool__(self) -> bool:
         return bool(self._kept)
@@ -25,6 +26,7 @@ class FirstFaults:
     def append(self, fault: Diagnostic) -> None:
         """Add one."""
         self._counts[fault.code] += 1
+        self._files.setdefault(fault.code, fault.file)
         if self._counts[fault.code] <= SHOWN:
             self._kept.append(fault)
 
@@ -38,4 +40,4 @@ class FirstFaults:
         yield from self._kept
         for code, count in self._counts.items():
             if count > SHOWN:
-                yield Diagnostic(code, f"and {count - SHOWN:,} more of this kind", self._kept[0].file)
+                yield Diagnostic(code, f"and {count - SHOWN:,} more of this kind", self._files[code])

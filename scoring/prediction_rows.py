@@ -83,9 +83,10 @@ def _step(item: Any) -> Step | None:
         objects = tuple(
             ObjectRef(ref["name"], int(ref.get("instance") or 0), ref.get("node")) for ref in item.get("objects") or ()
         )
-        return Step(item["action"], objects, int(item.get("agent") or 0), bool(item.get("joins")))
-    except (AttributeError, KeyError, TypeError, ValueError):
+        step = Step(item["action"], objects, int(item.get("agent") or 0), bool(item.get("joins")))
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError):
         return None
+    return step if all(isinstance(name, str) for name in (step.action, *(ref.name for ref in objects))) else None
 
 
 def _json_lines(data: bytes, path: Path, faults: FirstFaults) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -126,7 +127,7 @@ def _parquet(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, dict[str
             for values in batch.to_pylist():
                 line += 1
                 yield line, values
-    except (pa.ArrowInvalid, pa.ArrowNotImplementedError, OSError) as error:
+    except (pa.ArrowException, UnicodeDecodeError, OSError) as error:
         message = f"not readable as Parquet: {error}".splitlines()[0]
         raise HearthError.of(Code.BAD_TABLE, message, file=str(path)) from None
 

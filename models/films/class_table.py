@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.models.films.clip_data import Instruction
+from hearth.models.films.film_arrays import damaged
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -50,6 +51,9 @@ class ClassTable:
     def of(cls, knowledge: Knowledge, done: Sequence[Instruction]) -> ClassTable:
         """Those of what is known, and of the instructions of training clips."""
         things = [*knowledge.objects.values()]
+        for each in done:
+            if len(each.objects) > PLACES or not all(name in knowledge.objects for name in each.objects):
+                raise damaged("clips", f"`{each.action}` with {', '.join(each.objects)[:80]} is not an instruction")
         row = {thing.name: number for number, thing in enumerate(things, 1)}
         actions = sorted({each.action for each in done})
         counts = {action: max(len(each.objects) for each in done if each.action == action) for action in actions}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -49,7 +50,7 @@ def confusion(dataset: Dataset, model: Path | str, homes: str = "all") -> Confus
 
 def of_pairs(pairs: Sequence[tuple[str, str]]) -> Confusion:
     """That of pairs of an action and what it is taken for."""
-    rows, columns = (Counter(column) for column in zip(*pairs, strict=True))
+    rows, columns = (Counter(pair[place] for pair in pairs) for place in (0, 1))
     actions = sorted(rows | columns, key=lambda name: (-rows[name], name))
     table = np.zeros((len(actions), len(actions)))
     for one, other in pairs:
@@ -65,9 +66,9 @@ def drawn(found: Confusion) -> str:
     lines = []
     for row, name in enumerate(found.actions):
         y = top + cell * row
-        lines.append(f'<text x="{left - 8}" y="{y + 27}" text-anchor="end">{name} ({found.clips[row]})</text>')
+        lines.append(f'<text x="{left - 8}" y="{y + 27}" text-anchor="end">{escape(name)} ({found.clips[row]})</text>')
         x = left + cell * row + 26
-        lines.append(f'<text x="{x}" y="{top - 8}" transform="rotate(-50 {x} {top - 8})">{name}</text>')
+        lines.append(f'<text x="{x}" y="{top - 8}" transform="rotate(-50 {x} {top - 8})">{escape(name)}</text>')
         for column, share in enumerate(found.shares[row]):
             lines += _cell(left + cell * column, y, cell, float(share))
     lines.append(f'<text x="{left}" y="20" font-size="14">What the actions of test clips are taken for</text>')

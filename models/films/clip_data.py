@@ -89,6 +89,8 @@ class Clips:
             raise HearthError.of(Code.UNKNOWN_ID, message, suggestion="`make clips` makes some")
         if any(None in row or row[3] < 1 or None in row[5] for row in rows):
             raise damaged("clips", "a row lacks a value, or has no frames")
+        if len({row[3] for row in rows}) > 1:
+            raise damaged("clips", "clips have different numbers of frames")
         files = list(dict.fromkeys((row[0], row[1]) for row in rows))[: most or None]
         numbers = {execution: number for number, (execution, _) in enumerate(files)}
         found, least = [], [0] * len(files)

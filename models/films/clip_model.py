@@ -12,6 +12,7 @@ import torch
 from numpy.typing import NDArray
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.data import facts_of
 from hearth.models.devices import device, moved, place_of
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
@@ -84,7 +85,7 @@ class ClipModel(Settings):
             best = model.scores_of(checked, looked_at, RELATIONS[:1]).argmax(1).tolist()
             return accuracies(done, [labels.instructions[number] for number in best])["mean"]
 
-        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(labels.instructions)])
+        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), facts_of(dataset)["digest"]])
         model.facts.update({"clips": len(learned), "seed": how.seed, **train(task, how, seen).record()})
         return model
 

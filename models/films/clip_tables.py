@@ -173,6 +173,8 @@ def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instructio
     """A row for each kind of homes, of the answers of each seed."""
     for homes, kinds in HOMES.items():
         which = [number for number, clip in enumerate(test.clips) if clip.kind in kinds]
+        if not which:
+            continue
         wanted = [test.clips[number].done for number in which]
         each = [accuracies(wanted, [answers[number] for number in which]) for answers in named]
         means = {name: sum(scores[name] for scores in each) / len(each) for name in COLUMNS}

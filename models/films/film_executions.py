@@ -12,6 +12,8 @@ from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.models.data import AT_ONCE
 from hearth.models.interface import Steps
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef
 from hearth.simulation.world.world import World
 
@@ -35,6 +37,8 @@ def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
             world = start_of(case["environment"], case["home"], homes)
             steps = program_of(case, bindings_of(case["bindings"])).steps
             found[case["execution_id"]] = Shown(world, by_class(steps, world), case["activity_id"])
+    if missing := [name for name in executions if name not in found]:
+        raise HearthError.of(Code.UNKNOWN_ID, f"a clip is of an unknown execution, `{missing[0][:80]}`")
     return [found[name] for name in executions]
 
 

@@ -59,7 +59,7 @@ def film_page(dataset: Dataset, model: Path | str, films: int = 3) -> str:
         moves = found.moves(trained.order)
         read = followed(found.scores, found.instructions, shown[film].world, moves)
         title, text = texts.get(name, (name, ""))
-        home = f"in {escape(name.rpartition('@')[2].partition('/')[0])} ({kinds[film]} home)"
+        home = f"in {escape(name.rpartition('@')[2].partition('/')[0])} ({escape(kinds[film])} home)"
         parts.append(f"<h2>{escape(title)}, {home}</h2><p>{escape(text)}</p>{''.join(_frames(coloured.films[film]))}")
         parts.append(_programs(shown[film].steps, read.steps))
     head = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Programs from films</title><style>{STYLE}'
@@ -72,7 +72,7 @@ def _texts(dataset: Dataset) -> dict[str, tuple[str, str]]:
         "SELECT execution_id, any_value(programs.title), any_value(programs.description) FROM clips "
         "JOIN executions USING (execution_id) JOIN programs USING (program_id) GROUP BY execution_id"
     )
-    return {name: (title, text) for name, title, text in dataset.rows(query)[1]}
+    return {name: (title or "", text or "") for name, title, text in dataset.rows(query)[1]}
 
 
 def _frames(pictures: NDArray[Any]) -> Iterator[str]:

@@ -79,10 +79,10 @@ def _retrieved(video: Any, path: Path) -> Iterator[Any]:
         raise HearthError.of(Code.FILE_TOO_LARGE, message, file=str(path), suggestion=remedy)
     number = taken = 0
     while rate > 0 and video.grab():
-        if number >= rate * taken / RATE:
-            done, picture = video.retrieve()
-            if not done:
-                return
+        done, picture = video.retrieve() if number >= rate * taken / RATE else (True, None)
+        if not done:
+            return
+        while number >= rate * taken / RATE:  # of a slow film the same picture again
             yield picture
             taken += 1
         number += 1

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from torch.nn import functional
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.data import facts_of
 from hearth.models.devices import device, moved, place_of
 from hearth.models.filled import filled
 from hearth.models.films.clip_data import Clips, no_programs
 from hearth.models.films.film_arrays import COLOURS, MASKS
-from hearth.models.films.mask_network import MaskNetwork
+from hearth.models.films.mask_network import GROUPS, MaskNetwork
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train
 from hearth.storage.parallel import Seen, unseen
@@ -42,11 +43,13 @@ RAREST = 1e-4
 
 
 class Frames:
-    """Frames of films: their pictures and masks.
+    """Frames of coloured films: their pictures and masks.
 
     Args:
-        clips: of a part, with coloured films.
+        dataset: with clips.
+        part: of the clips.
         every: frames from one that is taken to the next one.
+        films: at most; 0 for all.
     """
 
     def __init__(self, dataset: Dataset, part: str, every: int, films: int = 0) -> None:
@@ -81,6 +84,15 @@ class MaskModel(Settings):
     light: float = 0.3
     films: int = 0
 
+    def __post_init__(self) -> None:
+        """A width that the norms divide.
+
+        Raises:
+            ValueError: it is another.
+        """
+        if self.width % GROUPS:
+            raise ValueError(f"the setting `width` is {self.width}, not a multiple of {GROUPS}")
+
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedMaskModel:
         """Train on coloured films of `train`; the mean IoU of those of `validation` decides when to stop."""
         learned = Frames(dataset, "train", self.every, self.films)
@@ -109,7 +121,7 @@ class MaskModel(Settings):
             found = np.concatenate([*model.numbers(checked.pictures)])
             return mean_iou(compared, found, len(classes) + 1)
 
-        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(classes)])
+        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), facts_of(dataset)["digest"]])
         model.facts.update({"pictures": len(learned), "seed": how.seed, **train(task, how, seen).record()})
         return model
 
@@ -122,7 +134,9 @@ class MaskModel(Settings):
 
     def _classes(self, masks: NDArray[np.uint16]) -> tuple[tuple[int, ...], torch.Tensor]:
         """The classes that are learned, the commonest first, and the weights of the palette's numbers."""
-        counts = np.bincount(masks.ravel(), minlength=1)
+        counts = np.zeros(np.iinfo(masks.dtype).max + 1, np.int64)
+        for frame in masks:  # of all at once numpy would make a copy of eight bytes a pixel
+            counts += np.bincount(frame.ravel(), minlength=len(counts))
         common = [number for number in np.argsort(-counts, kind="stable").tolist() if number and counts[number]]
         classes = tuple(common[:MOST_CLASSES])
         shares = np.maximum(counts[[0, *classes]] / masks.size, RAREST)

@@ -14,6 +14,9 @@ from torch.nn import functional
 DILATIONS = (1, 2, 4, 8, 1)
 """Of the layers in the middle."""
 
+GROUPS = 8
+"""Of numbers that are normed together; every width is a multiple."""
+
 LARGE, MEDIUM = 24, 48
 """Numbers for a pixel at the whole size and at half of it."""
 
@@ -22,7 +25,7 @@ def _layer(one: int, other: int, size: int = 3, *, stride: int = 1, dilation: in
     """A convolution that keeps the middle of the picture, its norm and a ReLU."""
     fill = dilation * (size // 2)
     convolution = nn.Conv2d(one, other, size, stride=stride, padding=fill, dilation=dilation, bias=False)
-    return nn.Sequential(convolution, nn.GroupNorm(8, other), nn.ReLU())
+    return nn.Sequential(convolution, nn.GroupNorm(GROUPS, other), nn.ReLU())
 
 
 class MaskNetwork(nn.Module):

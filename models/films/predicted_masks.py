@@ -37,18 +37,19 @@ def mask_predictor(model: str) -> TrainedMaskModel:
     return network
 
 
-def predicted(model: str, dataset: Dataset, part: str) -> Clips:
+def predicted(model: str, dataset: Dataset, part: str, most: int = 0) -> Clips:
     """The clips of a part's coloured films as a network predicts their masks.
 
     Args:
         model: as of `mask_predictor`.
         dataset: with clips.
         part: of the clips.
+        most: films, at most; 0 for all.
 
     Raises:
         HearthError: errors of `mask_predictor` and of `Clips.of`.
     """
-    network, clips = mask_predictor(model), Clips.of(dataset, part, array=COLOURS)
+    network, clips = mask_predictor(model), Clips.of(dataset, part, most, array=COLOURS)
     return replace(clips, films=PredictedMasks(clips.films, network))
 
 

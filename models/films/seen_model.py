@@ -13,18 +13,19 @@ import torch
 from numpy.typing import NDArray
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.data import facts_of
 from hearth.models.devices import device, moved, place_of
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import PLACES, ClassTable
 from hearth.models.films.clip_data import Clips, Instruction, no_programs
 from hearth.models.films.film_readings import Reading, reading
-from hearth.models.films.predicted_masks import predicted
+from hearth.models.films.predicted_masks import mask_predictor, predicted
 from hearth.models.films.seen_clips import SeenClips, joined, offsets, seen_clips
 from hearth.models.films.seen_network import FRAMES, SeenBatch, SeenNetwork, loss_of
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.training import Task, train
+from hearth.models.training import Task, train, weights_digest
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
@@ -86,7 +87,8 @@ class SeenModel(Settings):
         true, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
         parts = [true]
         if self.masks:
-            known, checked = (predicted(self.masks, dataset, part) for part in ("train", "validation"))
+            known = predicted(self.masks, dataset, "train", self.films)
+            checked = predicted(self.masks, dataset, "validation")
             parts.append(known)
         learned = [clip.done for part in parts for clip in part.clips]
         table = ClassTable.of(dataset.knowledge, learned)
@@ -111,7 +113,8 @@ class SeenModel(Settings):
         def validate() -> float:
             return accuracies([clip.done for clip in checked.clips], model.named_of(looked_at))["mean"]
 
-        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(table)])
+        data = [facts_of(dataset)["digest"], self.masks and weights_digest(mask_predictor(self.masks).network)]
+        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(table), *data])
         model.facts.update({"clips": len(learned), "seed": how.seed, **train(task, how, seen).record()})
         return model
 

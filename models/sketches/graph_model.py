@@ -67,7 +67,8 @@ class GraphModel(Settings):
         def validate() -> float:
             return -float(np.mean([float(loss_of(network, batch)) for batch in _batches(check, self.batch)]))
 
-        task = Task(network, batches, lambda batch: loss_of(network, batch), validate, [asdict(self), len(learn)])
+        identity = [asdict(self), len(learn), corpus.facts]
+        task = Task(network, batches, lambda batch: loss_of(network, batch), validate, identity)
         outcome = train(task, how, seen)
         return TrainedGraphModel(self, words, actions, network, {"programs": len(learn), **outcome.record()})
 

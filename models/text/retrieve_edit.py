@@ -138,5 +138,6 @@ def consensus(programs: Sequence[Steps], weights: Sequence[float]) -> Steps:
         shares[program] = shares.get(program, 0.0) + weight
     distinct = list(shares)
     alike = sum(matrix(distinct, distinct, level, workers=1).astype(float) for level in LEVELS)  # (N, N)
-    totals = np.round(alike @ np.array(list(shares.values())), 5)
+    each = np.array(list(shares.values()))
+    totals = np.round(alike @ (each / max(each.sum(), np.finfo(float).tiny)), 5)
     return distinct[int(totals.argmax())]

@@ -102,3 +102,4 @@ def test_figures_are_of_all_and_of_the_test_of_each_split(drawn, grammar):
     assert all(0.6 < value < 0.95 for value in found.values()), "descriptions leave out half of the parts"
     pairs = [row.program for row in rows if (row.split, row.part, row.description) == ("pairs", "test", 0)]
     assert found["pairs"] == round(mean_lcs([Reading(drawn[number - 1], 0) for number in pairs], grammar), 3)
+    assert Weighted.of({"cup": 0.1, "glass": 0.1, "mug": 0.1}).likeliest == "cup"

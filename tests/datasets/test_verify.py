@@ -350,3 +350,18 @@ def test_a_part_that_counts_other_rows_and_a_field_of_no_manifest(copy, more):
 def test_timing_of_no_build(copy):
     (copy / "timing.json").write_text('{"seconds": 1, "workers": 2, "more": "harm"}')
     assert codes(copy) == ["BAD_JSON"]
+
+
+def test_statistics_that_hide_rows(copy):
+    """What a file's footer says decides what is read of it; a row that is not read is not verified."""
+    path = part(copy, "executions")
+    names = pq.read_table(path, columns=["execution_id"])["execution_id"].to_pylist()
+    data = path.read_bytes()
+    footer = len(data) - 8 - int.from_bytes(data[-8:-4], "little")
+    end = data[footer:]
+    for name in {min(names), max(names)}:
+        end = end.replace(name.encode(), b"~" * len(name.encode()))
+    path.write_bytes(data[:footer] + end)
+    believed(copy, path)
+    assert "REPLAY_DIFFERS" in codes(copy)
+    assert "statistics" in verify(copy).faults[0].message

@@ -84,3 +84,26 @@ def test_a_pipe_is_not_waited_for(tmp_path):
     with pytest.raises(HearthError) as found:
         read_pictures(tmp_path / "film.webm")
     assert found.value.diagnostics[0].code == Code.UNSUPPORTED_FILE
+
+
+@pytest.mark.parametrize(("rate", "pictures"), [(2.0, 40), (15.0, 300), (4.5, 90)])
+def test_a_film_is_as_long_as_it_was_at_any_rate(monkeypatch, rate, pictures):
+    """Slow films show the same picture again."""
+    cv2 = pytest.importorskip("cv2")
+    from hearth.models.films.film_input import _retrieved
+
+    class Video:
+        left = pictures
+
+        def get(self, what):
+            return rate if what == cv2.CAP_PROP_FPS else 10
+
+        def grab(self):
+            self.left -= 1
+            return self.left >= 0
+
+        def retrieve(self):
+            return True, self.left
+
+    found = list(_retrieved(Video(), None))
+    assert len(found) == pytest.approx(20 * RATE, abs=RATE / rate) and found == sorted(found, reverse=True)

@@ -106,10 +106,19 @@ def test_pictures_in_another_light_keep_what_they_show():
 
 def test_only_a_network_of_masks_predicts_them(model, tmp_path, monkeypatch):
     films = [drawn(9)[0], drawn(9)[0]]
-    monkeypatch.setattr(Clips, "of", lambda dataset, part, array: Clips((part, array), films, (), 9))
+    monkeypatch.setattr(Clips, "of", lambda dataset, part, most, array: Clips((part, array), films, (), 9))
     save(model.checkpoint(), tmp_path)
     found = predicted(str(tmp_path), None, "train")
     assert found.executions == ("train", COLOURS)
     assert np.array_equal(found.films[0], model.masks(films[0]))
     with pytest.raises(HearthError, match="does not predict masks"):
         predicted("clips-context", None, "train")
+
+
+def test_the_matrix_of_figure_4_4_shows_names_as_text():
+    from hearth.models.films.clip_confusion import drawn as matrix
+    from hearth.models.films.clip_confusion import of_pairs
+
+    found = matrix(of_pairs([("<script>alert(1)</script>", "A & B")]))
+    assert "<script>" not in found and "&lt;script&gt;" in found and "A &amp; B" in found
+    assert of_pairs([]).actions == ()

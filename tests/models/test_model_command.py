@@ -121,3 +121,24 @@ def test_without_the_extra_it_says_how_to_install_it(checkpoint, monkeypatch):
     monkeypatch.setitem(sys.modules, "safetensors.numpy", None)
     result = call("show", checkpoint, "Watch TV")
     assert result.exit_code == 1 and "pip install '.[models]'" in result.output
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "said"),
+    [
+        ("clips-seen", "context=maybe", "not a setting"),
+        ("films-pg-lcs", "reward=LCS", "not one of lcs"),
+        ("masks", "width=60", "multiple of 8"),
+        ("masks", "batch=0", "is 0"),
+    ],
+)
+def test_values_of_settings_that_cannot_be(made, tmp_path, name, setting, said):
+    result = call("train", name, made.out, "--out", tmp_path, "--set", setting)
+    assert result.exit_code == 1 and said in result.output and "Traceback" not in result.output
+
+
+@pytest.mark.parametrize(("value", "meant"), [("True", True), ("yes", True), ("False", False), ("0", False)])
+def test_settings_that_are_true_or_false(value, meant):
+    from hearth.models.fit_model import _changed
+
+    assert _changed("clips-seen", [f"context={value}"]) == {"context": meant}

@@ -55,3 +55,12 @@ def test_the_consensus_is_that_of_each_pair_apart(seed):
         return sum(score.mean * weight for score, weight in zip(scores, weights, strict=True))
 
     assert total(consensus(programs, weights)) == pytest.approx(max(map(total, programs)), abs=1e-4)
+
+
+def test_the_consensus_does_not_depend_on_the_unit_of_weights():
+    from hearth.models.text.retrieve_edit import consensus
+
+    one, two = parse_steps("[Walk] <sofa> (1)"), parse_steps("[Open] <fridge> (1)")
+    programs = [tuple(one), tuple(two), (*one, *two), tuple(two)]
+    weights = [0.2, 0.5, 0.1, 0.7]
+    assert consensus(programs, weights) == consensus(programs, [weight * 1e-9 for weight in weights]) == tuple(two)

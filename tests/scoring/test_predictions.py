@@ -167,3 +167,19 @@ def test_of_many_faults_the_first_of_each_kind_are_kept_and_the_others_counted()
     found.append(Diagnostic(Code.DUPLICATE, "again", "f", 7))
     assert found and len(found._kept) == SHOWN + 1
     assert [fault.message for fault in found][-3:] == ["19", "again", f"and {1_000 - SHOWN} more of this kind"]
+
+
+@pytest.mark.parametrize("step", [{"action": ["x"], "objects": []}, {"action": "Walk", "objects": [{"name": 3}]}])
+def test_steps_whose_names_are_no_texts(write, step):
+    ((code, line, _, _),) = faults(write({"id": "a", "predicted": [step], "reference": "[Walk] <sofa> (1)"}))
+    assert (code, line) == ("BAD_TABLE", 1)
+
+
+def test_what_more_there_is_of_a_kind_names_the_file_of_that_kind():
+    from hearth.schemas.diagnostics import Diagnostic
+    from hearth.schemas.failures import Code
+
+    found = FirstFaults()
+    found.append(Diagnostic(Code.BAD_JSON, "x", "one.jsonl"))
+    found.extend(Diagnostic(Code.UNKNOWN_ID, "y", "other.jsonl") for _ in range(SHOWN + 5))
+    assert [each.file for each in found][-1] == "other.jsonl"
