@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,11 +11,14 @@ from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from hearth.datasets.dataset import Dataset
-from hearth.models.checkpoint import NAME, load
+from hearth.models.checkpoint import NAME
 from hearth.models.data import facts_of
 from hearth.models.fit_model import STATE, fit
+from hearth.models.model_registry import settings_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.files import file_digest, value_digest, write_json
+from hearth.storage.input_files import read_input
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 
@@ -61,6 +65,10 @@ DRAWN_SETTINGS = ("dropout=0.2", "batch=64")
 """Settings of the first phase with drawn programs: of many texts less has to be left out, and more fit in a batch."""
 
 
+RECIPE = "recipe.json"
+"""The file that says how a checkpoint of a table was trained."""
+
+
 class Needed(NamedTuple):
     """A model that a table needs."""
 
@@ -90,6 +98,17 @@ class Needed(NamedTuple):
         word = "masks" if self.name == PREDICTED else "start"
         start = [f"{word}={self.before.folder(out)}"] if self.before else []
         return [*start, *many, *([self.changed] if self.changed else [])]
+
+    @property
+    def pace(self) -> tuple[float, int]:
+        """Rate of learning, and the most passes over the examples."""
+        return RATES.get(self.name, USUAL_RATE), EPOCHS.get(self.name, USUAL_EPOCHS)
+
+    def recipe(self, out: Path, dataset: str, how: Mapping[str, Any]) -> str:
+        """A digest of what its weights depend on: dataset, settings, training, the model that it goes on from."""
+        before = file_digest(self.before.folder(out) / NAME) if self.before else ""
+        settings = repr(settings_of(self.name))
+        return value_digest([dataset, self.name, settings, self.settings(out)[bool(before) :], dict(how), before])
 
     @property
     def chain(self) -> list[Needed]:
@@ -180,7 +199,7 @@ def training(plans: Sequence[Plan], seeds: int) -> list[Needed]:
 
 
 def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen = unseen) -> bool:
-    """Train a model unless it was trained on this dataset already; whether it was trained now.
+    """Train a model unless it was trained in this way on this dataset already; whether it was trained now.
 
     Args:
         needed: the model.
@@ -189,16 +208,16 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
         minutes: the budget of the training; 0 for none.
         seen: reports epochs.
     """
-    folder = needed.folder(out)
-    digest = facts_of(Dataset.open(dataset))["digest"]
+    folder, rate, epochs = needed.folder(out), *needed.pace
+    how = {"epochs": epochs, "minutes": minutes, "rate": rate, "seed": needed.seed}
+    recipe = {"digest": needed.recipe(out, facts_of(Dataset.open(dataset))["digest"], how)}
     if (folder / NAME).exists():
-        if load(folder).trained.get("digest") == digest:
+        if (folder / RECIPE).exists() and json.loads(read_input(folder / RECIPE)) == recipe:
             rmtree(folder / STATE, ignore_errors=True)  # of a training that was stopped at its very end
             return False
-        rmtree(folder)  # of a dataset that was built anew since
-    rate, epochs = RATES.get(needed.name, USUAL_RATE), EPOCHS.get(needed.name, USUAL_EPOCHS)
-    how = {"epochs": epochs, "minutes": minutes, "rate": rate, "seed": needed.seed}
+        rmtree(folder)  # of another dataset, other settings, or a model before it that was trained anew
     fit(needed.name, dataset, folder, needed.split, needed.settings(out), how=how, seen=seen)
+    write_json(folder / RECIPE, recipe)
     return True
 
 

@@ -66,5 +66,6 @@ def test_a_table_of_what_is_trained_for_it(tmp_path):
     manifest = data / "publish/manifest.json"
     manifest.write_bytes(manifest.read_bytes().replace(b'"bytes": ', b'"bytes": 1', 1))
     assert train(needed, data, tmp_path, 0)  # another dataset, by its files
+    assert train(needed, data, tmp_path, 1) and not train(needed, data, tmp_path, 1)  # another budget
     found = {row.method: row for row in rows(plan, data, tmp_path, 2, 10)}
     assert found["nearest"].of == "ours" and found["nearest"].seeds == 1
