@@ -76,13 +76,14 @@ def test_it_learns_from_predicted_masks_beside_true_ones(clips, monkeypatch):
     halves = replace(clips, clips=clips.clips[:6]), replace(clips, clips=clips.clips[6:])
     parts = []
 
-    def predicted(model, dataset, part):
+    def predicted(model, dataset, part, most=0):
         parts.append((model, part))
         return halves[1]
 
     monkeypatch.setattr(seen_model, "predicted", predicted)
     monkeypatch.setattr(Clips, "of", lambda dataset, part, films=0: halves[0])
-    data = SimpleNamespace(knowledge=default())
+    monkeypatch.setattr(seen_model, "mask_predictor", lambda _: SimpleNamespace(network=torch.nn.Linear(1, 1)))
+    data = SimpleNamespace(knowledge=default(), manifest={"files": {}})
     both = SeenModel(width=16, layers=1, masks="network").fit(data, Training(epochs=1))
     assert parts == [("network", "train"), ("network", "validation")]
     assert both.facts["clips"] == 12
