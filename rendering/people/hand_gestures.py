@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import radians, sin
 
 import numpy as np
 
+from hearth.kb.modifiers import value
 from hearth.rendering.people.acting import Actor, reachable
 from hearth.rendering.people.aims import (
     OTHER,
@@ -31,6 +32,9 @@ from hearth.schemas.program import Step
 ABOVE = 0.12
 """Metres above a vessel from which is poured into it."""
 
+ACROSS = 0.1
+"""Metres beyond the middle of the body from which on a hand reaches across it."""
+
 TILTED, DRINKING = 80.0, 38.0
 """Degrees by which a pouring vessel, and one at the mouth, are tilted."""
 
@@ -52,7 +56,9 @@ def gesturing(
         "read": lambda: _reading(actor, held, acting, graph, places),
         "rub": lambda: _rubbing(actor, held, acting, about, graph, places),
         "push": lambda: _pushing(actor, held, about, places),
-        "object": lambda: _touching(gesture, actor, acting, about, graph, places),
+        "object": lambda: _by_nearer_hand(
+            lambda side: _touching(gesture, actor, side, about, graph, places), acting, held, bool(value(step, "hand"))
+        ),
     }
     if gesture.hand in makers:
         return makers[gesture.hand]()
@@ -196,6 +202,15 @@ def _pushing(actor: Actor, held: Mapping[str, int], target: int, places: Places)
         if side not in held:
             found[side] = Aim((x + sign * width, y, z), Hand("flat", (0.0, 0.0, 1.0)))
     return found
+
+
+def _by_nearer_hand(
+    touch: Callable[[str], dict[str, Aim]], side: str, held: Mapping[str, int], asked: bool
+) -> dict[str, Aim]:
+    """A touch by the hand that is meant; by the other, if both are free and the first would reach across the body."""
+    found = touch(side)
+    across = any(SIDES[side] * aim.palm[0] < -ACROSS for aim in found.values())
+    return touch(OTHER[side]) if across and not held and not asked else found
 
 
 def _touching(
