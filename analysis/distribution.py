@@ -6,6 +6,7 @@ Also the diversity of one program's environments (5.5.2, figure 5-4).
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -41,7 +42,8 @@ def observed(path: Path, knowledge: Knowledge, limit: int | None = None) -> tupl
             text = release.text_of(value, value["grounded"][home]) if home in value.get("grounded", {}) else ""
             graphs = release.json_of(value, name)
             if isinstance(text, str) and not isinstance(graphs, Diagnostic):
-                _count_graph(graphs["init_graph"], _bound(text), knowledge, places, states)
+                with suppress(KeyError, TypeError, AttributeError):  # a graph that lacks what a graph has counts less
+                    _count_graph(graphs["init_graph"], _bound(text), knowledge, places, states)
     return dict(places), dict(states)
 
 
@@ -59,10 +61,12 @@ def _count_graph(
             held[edge["from_id"]].append(edge["to_id"])
     for node in sorted(nodes & by_id.keys()):
         known = by_id[node]
-        if known["category"] in (ROOM_CATEGORY, "Characters"):
+        if known.get("category") in (ROOM_CATEGORY, "Characters"):
             continue
         kind = _canonical(known["class_name"], knowledge)
-        holders = [by_id[i]["class_name"] for i in held[node] if i in by_id and by_id[i]["category"] != ROOM_CATEGORY]
+        holders = [
+            by_id[i]["class_name"] for i in held[node] if i in by_id and by_id[i].get("category") != ROOM_CATEGORY
+        ]
         _count(kind, holders, known["states"], knowledge, places, states)
 
 

@@ -178,6 +178,10 @@ class Paired:
     effect: float | None
 
 
+SAME = 1e-9
+"""The share of the largest value up to which differences do not differ from each other."""
+
+
 def paired(one: Mapping[str, float], other: Mapping[str, float]) -> Paired:
     """Whether a metric differs between two agents on the tasks that both did."""
     from scipy import stats
@@ -187,7 +191,8 @@ def paired(one: Mapping[str, float], other: Mapping[str, float]) -> Paired:
     if len(tasks) < 2 or not any(differences):
         return Paired(None, None, max(len(tasks) - 1, 0), None)
     deviation = (mean(differences).error or 0.0) * math.sqrt(len(tasks))
-    if deviation == 0.0:
+    largest = max(abs(value) for task in tasks for value in (one[task], other[task]))
+    if deviation <= SAME * largest:  # equal but for rounding
         return Paired(None, None, len(tasks) - 1, None)
     found = stats.ttest_rel([one[task] for task in tasks], [other[task] for task in tasks])
     return Paired(float(found.statistic), float(found.pvalue), len(tasks) - 1, mean(differences).value / deviation)

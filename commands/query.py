@@ -1,5 +1,6 @@
 """`query`: SQL over a published dataset."""
 
+from collections.abc import Sequence
 from datetime import date, datetime, time
 from decimal import Decimal
 from pathlib import Path
@@ -33,12 +34,22 @@ def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> No
     opened = Dataset.open(dataset) if challenge is None else challenge
     columns, found = opened.rows(text, rows + 1 if rows and not as_json else None)
     if as_json:
-        output.emit([dict(zip(columns, map(_json, row), strict=True)) for row in found])
+        names = _different(columns)
+        output.emit([dict(zip(names, map(_json, row), strict=True)) for row in found])
         return
     more = bool(rows) and len(found) > rows
     output.table(columns, ([_cell(cell) for cell in row] for row in (found[:rows] if more else found)))
     if more:
         print(f"... more than {rows:,} rows; --rows 0 prints all")
+
+
+def _different(columns: Sequence[str]) -> list[str]:
+    """Names of columns; of several of one name, the later ones with a number that none has."""
+    found: list[str] = []
+    for name in columns:
+        names = (name, *(f"{name}_{number}" for number in range(1, len(columns) + 1)))
+        found.append(next(each for each in names if each not in found and (each == name or each not in columns)))
+    return found
 
 
 def _cell(value: Any) -> Any:

@@ -222,6 +222,8 @@ def dataset(
     from hearth.scoring.dataset_scores import score_dataset
     from hearth.scoring.evaluate import Options
 
+    if failures and split:
+        raise typer.BadParameter("splits have no failing executions", param_hint="--failures")
     how = Options(match=match, scope=scope, instances=instances, seed=seed)
     with bar("shares scored") as seen:
         opened = Dataset.open(folder, failures)

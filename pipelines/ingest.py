@@ -1,9 +1,9 @@
 """Stage 1: reads descriptions and programs of any known form, one row each, their text unchanged."""
 
 import shutil
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
+from itertools import chain, count
 from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
@@ -56,7 +56,7 @@ READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     crowd.NAME: lambda item, salt: [crowd.read(item, salt)],
     text.NAME: lambda item, salt: [text.read(item)],
     plans.NAME: lambda item, salt: [plans.read(item)],
-    ours.NAME: lambda item, salt: ours.read(item),
+    ours.NAME: ours.read,
     published.NAME: lambda item, salt: published.read(item),
     sketches.NAME: lambda item, salt: [sketches.read(item)],
     scenes.NAME: lambda item, salt: [scenes.read(item)],
@@ -260,12 +260,14 @@ def write_scenes(job: Job, counts: Counts) -> None:
     """Write the scene graphs as homes; a name that two of them share is numbered."""
     folder = job.folder / DERIVED
     shutil.rmtree(folder, ignore_errors=True)
-    taken: Counter[str] = Counter()
+    taken: set[str] = set()
     for path in sorted(job.folder.glob("part-*.parquet")) if counts.tally["scene"] else ():
         for row in pq.read_table(path, columns=["title", "groundings"], filters=[("kind", "=", "scene")]).to_pylist():
             folder.mkdir(exist_ok=True)
-            taken[row["title"]] += 1
-            name = row["title"] if taken[row["title"]] == 1 else f"{row['title']}~{taken[row['title']]}"
+            title = row["title"]
+            names = chain([title], (f"{title}~{number}" for number in count(2)))
+            name = next(each for each in names if each not in taken)
+            taken.add(name)
             write_home(inside(folder, f"{name}.json"), graph_of(row["groundings"][0]["start"]))
 
 

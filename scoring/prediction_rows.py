@@ -47,8 +47,8 @@ def rows_of(path: Path, columns: Sequence[str], faults: FirstFaults, named: Name
     records = _parquet(path, needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
     for line, given in records:
         values, *more = _with_ids(given, columns[0], named)
-        yield from (Row(each[columns[0]], each, line) for each in more)
         missing = [name for name in columns if name not in values]
+        yield from (Row(each[columns[0]], each, line) for each in more if not missing)
         if missing:
             listed = ", ".join(f"`{name}`" for name in missing)
             faults.append(_fault(path, line, f"no {listed}", "every row needs " + ", ".join(columns)))
@@ -86,7 +86,8 @@ def _step(item: Any) -> Step | None:
         step = Step(item["action"], objects, int(item.get("agent") or 0), bool(item.get("joins")))
     except (AttributeError, KeyError, TypeError, ValueError, OverflowError):
         return None
-    return step if all(isinstance(name, str) for name in (step.action, *(ref.name for ref in objects))) else None
+    named = all(isinstance(name, str) for name in (step.action, *(ref.name for ref in objects)))
+    return step if named and all(ref.node is None or type(ref.node) is int for ref in objects) else None
 
 
 def _json_lines(data: bytes, path: Path, faults: FirstFaults) -> Iterator[tuple[int, dict[str, Any]]]:

@@ -85,10 +85,19 @@ def compare(
     )  # fmt: skip
 
 
-def effect_interval(t: float, pairs: int) -> tuple[float, float]:
-    """The interval of Cohen's d of pairs: of which true values the observed t is neither too high nor too low."""
+LARGEST_T = 200.0
+"""Beyond it scipy's noncentral distribution is not reliable."""
+
+
+def effect_interval(t: float, pairs: int) -> tuple[float | None, float | None]:
+    """The interval of Cohen's d of pairs: of which true values the observed t is neither too high nor too low.
+
+    None for both where t is beyond `LARGEST_T`.
+    """
     from scipy import optimize, stats
 
+    if abs(t) > LARGEST_T:
+        return None, None
     root, freedom, tail = math.sqrt(pairs), pairs - 1, (1 - CONFIDENCE) / 2
 
     def end(share: float, step: float) -> float:

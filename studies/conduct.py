@@ -63,7 +63,7 @@ class Conduct:
         self.slots: Slots = assignment(study, groups_of(study))
 
     def join(self, person: str) -> Standing:
-        """Give a person a place: one that nobody had, else the one whose person has left longest ago.
+        """Give a person a place: one that nobody had, else that of the first who joined and has left.
 
         Raises:
             HearthError: BAD_ARGUMENT: every place is taken; CONFLICT: others joined at the same moment, each time.
@@ -100,7 +100,12 @@ class Conduct:
         since = max([each.at for each in standing.events] or [self._joined_at(person)])
         if standing.finished or self.clock() - since < self.study.limits.idle_hours * 3600:
             return False
-        self.leave(person, "idle")
+        try:
+            self.leave(person, "idle")
+        except HearthError as error:  # this person does something at this very moment
+            if error.diagnostics[0].code != Code.CONFLICT:
+                raise
+            return False
         return True
 
     def _joined_at(self, person: str) -> float:

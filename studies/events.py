@@ -137,11 +137,11 @@ class FileLedger(MemoryLedger):
 
     def append(self, event: Event) -> bool:
         """Keep an event in the file."""
-        kept = super().append(event)
-        if kept:
-            with self.path.open("ab") as file:
-                file.write(_line(event_data(event)))
-        return kept
+        if event.number != len(self.events.get(event.stream, ())):
+            return False
+        with self.path.open("ab") as file:  # first, so that memory never has what the file lacks
+            file.write(_line(event_data(event)))
+        return super().append(event)
 
     def forget(self, stream: str) -> None:
         """Delete a person's events; the file is written anew."""

@@ -29,6 +29,7 @@ from hearth.web.link import Link, nobody
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
 from hearth.web.security import Security
+from hearth.web.sessions import Session
 from hearth.web.store import Store
 from hearth.web.third_party_scripts import FETCHED
 from hearth.web.visit import Visit, Web, json_answer, render
@@ -62,9 +63,9 @@ def application(
         rates: how fast one may ask; as usual if None.
     """
     templates = _templates(rooms)
-    web = Web(store, known, out, templates, sessions.digest(desk), rates or usual_rates(), study, bool(hosts), films)
-    for room in rooms:
-        room.opens(web)
+    rates, follows = rates or usual_rates(), tuple(room.opens for room in rooms)
+    web = Web(store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films, follows)
+    web.written()
     routes: list[BaseRoute] = [_route(web, address) for address in front.ADDRESSES]
     for room in rooms:
         for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
@@ -110,21 +111,22 @@ def _route(web: Web, address: Address, prefix: str = "") -> BaseRoute:
 
 def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
     async def endpoint(request: Request) -> Response:
-        sender = request.cookies.get(sessions.COOKIE) or (request.client.host if request.client else "")
+        # By session, for many people may have one address; a token that is made up is none.
+        session = await run_in_threadpool(sessions.find, web.store, token_of(request))
+        sender = session.id if session else (request.client.host if request.client else "")
         web.rates["request"].check(sender[:100], request.url.path)
         body = await _body(request, address.most)
-        return await run_in_threadpool(_answer, web, address, request, body)
+        return await run_in_threadpool(_answer, web, address, request, session, body)
 
     return endpoint
 
 
-def _answer(web: Web, address: Address, request: Request, body: bytes) -> Response:
+def _answer(web: Web, address: Address, request: Request, session: Session | None, body: bytes) -> Response:
     """Run a handler, in a thread.
 
     Raises:
         WebError: NO_SESSION or NOT_ALLOWED, if whoever asks may not; what the handler raises.
     """
-    session = sessions.find(web.store, token_of(request))
     if address.who is Who.PERSON and session is None:
         raise nobody()
     if address.who is Who.RESEARCHER and not _is_researcher(web, request):

@@ -48,6 +48,7 @@ def _mine(visit: Visit) -> Response:
 def _delete(visit: Visit) -> Response:
     """Delete a session with all that belongs to it, as its person asked."""
     sessions.forget(visit.web.store, visit.person)
+    visit.web.written()
     answer = visit.go("/")
     answer.delete_cookie(sessions.COOKIE)
     return answer

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import orjson
@@ -48,6 +49,11 @@ class Link:
             await self.socket.send_text(orjson.dumps(message).decode())
         except (WebSocketDisconnect, RuntimeError):
             return
+
+    async def send_bytes(self, data: bytes) -> None:
+        """Send bytes; nothing happens if the other side has gone."""
+        with suppress(WebSocketDisconnect, RuntimeError):
+            await self.socket.send_bytes(data)
 
     async def refuse(self, fault: WebError) -> None:
         """Send a fault: `{"type": "error", "error": {...}, "next": the number of the next message}`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import orjson
@@ -43,6 +44,10 @@ class Inbox:
         return message
 
 
+_NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
+"""A NUL character as JSON writes it; databases refuse it."""
+
+
 def json_object(raw: str | bytes, place: str) -> dict[str, Any]:
     """A JSON object of a stranger.
 
@@ -55,6 +60,8 @@ def json_object(raw: str | bytes, place: str) -> dict[str, Any]:
         raise WebError(Code.BAD_JSON, place, "a JSON object", str(error)[:80]) from None
     if not isinstance(value, dict):
         raise WebError(Code.BAD_JSON, place, "a JSON object", _kind(value))
+    if _NUL.search(raw if isinstance(raw, bytes) else raw.encode()):
+        raise WebError(Code.BAD_JSON, place, "texts", "a NUL character")
     return value
 
 

@@ -76,7 +76,7 @@ class Room:
         desk: what researchers may ask for, under `/desk/NAME`.
         needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
         listed: whether the start page and the navigation list it.
-        opens: called once when a server starts, such as to write files that follow from the store.
+        opens: writes the files that follow from the store, when a server starts and after a deletion.
     """
 
     name: str

@@ -69,8 +69,11 @@ class Security:
 
 
 def _name(address: str) -> str:
-    """The host of an address, without its port."""
-    netloc = urlsplit(address).netloc
+    """The host of an address, without its port; "" where it is not one."""
+    try:
+        netloc = urlsplit(address).netloc
+    except ValueError:
+        return ""
     return netloc.rpartition(":")[0] if netloc.rpartition(":")[2].isdecimal() and ":" in netloc else netloc
 
 

@@ -35,6 +35,7 @@ class Web:
         secure: whether people come by https.
         rates: how fast one may ask, by the names of `RATES`.
         films: a dataset whose films people describe, or None.
+        follows: write the files of rooms, which follow from the store.
     """
 
     store: Store
@@ -46,6 +47,12 @@ class Web:
     study: Path | None = None
     secure: bool = False
     films: Path | None = None
+    follows: tuple[Callable[[Web], None], ...] = ()
+
+    def written(self) -> None:
+        """Write anew what rooms keep in files, once something that these follow from was deleted."""
+        for write in self.follows:
+            write(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +80,15 @@ class Visit:
         return self.session.id
 
     def part(self, name: str) -> str:
-        """A part of the address that its route names: `/annotate/{task}`."""
-        return str(self.request.path_params[name])
+        """A part of the address that its route names: `/annotate/{task}`.
+
+        Raises:
+            WebError: BAD_ARGUMENT, if it has a NUL character, which databases refuse.
+        """
+        value = str(self.request.path_params[name])
+        if "\0" in value:
+            raise WebError(Code.BAD_ARGUMENT, name, "a text", "a NUL character")
+        return value
 
     def json(self) -> dict[str, Any]:
         """The body as a JSON object.
@@ -93,6 +107,8 @@ class Visit:
         value = self.fields.get(name, "")
         if len(value) > most:
             raise WebError(Code.BAD_ARGUMENT, name, f"at most {most} characters", f"{len(value)} characters")
+        if "\0" in value:
+            raise WebError(Code.BAD_ARGUMENT, name, "a text", "a NUL character")
         return value
 
     def page(self, template: str, status: int = 200, **values: Any) -> Response:

@@ -26,6 +26,11 @@ class Wanted:
     programs: tuple[str, ...] = ()
     limit: int | None = None
 
+    @property
+    def some(self) -> bool:
+        """Whether not all are wanted."""
+        return bool(self.programs) or self.limit is not None
+
     def chosen(self) -> tuple[str, dict[str, Any]]:
         """SQL that selects their ids, and its parameters."""
         names = (name for given in self.programs for name in names_of(given))

@@ -9,7 +9,15 @@ from hearth.datasets.export.batches import Wanted, stream
 from hearth.schemas.tables import TABLES
 from hearth.storage.names import inside
 
-_OF_PROGRAMS = ("programs", "environments", "executions", "perturbations", "repairs", "sketches")
+_ITS = " WHERE program_id IN ({chosen})"
+_OF_PARENTS = " WHERE coalesce(program_id, parent_id) IN ({chosen})"
+_OF_RUNS = " WHERE execution_id IN (SELECT execution_id FROM executions WHERE program_id IN ({chosen}))"
+_WHERE = {
+    **dict.fromkeys(("programs", "environments", "executions", "sketches", "splits"), _ITS),
+    **dict.fromkeys(("perturbations", "repairs"), _OF_PARENTS),
+    **dict.fromkeys(("frames", "videos", "clips", "demonstration_frames"), _OF_RUNS),
+}
+"""Which rows a selection of programs has, by table; of other tables all."""
 
 
 def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
@@ -22,10 +30,10 @@ def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     lines = 0
     to.mkdir(parents=True, exist_ok=True)
     for table in TABLES:
-        some = table in _OF_PROGRAMS
-        query = f"SELECT * FROM {table}" + (f" WHERE program_id IN ({chosen})" if some else "") + " ORDER BY ALL"
+        where = _WHERE.get(table, "").format(chosen=chosen) if wanted.some else ""
+        query = f"SELECT * FROM {table}{where} ORDER BY ALL"
         with inside(to, f"{table}.jsonl").open("wb") as file:
-            for row in stream(dataset, query, asked if some else {}):
+            for row in stream(dataset, query, asked if where else {}):
                 file.write(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
                 lines += 1
     return lines

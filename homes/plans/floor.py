@@ -10,10 +10,14 @@ from hearth.homes.geometry import Rect, bottom, footprint
 from hearth.homes.plans import raster
 from hearth.homes.plans.plan import Plan
 from hearth.homes.plans.shell import WALL, Shell, Thing, interior, strip
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box
 
 CELL = 0.1
 """Metres a cell."""
+LONGEST = 500.0
+"""Metres of a home at most."""
 BODY = 0.2
 """Half the width of someone walking."""
 HEAD = 1.8
@@ -85,6 +89,9 @@ def stands_on_floor(thing: Thing) -> bool:
 def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
     """The floor of a furnished plan."""
     x0, z0, x1, z1 = Rect.over(room.rect for room in plan.rooms)
+    if not (0 < x1 - x0 <= LONGEST and 0 < z1 - z0 <= LONGEST):
+        message = f"a home of {x1 - x0:g} by {z1 - z0:g} metres"
+        raise HearthError.of(Code.BAD_GRAPH, message, suggestion=f"boxes of rooms in metres, up to {LONGEST:g} in all")
     shape = (round((x1 - x0) / cell + 0.499), round((z1 - z0) / cell + 0.499))
 
     def part(low: float, high: float, size: int) -> slice:

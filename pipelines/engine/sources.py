@@ -1,14 +1,15 @@
 """Sources: the files and folders of a build, with labels that do not reveal their path on this machine."""
 
-from collections import Counter
 from collections.abc import Iterable
+from hashlib import blake2b
+from itertools import count
 from pathlib import Path
 
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.readers.item import Source
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.files import tree_digest, value_digest
+from hearth.storage.files import tree_digest, value_digest, walk
 from hearth.storage.rejects import as_text
 
 
@@ -21,12 +22,15 @@ def labelled(paths: Iterable[str]) -> list[Source]:
         HearthError: MISSING_FILE, with every missing path; EMPTY, if there are no paths.
     """
     sources: list[Source] = []
-    used: Counter[str] = Counter()
     named = sorted((Path(text).name or Path(text).resolve().name, text) for text in paths)
+    taken, seen = {name for name, _ in named}, set()
     for name, text in named:
-        path = Path(text)
-        used[name] += 1
-        sources.append(Source(as_text(name if used[name] == 1 else f"{name}~{used[name]}"), path))
+        label = name
+        if name in seen:
+            label = next(other for number in count(2) if (other := f"{name}~{number}") not in taken)
+            taken.add(label)
+        seen.add(name)
+        sources.append(Source(as_text(label), Path(text)))
     missing = [source.path for source in sources if not source.path.exists()]
     if missing:
         errors = [HearthError.of(Code.MISSING_FILE, "no such file or folder", file=str(path)) for path in missing]
@@ -42,5 +46,19 @@ def source_digests(paths: Iterable[str]) -> dict[str, str]:
 
 
 def salt(settings: Settings) -> str:
-    """The salt of worker ids: the given one, or else one derived from the sources' bytes, which are not published."""
-    return settings.salt or value_digest(["workers", sorted(source_digests(settings.sources).values())])
+    """The salt of worker ids: the given one, or else one derived from the sources' bytes, which are not published.
+
+    Its digest of the bytes is another than that of manifests, from which the salt cannot be computed.
+    """
+    return settings.salt or value_digest(["workers", sorted(map(_secret, labelled(settings.sources)))])
+
+
+def _secret(source: Source) -> str:
+    digest = blake2b(person=b"workers")
+    files = [source.path] if source.path.is_file() else walk(source.path)
+    for file in files:
+        digest.update(f"{file.stat().st_size}\0".encode())
+        with file.open("rb") as opened:
+            while piece := opened.read(1 << 20):
+                digest.update(piece)
+    return digest.hexdigest()

@@ -6,7 +6,6 @@ stand for `WorkerId` and `Style` names the voice of a text.
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from typing import TypedDict
 
 from hearth.pipelines.crowd.topics import no_activity
 from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_fault
-from hearth.pipelines.readers.item import Item, record, refused
+from hearth.pipelines.readers.item import Item, record, refused, worker_hash
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import QuantityRow
@@ -184,7 +183,7 @@ def _who(cells: dict[str, str], salt: str) -> _Who:
     origin, worker, style = _origin(cells), cells["WorkerId"].strip(), cells.get("Style", "").strip() or None
     if origin == WRITTEN:
         return {"origin": origin, "worker": None, "platform": None, "style": style}
-    hashed = hashlib.blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest() if worker else None
+    hashed = worker_hash(worker, salt) if worker else None
     platform = next((cells[name].strip() for name in ("Platform", "platform") if cells.get(name)), None)
     return {"origin": origin, "worker": hashed, "platform": platform, "style": style}
 

@@ -22,6 +22,8 @@ LONGEST_ANSWER = 2_000_000
 
 _LOOK_AHEAD = 200
 
+csv.field_size_limit(LARGEST_FILE)  # of the process: a cell is refused by the limits here, whatever was read before
+
 
 @dataclass(frozen=True, slots=True)
 class Layout:
@@ -110,5 +112,4 @@ def cells_of(text: str, layout: Layout, strict: bool = False) -> list[str]:
     Raises:
         csv.Error: with `strict`, a quote that is never closed.
     """
-    csv.field_size_limit(LARGEST_FILE)
     return next(csv.reader(io.StringIO(text, newline=""), delimiter=layout.delimiter, strict=strict), [])

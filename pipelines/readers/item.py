@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from hashlib import blake2b
 from pathlib import Path, PurePath
 from typing import Any, BinaryIO
 
@@ -16,6 +17,16 @@ from hearth.schemas.row_types import ConditionRow, QuantityRow
 from hearth.schemas.stage_rows import IngestedRow, PartRow, WrittenGroundingRow
 from hearth.storage.archives import Place, raw
 from hearth.storage.rejects import Reject
+
+_HASHED = re.compile(r"[0-9a-f]{16}", re.ASCII)
+
+
+def worker_hash(worker: str, salt: str) -> str:
+    """What stands for the id of a crowd's worker: 16 hexadecimal digits; an id that is such a hash already stays."""
+    if _HASHED.fullmatch(worker):
+        return worker
+    return blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest()
+
 
 LONGEST_LINE = 1_000_000
 """Characters kept of a line while reading; a longer line is refused with its length."""

@@ -14,7 +14,7 @@ from hearth.pipelines.readers import plans
 from hearth.pipelines.readers.columns import FieldColumns, guessed
 from hearth.pipelines.readers.document import document, parsed
 from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless
+from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless, worker_hash
 from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.text import header
 from hearth.schemas.blocks import STEP
@@ -148,11 +148,16 @@ def id_fault(own: str, place: str, line: int = 0) -> Reject | None:
     return Reject.of(Code.BAD_JSON, message, file=place, line=line, found=found, suggestion=suggestion)
 
 
-def read(item: Item) -> list[IngestedRow | Reject]:
-    """The record of an item; with further descriptions, one record for each."""
+def read(item: Item, salt: str = "") -> list[IngestedRow | Reject]:
+    """The record of an item; with further descriptions, one record for each.
+
+    Args:
+        item: as scanned.
+        salt: for the hash of a worker's id.
+    """
     value: Mapping[str, Any] = item.value
     try:
-        row = _row(item, value)
+        row = _row(item, value, salt)
         if isinstance(row, Reject):
             return [row]
         first, *faults = _placed(item, row, value)
@@ -163,7 +168,7 @@ def read(item: Item) -> list[IngestedRow | Reject]:
         return [Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=_FORM)]
 
 
-def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
+def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Reject:
     words = {name: _word(value, name) for name in _WORDS}
     text, in_sentences = _text(value, words)
     kind = "program" if text else "description"
@@ -183,7 +188,7 @@ def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
         origin=plans.NAME if in_sentences else origin if origin in _ORIGINS else NAME,
         description_id=current_id(words["description_id"] or ""),
         scene=words["scene"],
-        worker=words["worker"],
+        worker=worker_hash(words["worker"], salt) if words["worker"] else None,
         platform=words["platform"],
         style=words["style"],
         rooms=_quantities(value.get("rooms")),

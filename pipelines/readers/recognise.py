@@ -123,13 +123,13 @@ def _text(path: Place, place: str) -> Recognised:
 
 
 def _by_first_lines(path: Place, place: str) -> Recognised:
-    start = [line[:_LONGEST] for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
-    first = [line for line in start if line.strip()]
+    whole = [line for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
+    first = [line[:_LONGEST] for line in whole if line.strip()]
     line = first[0] if first else ""
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
     if looks_like_json(line):
-        return _json(path, place, first)
+        return _json(path, place, [line for line in whole if line.strip()])
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
     if (suffix in _TABLES and first) or spreadsheets.names_it(line[:10_000]):

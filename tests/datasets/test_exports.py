@@ -23,6 +23,7 @@ from hearth.datasets.export.triples import iri, text
 from hearth.kb.language.phrases import parses
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.tables import TABLES
 from hearth.storage.names import file_name
 
 MILK = "release:batch-1/file1_1"
@@ -80,10 +81,24 @@ def test_pairs_for_tuning_and_examples(ds, tmp_path):
 
 def test_json_lines_hold_every_row(ds, tmp_path):
     export(ds, "jsonl", tmp_path / "out")
-    for table in ("programs", "executions", "home_edges", "ledger", "vocabulary"):
+    for table in TABLES:
         lines = (tmp_path / f"out/{table}.jsonl").read_text().splitlines()
+        assert len(lines) == ds.sql(f"SELECT count(*) FROM {table}").fetchall()[0][0], table
+        if table not in ("programs", "executions", "home_edges", "ledger", "vocabulary"):
+            continue
         rows = ds.sql(f"SELECT * FROM {table} ORDER BY ALL").to_arrow_table().to_pylist()
         assert list(map(json.loads, lines)) == rows
+
+
+def test_json_lines_of_some_programs_have_their_rows_alone(ds, tmp_path):
+    name = next(iter(ds))
+    export(ds, "jsonl", tmp_path / "out", Wanted((name,)))
+    runs = {row["execution_id"] for row in ds.read("SELECT * FROM executions WHERE program_id = $id", {"id": name})}
+    for table in ("programs", "executions", "splits", "frames", "videos"):
+        rows = [json.loads(line) for line in (tmp_path / f"out/{table}.jsonl").read_text().splitlines()]
+        assert {row.get("program_id", name) for row in rows} <= {name}
+        assert {row["execution_id"] for row in rows if "execution_id" in row} <= runs
+    assert runs
 
 
 def test_the_lines_are_in_one_order_whatever_the_order_of_rows(ds, made, tmp_path):

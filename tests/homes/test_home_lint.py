@@ -1,10 +1,12 @@
 """The linter finds each fault that a graph can have, and none in our homes."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from hearth.homes import library
+from hearth.homes.geometry import Rect
 from hearth.homes.lint import CHECKS, lint
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
@@ -130,3 +132,15 @@ def test_the_releases_homes_have_the_faults_they_are_known_for(real_data):
     faults = lint(library.load_graph("TrimmedTestScene1_graph", default(), real_data / "homes"), default())
     assert {fault.code for fault in faults} == {Code.CONDITION_UNMET, Code.LOOP}
     assert any("curtain (23) INSIDE curtain (24)" in fault.message for fault in faults)
+
+
+@pytest.mark.parametrize("size", [(-4.0, 2.0, 4.0), (1e6, 2.0, 4.0), (float("nan"), 2.0, 4.0)])
+def test_a_room_of_no_size_is_a_fault_and_no_memory(size):
+    from hearth.homes.plans.floor import grid
+    from hearth.schemas.diagnostics import HearthError
+
+    class Plan:
+        rooms = (SimpleNamespace(rect=Rect(0.0, 0.0, size[0], size[2])),)
+
+    with pytest.raises(HearthError, match="metres"):
+        grid(Plan, None, ())

@@ -183,3 +183,18 @@ def test_what_more_there_is_of_a_kind_names_the_file_of_that_kind():
     found.append(Diagnostic(Code.BAD_JSON, "x", "one.jsonl"))
     found.extend(Diagnostic(Code.UNKNOWN_ID, "y", "other.jsonl") for _ in range(SHOWN + 5))
     assert [each.file for each in found][-1] == "other.jsonl"
+
+
+def test_a_row_without_a_prediction_for_several_runs(write):
+    path = write({"program": "a"}, {"program": "b", "predicted": "[Walk] <sofa> (1)"})
+    found = FirstFaults()
+    kept = list(rows_of(path, ("id", "predicted"), found, lambda row: [f"{row['program']}@{n}" for n in (1, 2)]))
+    assert [row.id for row in kept] == ["b@2", "b@1"] or [row.id for row in kept] == ["b@1", "b@2"]
+    assert [each.line for each in found] == [1]
+
+
+@pytest.mark.parametrize("node", [[1], "x", 1.5])
+def test_nodes_that_are_no_numbers(write, node):
+    step = {"action": "Walk", "objects": [{"name": "sofa", "instance": 1, "node": node}]}
+    ((code, line, _, _),) = faults(write({"id": "a", "predicted": [step], "reference": "[Walk] <sofa> (1)"}))
+    assert (code, line) == ("BAD_TABLE", 1)

@@ -40,6 +40,15 @@ def test_the_interval_of_an_effect_is_where_the_noncentral_t_puts_it():
         assert low < t / math.sqrt(pairs) < high
 
 
+def test_effects_that_no_distribution_tells_and_differences_that_are_rounding():
+    assert effect_interval(2_000.0, 6) == (None, None)
+    found = compare("reward", ("a", "b"), dict(enumerate([1.0] * 5 + [1.001])), dict.fromkeys(range(6), 0.0))
+    assert found.difference == pytest.approx(1.0, abs=1e-3) and found.effect_low is None
+    one = {n: 1 - 0.004 * n for n in range(6)}
+    other = {n: 1 - 0.004 * (n + 25) for n in range(6)}
+    assert compare("reward", ("a", "b"), one, other).t is None
+
+
 def test_normality_is_of_skewness_and_kurtosis_by_hand():
     values = [2.0, 3.0, 5.0, 6.0, 9.0, 4.0, 4.5, 7.5, 5.5, 20.0]
     count, mean = len(values), math.fsum(values) / len(values)

@@ -8,11 +8,13 @@ import json
 import re
 
 import pytest
+import sqlalchemy as sql
 from web.people import DESK, Server
 
 import hearth
 from hearth.web.annotate.collected_files import collected
 from hearth.web.annotate.descriptions import SCENES, lacks
+from hearth.web.web_tables import SESSIONS
 
 TEXT = {"title": "Watch TV", "description": "Sit down on the sofa, take the remote control and put the television on. "
         "Then watch until the film is over."}  # fmt: skip
@@ -317,8 +319,20 @@ def test_a_person_who_leaves_takes_everything_along(server, person, text):
     submitted(person, text)
     accept(reviewer(server))
     assert collected(server.store)["programs.csv"]
+    assert (server.out / "programs.csv").exists()
     assert person.post("/mine/delete").status_code == 303
     assert not any(collected(server.store).values())
+    assert not [*server.out.glob("*.csv"), *server.out.glob("*.json")]  # what `build` reads has nothing of theirs
+
+
+def test_a_task_that_is_opened_twice_at_once_is_begun_once(server, person, text, monkeypatch):
+    from hearth.web.annotate import annotated_programs
+
+    owner = server.store.read(lambda connection: connection.execute(sql.select(SESSIONS.c.id)).scalars().first())
+    first = annotated_programs.begun(server.store, owner, text)
+    looks = iter((None, first))
+    monkeypatch.setattr(annotated_programs, "own_program", lambda *_: next(looks))
+    assert annotated_programs.begun(server.store, owner, text) == first
 
 
 def test_what_was_accepted_builds_into_a_dataset_with_a_closed_ledger(server, person, text, build_folder, tmp_path):

@@ -6,10 +6,10 @@ import pytest
 import sqlalchemy as sql
 from web.people import DESK, Server
 
-from hearth.web import sessions
+from hearth.web import desk_access, sessions
 from hearth.web.front import _own_address
-from hearth.web.limits import Rate
-from hearth.web.messages import Inbox
+from hearth.web.limits import Rate, usual_rates
+from hearth.web.messages import Inbox, json_object
 from hearth.web.security import HEADERS
 from hearth.web.web_errors import WebError
 from hearth.web.web_tables import SESSIONS
@@ -148,3 +148,44 @@ def test_two_tabs_of_a_session_cannot_both_act(server, person):
     server.store.write(lambda connection: sessions.check_tab(connection, session.id, "second"))
     with pytest.raises(WebError, match="LOCKED"):
         server.store.write(lambda connection: sessions.check_tab(connection, session.id, "first"))
+
+
+@pytest.mark.parametrize("host", ["[::1", "a]", "[x]:80", "\x00", "@"])
+def test_a_host_that_is_none_is_refused(server, host):
+    answer = server.client(raise_server_exceptions=False).get("/", headers={"host": host})
+    assert answer.status_code in (400, 403) and answer.headers["Content-Security-Policy"]
+
+
+def test_tokens_that_are_made_up_share_one_limit(tmp_path, knowledge):
+    server = Server(tmp_path, knowledge, rates={**usual_rates(), "request": Rate(0.01, 5)})
+    codes = [server.client(cookies={"hearth": f"fake-{n}"}).get("/").status_code for n in range(8)]
+    assert codes.count(429) == 3
+    server.store.close()
+
+
+def test_a_text_with_nul_is_refused(server):
+    person = server.person()
+    given = {"title": "Make tea\0", "description": "x " * 30, "scene": "kitchen"}
+    answer = person.post("/annotate/describe", data=given)
+    assert answer.json()["error"]["code"] == "BAD_ARGUMENT"
+
+
+@pytest.mark.parametrize(
+    ("raw", "refused"), [(b'{"a": "x\\u0000"}', True), (b'{"a": "x\\\\u0000"}', False), (b'{"a": "x"}', False)]
+)
+def test_nul_in_json_is_refused_and_its_spelling_is_not(raw, refused):
+    if refused:
+        with pytest.raises(WebError):
+            json_object(raw, "body")
+    else:
+        assert json_object(raw, "body")["a"].startswith("x")
+
+
+def test_the_desk_has_a_token_whatever_the_file_had(tmp_path, monkeypatch):
+    monkeypatch.delenv(desk_access.VARIABLE, raising=False)
+    token = desk_access.desk_token(tmp_path)
+    assert len(token) > desk_access.SHORTEST and desk_access.desk_token(tmp_path) == token
+    file = next(tmp_path.rglob("desk-token"))
+    assert file.stat().st_mode & 0o777 == 0o600 and [*file.parent.glob("*desk-token*")] == [file]
+    file.write_text("")  # killed while it was written, by an earlier version
+    assert len(desk_access.desk_token(tmp_path)) > desk_access.SHORTEST

@@ -170,6 +170,12 @@ def test_a_game_is_begun_once_and_gone_on_with(playing):
     assert len(playing.store.read(lambda c: c.execute(sql.select(TRIAL_GAMES)).all())) == 1
 
 
+def test_a_study_that_is_played_has_no_films(playing):
+    person = playing.person()
+    at_trial(person)
+    assert person.get("/study/film/0").json()["error"]["code"] == "UNKNOWN_ID"
+
+
 def test_a_game_that_takes_too_long_is_ended(playing):
     person = playing.person()
     at_trial(person)

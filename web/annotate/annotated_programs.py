@@ -51,7 +51,13 @@ def begun(store: Store, person: str, text: str) -> Row:
         "note": "",
         "created": time.time(),
     }
-    store.write(lambda connection: connection.execute(sql.insert(PROGRAMS).values(row)))
+    try:
+        store.write(lambda connection: connection.execute(sql.insert(PROGRAMS).values(row)))
+    except sql.exc.IntegrityError:  # begun in another tab at this moment
+        found = own_program(store, person, text)
+        if found is None:
+            raise
+        return found
     return row
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hearth.challenges.episodes import Record
 from hearth.challenges.lineup import Lineup
-from hearth.challenges.result_files import Header, Results, first_line, line
+from hearth.challenges.result_files import MOST_SEEDS, Header, Results, first_line, line
 from hearth.challenges.task_files import Suite
 from hearth.challenges.tasks import Task
 from hearth.web.play.games import Game
@@ -42,7 +42,10 @@ def _results(kind: Kind, games: list[Game]) -> Results:
     records: list[Record] = []
     for game in games:
         record = game.record()
-        seed = next(n for n in range(record.seed, record.seed + len(games) + 1) if (record.task, n) not in taken)
+        free = (n % MOST_SEEDS for n in range(record.seed, record.seed + MOST_SEEDS))
+        seed = next((n for n in free if (record.task, n) not in taken), None)
+        if seed is None:  # a file has no room for more games of a task
+            continue
         taken.add((record.task, seed))
         records.append(replace(record, seed=seed))
     place = {name: number for number, name in enumerate(tasks)}

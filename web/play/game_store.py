@@ -103,8 +103,15 @@ def seat(connection: sql.Connection, game: str, session: str) -> int:
 
 
 def stored(connection: sql.Connection, game: str) -> Stored:
-    """A game; who may see it, `seat` has checked."""
-    return _stored(connection.execute(sql.select(GAMES).where(GAMES.c.id == game)).one())
+    """A game; who may see it, `seat` has checked.
+
+    Raises:
+        WebError: UNKNOWN_ID: it was deleted, as one of its people asked.
+    """
+    row = connection.execute(sql.select(GAMES).where(GAMES.c.id == game)).one_or_none()
+    if row is None:
+        raise WebError(Code.UNKNOWN_ID, "game", "a game", "one that was deleted")
+    return _stored(row)
 
 
 def games_of(connection: sql.Connection, session: str) -> list[Stored]:

@@ -161,17 +161,21 @@ def desk_page(visit: Visit) -> Response:
     every = visit.web.store.read(game_store.all_games)
     kinds: dict[tuple[str, str, str, str], list[Stored]] = {}
     for each in every:
-        task = each.trial.task
-        kinds.setdefault((task.challenge, task.split, each.trial.helper, each.trial.goal), []).append(each)
+        kinds.setdefault(_kind(each), []).append(each)
     rows = [(kind, len(some), sum(each.result is not None for each in some)) for kind, some in kinds.items()]
     return visit.page("play/desk.html", rows=rows)
+
+
+def _kind(game: Stored) -> tuple[str, str, str, str]:
+    task = game.trial.task
+    return task.challenge, task.split, game.trial.helper, game.trial.goal
 
 
 def desk_results(visit: Visit) -> Response:
     """The games of a kind that are over, as a file of results."""
     asked = tuple(visit.field(name, 60) for name in ("challenge", "split", "helper", "goal"))
-    every = visit.web.store.read(game_store.all_games)
-    found = results(_done(visit, [each for each in every if each.result is not None]))
+    every = [each for each in visit.web.store.read(game_store.all_games) if each.result is not None]
+    found = results(_done(visit, [each for each in every if _kind(each) == asked]))
     if asked not in found:
         raise WebError(Code.UNKNOWN_ID, "kind", "a kind of which games are over", " ".join(asked)[:80])
     return _file(as_bytes(found[asked]), f"{'-'.join(asked)}.jsonl")

@@ -73,7 +73,7 @@ class Page:
     async def _show(self, message: dict[str, Any]) -> None:
         """A picture, or what a pixel of it shows."""
         if message["type"] == "picture":
-            await self.link.socket.send_bytes(await in_thread(self._picture))
+            await self.link.send_bytes(await in_thread(self._picture))
             return
         x, y = (int_field(message, name, 0, size - 1) for name, size in zip("xy", SIZE, strict=True))
         await self.link.send({"type": "picked", "id": await in_thread(self._pick, x, y)})
@@ -150,13 +150,19 @@ class Page:
             if (news := await in_thread(done, *given)) is not None:
                 await self.link.send(news)
                 if self.live.game.trial.interface == "stream":
-                    await self.link.socket.send_bytes(await in_thread(self._picture))
+                    await self.link.send_bytes(await in_thread(self._picture))
 
     async def watch(self) -> None:
         """Tell what others decided, until cancelled."""
         while True:
             await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
-            await self.tell(self._news)
+            try:
+                await self.tell(self._news)
+            except WebError as fault:  # the game was deleted, as its other person asked
+                await self.link.refuse(fault)
+                with contextlib.suppress(RuntimeError):
+                    await self.link.socket.close(4404)
+                return
 
 
 def _act_of(message: dict[str, Any]) -> str | None:

@@ -97,6 +97,7 @@ def forget(visit: Visit) -> Response:
     """Delete all that is known of a person, as the person asked."""
     found = _collected(visit)
     found.conduct.forget(person_of(found, visit.field("person", 100)))
+    visit.web.written()
     return visit.go("/desk/study/")
 
 

@@ -182,7 +182,8 @@ def film(visit: Visit) -> Response:
     if standing.stage not in (TRIAL, QUESTIONS) or visit.part("number") != str(standing.number):
         raise WebError(Code.UNKNOWN_ID, "film", "the film that is to be judged now", visit.part("number")[:20])
     films = conduct.study.films
-    assert films is not None
+    if films is None:
+        raise WebError(Code.UNKNOWN_ID, "film", "a study that judges films", conduct.study.name)
     path = film_path(_folder(visit.web, conduct.study), film_at(visit.web, conduct, standing), films.shown)
     if not path.is_file():
         raise WebError(Code.MISSING_FILE, "film", f"`study prepare {conduct.study.name}`", "no film")
