@@ -13,6 +13,7 @@ from hearth.pipelines.build import FIRST, corpus
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers import crowd
+from hearth.pipelines.readers.item import worker_hash
 from hearth.pipelines.readers.recognise import recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.rejects import Reject
@@ -230,7 +231,7 @@ def test_records_of_the_embedded_corpus_as_version_0_1_had_them(write):
     assert (ours["program_id"], ours["description_id"]) == ("written:3P0001A2SM5", "written:3D0001FLP5E")
     assert (ours["origin"], ours["worker"], ours["platform"]) == ("written", None, None)
     assert (others["program_id"], others["description_id"]) == ("crowd:P1", "crowd:3D0001FLP5EXX")
-    assert (others["origin"], others["worker"], others["platform"]) == ("crowd", "x", "AMT")
+    assert (others["origin"], others["worker"], others["platform"]) == ("crowd", worker_hash("x", "salt"), "AMT")
 
 
 def test_parts_in_splits_of_a_source(write):
