@@ -1,6 +1,8 @@
 """Sources: the files and folders of a build, with labels that do not reveal their path on this machine."""
 
+import hashlib
 from collections.abc import Iterable
+from functools import lru_cache, partial
 from hashlib import blake2b
 from itertools import count
 from pathlib import Path
@@ -54,11 +56,12 @@ def salt(settings: Settings) -> str:
 
 
 def _secret(source: Source) -> str:
-    digest = blake2b(person=b"workers")
     files = [source.path] if source.path.is_file() else walk(source.path)
-    for file in files:
-        digest.update(f"{file.stat().st_size}\0".encode())
-        with file.open("rb") as opened:
-            while piece := opened.read(1 << 20):
-                digest.update(piece)
-    return digest.hexdigest()
+    return value_digest([_keyed(file, file.stat().st_size, file.stat().st_mtime_ns) for file in files])
+
+
+@lru_cache(maxsize=10_000)
+def _keyed(path: Path, size: int, changed: int) -> str:
+    """A digest of a file's bytes that is published nowhere; read once a process while the file stays as it is."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, partial(blake2b, person=b"workers")).hexdigest()
