@@ -9,7 +9,6 @@ from hearth.agents.goal_space import Counts, GoalSpace, Places
 from hearth.agents.state_changes import StateChanges
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.simulation.world.world import World
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,14 +17,14 @@ if TYPE_CHECKING:
 class NetworkProposals:
     """The network's proposals in an episode; they need not be goals that there are."""
 
-    def __init__(self, space: GoalSpace, model: str, watched: int, start: World) -> None:
+    def __init__(self, space: GoalSpace, model: str, watched: int, start: Places) -> None:
         """Begin an episode.
 
         Args:
             space: the goals, all that there are.
             model: a checkpoint's folder, or the name of one that comes with Hearth.
             watched: index of who pursues a goal.
-            start: the world at the start.
+            start: where things are at the start, as far as is known.
 
         Raises:
             HearthError: MISSING_FILE: there is no network, or the extra `models` is not installed; BAD_ARGUMENT: it
@@ -34,7 +33,7 @@ class NetworkProposals:
         from hearth.models.proposals.goal_proposals import restored
 
         self._network = restored(model)
-        self._changes = StateChanges(space, watched, space.places(start))
+        self._changes = StateChanges(space, watched, start)
         settings = self._network.settings
         if (settings.inputs, settings.outputs) != (self._changes.size, len(space.predicates)):
             raise HearthError.of(Code.BAD_ARGUMENT, "the goal proposal network was trained for other goals")

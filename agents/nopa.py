@@ -60,7 +60,7 @@ class Nopa(OnlineHelper):
         self._particles: list[tuple[Counts, frozenset[int]]] = []
         self._network = None
         if self.settings.proposals == "gpn":
-            self._network = NetworkProposals(self.space, self.settings.model, self.partner, observation.world)
+            self._network = NetworkProposals(self.space, self.settings.model, self.partner, self.places(observation))
         self._age = 0.0
 
     def choose(self, view: View) -> Edge | None:

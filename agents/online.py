@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from hearth.agents.belief import Belief, Place
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import Counts, Edge, GoalsIn, GoalSpace, Scene
+from hearth.agents.goal_space import Counts, Edge, GoalsIn, GoalSpace, Places, Scene
 from hearth.agents.posterior import USUAL_MODEL, ActionModel, Posterior
 from hearth.agents.prospects import Planner
 from hearth.agents.protocol import Choice
@@ -89,6 +89,13 @@ class OnlineHelper(ABC):
         self.other = view.others[0]
         self.posterior.observe(self.scene, self.other)
         return True
+
+    def places(self, view: View) -> Places:
+        """Where things are: as seen by who sees everything, else as believed."""
+        if not self.home.everything & ~view.mask:
+            return self.space.places(view.world)
+        self.belief.observe(view)
+        return [self._believed(thing) for thing in self.space.things]
 
     def _believed(self, thing: int) -> Place:
         """Where it believes a thing to be."""

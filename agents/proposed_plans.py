@@ -32,14 +32,14 @@ class ProposedPlans(OnlineHelper):
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode (see `agents.protocol`)."""
         super().reset(observation, None, seed)
-        self._network = NetworkProposals(self.space, self._network_name, self.partner, observation.world)
+        self._network = NetworkProposals(self.space, self._network_name, self.partner, self.places(observation))
         self._planners: dict[Counts, Hierarchical] = {}
         self._seed = seed
         self._shares: dict[Counts, float] = {}
 
     def act(self, observation: View, legal: Legal) -> Step | None:
         """The instruction of most plans; of equally many, the first in order."""
-        places = self.space.places(observation.world)
+        places = self.places(observation)
         goals = [self._network.likeliest(places)]
         if self._particles > 1:
             goals = self._network.drawn(places, self._particles, self.chooser)

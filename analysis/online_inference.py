@@ -13,6 +13,8 @@ from hearth.challenges.helper_beliefs import Beliefs, beliefs
 from hearth.challenges.metrics import mean
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, spread, unseen
 
 SHARES = (0.0, 0.1, 0.25, 0.5, 0.75)
@@ -46,11 +48,15 @@ def inference(results: Results, known: Known, workers: int = 1, seen: Seen = uns
     probabilities their mean, the share that is true, and how many there are; `error` is their mean distance.
 
     Raises:
-        HearthError: BAD_ARGUMENT: the helper infers no goals.
+        HearthError: BAD_ARGUMENT: the helper infers no goals, or there are no episodes of one.
     """
     tasks = {task.id: task for task in results.header.suite.tasks}
-    helped = [each for each in results.records if each.helped]
-    alone = {task: fmean(each["length"] for each in some) for task, some in results.outcomes(False).items()}
+    means = results.outcomes(False)
+    helped = [each for each in results.records if each.helped and each.actions and means.get(each.task)]
+    if not helped:
+        message = "no episode with a helper, of a task that was done alone, too"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`challenge run TASKS --helper nopa --out FILE`")
+    alone = {task: fmean(each["length"] for each in some) for task, some in means.items()}
     questions = [Question(tasks[each.task], each, results.header.lineup.helper, known) for each in helped]
     found = list(spread(answer, questions, workers, seen))
     curves = [_curve(each, alone[record.task]) for each, record in zip(found, helped, strict=True)]

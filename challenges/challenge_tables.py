@@ -15,11 +15,14 @@ from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Known, Record
 from hearth.challenges.helper_beliefs import beliefs
 from hearth.challenges.playing_demonstrations import Demonstration, demonstrations
-from hearth.challenges.result_files import Results
+from hearth.challenges.result_files import Results, episode_data
 from hearth.challenges.tasks import Task
 from hearth.datasets.damage import reading
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import SQL, limited, quoted
+from hearth.schemas.agent_messages import read as read_message
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.tables import comment_of, struct
 from hearth.storage.files import read_json, value_digest, write_bytes
 from hearth.storage.manifest import NAME, describe
@@ -87,9 +90,9 @@ def publish(
     rows: dict[str, Iterable[Mapping[str, Any]]] = {
         "tasks": map(_task, tasks),
         "demonstrations": (_demonstration(each, rate) for each in shown),
-        "episodes": (_episode(found, each) for found in results for each in found.records),
-        "trajectories": (row for found in results for each in found.records for row in _trajectory(found, each)),
-        "posteriors": (row for found in results for each in found.records for row in _posterior(found, each, known)),
+        "episodes": (_episode(found, each) for found, each in _once(results)),
+        "trajectories": (row for found, each in _once(results) for row in _trajectory(found, each)),
+        "posteriors": (row for found, each in _once(results) for row in _posterior(found, each, known)),
     }
     folder.mkdir(parents=True, exist_ok=True)
     counts = {}
@@ -175,6 +178,23 @@ def episode_id(found: Results, record: Record) -> str:
     return f"{record.task}/{lineup.main}/{helper}/{record.seed}"
 
 
+def _once(results: Sequence[Results]) -> Iterator[tuple[Results, Record]]:
+    """All episodes; one that several files have, such as those without a helper, comes once.
+
+    Raises:
+        HearthError: DUPLICATE: two files have different episodes of one name.
+    """
+    known: dict[str, str] = {}
+    for found in results:
+        for each in found.records:
+            name, content = episode_id(found, each), value_digest(episode_data(each))
+            if name not in known:
+                known[name] = content
+                yield found, each
+            elif known[name] != content:
+                raise HearthError.of(Code.DUPLICATE, f"two files have another episode {name}", suggestion="give one")
+
+
 def _episode(found: Results, record: Record) -> dict[str, Any]:
     lineup = found.header.lineup
     return {
@@ -193,7 +213,7 @@ def _trajectory(found: Results, record: Record) -> Iterator[dict[str, Any]]:
     name = episode_id(found, record)
     for tick, texts in enumerate(record.actions):
         for agent, text in enumerate(texts):
-            if text is not None:
+            if text is not None and read_message(text) is None:
                 yield {"episode_id": name, "agent": agent, **_instruction(tick, text)}
 
 

@@ -11,10 +11,11 @@ from types import FrameType
 
 from hearth.agents.protocol import Agent, Choice
 from hearth.schemas.agent_messages import Message
+from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
-from hearth.schemas.program import Step
+from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
 
@@ -74,14 +75,25 @@ class Guarded:
         """
         with self._watched():
             step = self.agent.act(observation, legal)
-            if step is None or (isinstance(step, Message) and self.messages):
+            if step is None or (isinstance(step, Message) and self.messages and read_message(str(step)) == step):
                 return step
             if not isinstance(step, Step):
-                raise HearthError.of(Code.BAD_ARGUMENT, f"the answer is {type(step).__name__}, not a Step or None")
+                raise HearthError.of(
+                    Code.BAD_ARGUMENT,
+                    f"the answer is {type(step).__name__}, not a Step, a message that can be read, or None",
+                )
             if step in legal or self._may_try(step, observation):
-                return Step(step.action, tuple(step.objects), self.number)
+                return self._plain(step, observation)
             self.refused += 1
             return None
+
+    def _plain(self, step: Step, view: View) -> Step:
+        """The instruction as records have it: an action and nodes. Agents could write one in many ways."""
+        home = view.world.home
+        refs = (
+            ObjectRef(home.classes[home.index[ref.node]], 0, ref.node) for ref in step.objects if ref.node is not None
+        )
+        return Step(step.action, tuple(refs), self.number)
 
     def _may_try(self, step: Step, view: View) -> bool:
         """Whether it is about what is seen; the engine says then why it can't be done."""

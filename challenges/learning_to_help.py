@@ -31,6 +31,8 @@ from hearth.challenges.tasks import Task
 from hearth.models.helping.policies import TrainedPolicy, untrained
 from hearth.models.helping.policy_inputs import Batch, Trace, Words, packed
 from hearth.models.interface import Training
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
 from hearth.storage.files import value_digest
 from hearth.storage.parallel import Seen, spread, unseen
@@ -143,6 +145,10 @@ def learn(
     """
     effort = effort or EFFORTS[chooses]
     tasks = suite(name, "train", limit=limit).tasks
+    if len(tasks) < 2:
+        raise HearthError.of(
+            Code.BAD_ARGUMENT, "one task to learn from and none to check with", suggestion="more tasks"
+        )
     held = tasks[-min(VALIDATION, len(tasks) // 2) :]
     words = vocabulary([_aims_of(task, known) for task in tasks])
     lessons = list(spread(lesson, [Lesson(task, words, known) for task in tasks], workers, seen))

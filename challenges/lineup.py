@@ -19,6 +19,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.libraries import lacking, remedy
+from hearth.storage.files import file_digest
 
 NOBODY = "none"
 """The helper of who acts alone."""
@@ -44,6 +45,11 @@ class Lineup:
     helper: str = NOBODY
     goal: str = ""
     seconds: float = SECONDS
+
+    @property
+    def code(self) -> str:
+        """A digest of the file of a helper of one's own; "" for ours."""
+        return file_digest(Path(self.helper.rpartition(":")[0]))[:32] if ":" in self.helper else ""
 
     def checked(self) -> Lineup:
         """The same, with the goal that the helper is asked to reach.
@@ -109,7 +115,13 @@ class Lineup:
         """A helper that is made without its partner: one that is not told the goal, or somebody's own."""
         if self.helper in ONLINE:
             return ONLINE[self.helper].make(which.goals_in)
-        own: Agent = load(self.helper)()
+        made = load(self.helper)
+        try:
+            own: Agent = made()
+        except (Exception, SystemExit) as error:
+            raise HearthError.of(Code.BAD_ARGUMENT, f"{self.helper}: {type(error).__name__}: {error}") from error
+        if not callable(getattr(own, "reset", None)) or not callable(getattr(own, "act", None)):
+            raise HearthError.of(Code.BAD_ARGUMENT, f"{self.helper} has no `reset` and `act`", suggestion="a helper")
         return own
 
 

@@ -34,6 +34,7 @@ class Header:
         seeds: episodes of each task, numbered from 0.
         version: of Hearth.
         episodes: task, seed and kind of those that there are; None where there are all. People do not do all.
+        code: digest of the file of a helper of one's own; "" for ours.
     """
 
     suite: Suite
@@ -41,6 +42,7 @@ class Header:
     seeds: int
     version: str = VERSION
     episodes: tuple[tuple[str, int, bool], ...] | None = None
+    code: str = ""
 
     @property
     def helped(self) -> tuple[bool, ...]:
@@ -61,7 +63,7 @@ class Header:
             "format": FORMAT,
             "hearth": self.version,
             "suite": suite_data(self.suite),
-            "agents": agents,
+            "agents": {**agents, "code": self.code} if self.code else agents,
             "seeds": self.seeds,
             **({} if self.episodes is None else {"episodes": self.episodes}),
         }
@@ -167,7 +169,8 @@ def read_header(data: bytes, file: str) -> Header:
         raise HearthError.of(Code.BAD_JSON, f"`seeds` is not a number from 1 to {MOST_SEEDS:,}", file=file)
     suite = read_suite(given.get("suite"), file)
     lineup, version = Lineup(str(names[0]), str(names[1]), str(names[2])), str(given.get("hearth"))[:40]
-    return Header(suite, lineup, seeds, version, _some_episodes(given.get("episodes"), suite, seeds, file))
+    code = str(agents.get("code", ""))[:64]
+    return Header(suite, lineup, seeds, version, _some_episodes(given.get("episodes"), suite, seeds, file), code)
 
 
 def _some_episodes(given: Any, suite: Suite, seeds: int, file: str) -> tuple[tuple[str, int, bool], ...] | None:

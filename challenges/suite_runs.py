@@ -37,7 +37,8 @@ def run(
 ) -> Results:
     """Play every task several times, without the helper and with it, and write all that was done.
 
-    What a stopped run had written is kept; the same call goes on from there.
+    What a stopped run had written is kept; the same call goes on from there. A helper of one's own whose file has
+    changed is another: all is played anew.
 
     Args:
         suite: the tasks.
@@ -53,7 +54,7 @@ def run(
     Raises:
         HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
     """
-    header = Header(suite, lineup.checked(), seeds)
+    header = Header(suite, lineup.checked(), seeds, code=lineup.code)
     if out.exists() and next(read_lines(out), b"") == first_line(header):
         return read(out)
     partial = out.with_name(f".{out.name}.run{TEMPORARY}")

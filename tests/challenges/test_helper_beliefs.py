@@ -136,7 +136,7 @@ def test_proposals_of_the_network_follow_what_was_put_where(knowledge):
     world = FEW.tasks[0].start(knowledge)
     space = GoalSpace.of(OWAH.goals_in(world.home), world.home)
     first = space.places(world)
-    network = NetworkProposals(space, "goal-proposals-small", world.agents[0].index, world)
+    network = NetworkProposals(space, "goal-proposals-small", world.agents[0].index, space.places(world))
     row = next(n for n, each in enumerate(space.predicates) if each.name == "INSIDE")
     thing = next(number for number, rows in enumerate(space.rows_of) if row in rows)
     there = [*first[:thing], ("INSIDE", int(space.targets[row])), *first[thing + 1 :]]
