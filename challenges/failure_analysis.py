@@ -36,7 +36,7 @@ class Columns:
 
     Attributes:
         conflicts: predicates of the other agent's goal that held and that an agent undid.
-        undone: predicates of the main agent's goal that held and did no longer.
+        undone: things that counted for the main agent's goal and did no longer.
         loops: instructions that changed something and that the same agent had done to the same objects twice before.
         false_beliefs: things that an agent had seen where they no longer are, since the other took them unseen.
         needless: things that the helper moved and that in the end neither count for the goal nor are where they were.

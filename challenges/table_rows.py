@@ -67,7 +67,7 @@ class EpisodeRow(TypedDict):
     length: Annotated[int, "ticks that it counts as: all there are where the goal was not reached"]
     reward: Annotated[float, "1 if the goal was reached, less 0.004 a tick of its length"]
     conflicts: Annotated[int, "predicates of the other agent's goal that held and that an agent undid"]
-    undone: Annotated[int, "predicates of the main agent's goal that held and did no longer"]
+    undone: Annotated[int, "things that counted for the main agent's goal and did no longer"]
     loops: Annotated[int, "instructions with an effect that the same agent had done to the same objects twice before"]
     false_beliefs: Annotated[
         int, "things an agent had seen where they no longer were, the other having taken them unseen"
