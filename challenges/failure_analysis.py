@@ -35,7 +35,7 @@ class Columns:
     """The figures of one episode.
 
     Attributes:
-        conflicts: predicates of the other agent's goal that held and that an agent undid.
+        conflicts: things that counted for the other agent's goal and that an agent moved away.
         undone: things that counted for the main agent's goal and did no longer.
         loops: instructions that changed something and that the same agent had done to the same objects twice before.
         false_beliefs: things that an agent had seen where they no longer are, since the other took them unseen.

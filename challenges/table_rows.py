@@ -66,7 +66,7 @@ class EpisodeRow(TypedDict):
     ticks: Annotated[int, "that were played"]
     length: Annotated[int, "ticks that it counts as: all there are where the goal was not reached"]
     reward: Annotated[float, "1 if the goal was reached, less 0.004 a tick of its length"]
-    conflicts: Annotated[int, "predicates of the other agent's goal that held and that an agent undid"]
+    conflicts: Annotated[int, "things that counted for the other agent's goal and that an agent moved away"]
     undone: Annotated[int, "things that counted for the main agent's goal and did no longer"]
     loops: Annotated[int, "instructions with an effect that the same agent had done to the same objects twice before"]
     false_beliefs: Annotated[
