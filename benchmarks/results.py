@@ -40,7 +40,7 @@ HEAD = (
 )
 Row = dict[str, Any]
 Section = dict[str, Any]
-"""`day`, `load` and `still` (percent of the time) of a benchmark's run, and its `figures`."""
+"""`day`, `machine`, `load` and `still` (percent of the time) of a benchmark's run, and its `figures`."""
 
 
 def section(name: str) -> Section:
@@ -52,6 +52,7 @@ def section(name: str) -> Section:
         "day": datetime.now(UTC).date().isoformat(),
         "load": round(os.getloadavg()[0], 1),
         "still": round(still),
+        "machine": machine(),
         "figures": figures,
     }
 
@@ -61,7 +62,13 @@ def of_file(file: Path) -> Section:
     measured.
     """
     day = datetime.fromtimestamp(file.stat().st_mtime, UTC).date().isoformat()
-    return {"day": day, "load": None, "still": None, "figures": json.loads(file.read_text("utf-8"))}
+    return {
+        "day": day,
+        "load": None,
+        "still": None,
+        "machine": machine(),
+        "figures": json.loads(file.read_text("utf-8")),
+    }
 
 
 def measured(script: Path) -> list[Row]:
@@ -105,12 +112,12 @@ def document(found: Mapping[str, Section]) -> str:
         "The plain reference does the heart of the same work in plain Python (`plain.py`, `tests/oracles`), often less",
         "than we do; ratios compare the least times. One that falls by a third fails `make bench`.",
         "",
-        f"- Machine: {machine()}",
         f"- Python {platform.python_version()}, {libraries}",
     ]
     for name, one in found.items():
         busy = f", at load {one['load']}; the machine stood still {one['still']}% of the time"
-        head = f"Measured on {one['day']}{busy if one['load'] is not None else ''}."
+        where = f", on {one['machine']}" if one.get("machine") else ""
+        head = f"Measured on {one['day']}{where}{busy if one['load'] is not None else ''}."
         lines += [
             "",
             f"## {name}",

@@ -15,7 +15,7 @@ def row(name, ratio=None, value=1.0, target=None):
 
 
 def section(*figures):
-    return {"day": "2026-01-02", "load": 0.5, "still": 3, "figures": figures}
+    return {"day": "2026-01-02", "load": 0.5, "still": 3, "machine": "2 cores", "figures": figures}
 
 
 def test_a_ratio_that_fell_by_a_third_is_named(results):
@@ -42,7 +42,7 @@ def test_the_document_says_target_ratio_and_spread(results):
     text = results.document({"engine": section(row("run", 4.5, 290_000.0, 250_000))})
     assert "| run | 2.9e+05 steps/s | 10% |  | 250,000 steps/s | 4.5 x |" in text
     assert "Python 3" in text and "cores" in text
-    assert "2026-01-02, at load 0.5; the machine stood still 3% of the time" in text
+    assert "2026-01-02, on 2 cores, at load 0.5; the machine stood still 3% of the time" in text
 
 
 @pytest.fixture(scope="module")
