@@ -94,4 +94,4 @@ def _answer(item: Item) -> Any:
         return [plans.NAME, item.value["text"]]
     if item.reader != crowd.NAME:
         return None
-    return {name: cell for name, cell in item.value["cells"].items() if name != "HITId"}
+    return {name: cell for name, cell in item.value["cells"].items() if name in crowd.COLUMNS}

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypedDict
 
+from hearth.pipelines.crowd.seen import SeenSet, digest
 from hearth.pipelines.crowd.topics import no_activity
 from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, record, refused, worker_hash
@@ -36,6 +37,9 @@ PROGRAMS = (
     "Answer.props",
     "Answer.program",
 )
+
+COLUMNS = frozenset({*DESCRIPTIONS, *PROGRAMS, "Origin", "Platform", "Style"}) - {"HITId"}
+"""What an answer is, but for its task: of two that agree in them, the second is a copy."""
 
 _ACCEPTED = frozenset({"approved", "submitted", "accepted", ""})
 _QUANTITY = re.compile(r"\s*<?([^*<>]+?)>?\s*(?:\*\s*(\d{1,6}))?\s*")
@@ -63,7 +67,10 @@ def header_of(line: str) -> Header | None:
 
 
 def scan(path: Place, place: str) -> Iterator[Item]:
-    """One item for each answer of a batch."""
+    """One item for each answer of a batch.
+
+    An answer has the id of its task (`HITId`); further answers to the same task, with other assignments, have both ids.
+    """
     rows = Rows(path)
     first = next(rows, None)
     header = header_of(first[1]) if first else None
@@ -81,7 +88,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 
 def _answers(rows: Rows, header: Header, place: str) -> Iterator[Item]:
-    empty = True
+    empty, hits = True, SeenSet()
     for line, raw, cells in rows.parsed(header):
         fault = _row_fault(line, raw, cells, header, place)
         empty = empty and not fault and not cells
@@ -89,8 +96,11 @@ def _answers(rows: Rows, header: Header, place: str) -> Iterator[Item]:
             yield refused(place, Reject((fault,)), line=line)
         elif cells:
             values = dict(zip(header.columns, cells, strict=False))
-            record_id = f"{_origin(values)}:{values['HITId'].strip() or f'{place}:{line}'}"
-            yield Item(record_id, NAME, place, {"stage": header.stage, "cells": values}, line=line)
+            name = values["HITId"].strip() or f"{place}:{line}"
+            assignment = values.get("AssignmentId", "").strip()
+            if hits.add(digest(name)) and assignment:  # another worker's answer to the same task
+                name = f"{name}:{assignment}"
+            yield Item(f"{_origin(values)}:{name}", NAME, place, {"stage": header.stage, "cells": values}, line=line)
     if empty:
         yield refused(place, Reject.of(Code.EMPTY, "a batch with its first line only", file=place, line=1))
 
