@@ -50,7 +50,7 @@ def predicted(model: str, dataset: Dataset, part: str, most: int = 0) -> Clips:
         HearthError: errors of `mask_predictor` and of `Clips.of`.
     """
     network, clips = mask_predictor(model), Clips.of(dataset, part, most, array=COLOURS)
-    return replace(clips, films=PredictedMasks(clips.films, network))
+    return replace(clips, films=PredictedMasks(clips.films, network, keeps=False))
 
 
 class PredictedMasks(Sequence[NDArray[np.uint16]]):
@@ -59,10 +59,11 @@ class PredictedMasks(Sequence[NDArray[np.uint16]]):
     Args:
         films: their colours.
         network: that predicts.
+        keeps: whether they stay in memory, for several models that look at them; else they are made each time.
     """
 
-    def __init__(self, films: Sequence[NDArray[Any]], network: TrainedMaskModel) -> None:
-        self.films, self.network = films, network
+    def __init__(self, films: Sequence[NDArray[Any]], network: TrainedMaskModel, keeps: bool = True) -> None:
+        self.films, self.network, self.keeps = films, network, keeps
         self.made: dict[int, NDArray[np.uint16]] = {}
 
     def __len__(self) -> int:
@@ -74,7 +75,10 @@ class PredictedMasks(Sequence[NDArray[np.uint16]]):
     def __getitem__(self, number: slice) -> Sequence[NDArray[np.uint16]]: ...
     def __getitem__(self, number: int | slice) -> NDArray[np.uint16] | Sequence[NDArray[np.uint16]]:
         if isinstance(number, slice):
-            return PredictedMasks(self.films[number], self.network)
-        if number not in self.made:
-            self.made[number] = self.network.masks(self.films[number])
-        return self.made[number]
+            return PredictedMasks(self.films[number], self.network, self.keeps)
+        if number in self.made:
+            return self.made[number]
+        masks = self.network.masks(self.films[number])
+        if self.keeps:
+            self.made[number] = masks
+        return masks
