@@ -66,6 +66,12 @@ class Player:
         time.sleep(0.1)
         return self.act("[Turnleft]")
 
+    def patient_act(self, act):
+        """The answer to an act, sent again where it was too fast for a person."""
+        while (found := self.act(act))["type"] == "error" and found["error"]["code"] == "TOO_FAST":
+            time.sleep(0.2)
+        return found
+
     def act(self, act, tick=None):
         return self.ask({"type": "act", "tick": self.state["tick"] if tick is None else tick, "act": act})
 

@@ -22,7 +22,7 @@ def test_all_tasks_are_played_by_the_socket(server, person, tmp_path):
         game = begun(server, person, task)
         with Player(person, game) as player:
             for act, text in alone(task):
-                assert player.act(text)["type"] == "tick", f"{task.id}: {act}"
+                assert player.patient_act(text)["type"] == "tick", f"{task.id}: {act}"
         file = tmp_path / f"{task.id}.jsonl"
         file.write_bytes(person.get(f"/play/game/{game}/episode.jsonl").content)
         found = read(file)
