@@ -103,8 +103,7 @@ def synthesize(
         return
     with replacing(out) as temporary, temporary.open("wb") as file:
         file.writelines(lines)
-    text = f"{output.counted(count, 'program')} in {out}"
-    output.say(text, {**figures, "seed": seed, "file": out}, as_json)
+    output.say(f"{output.counted(count, 'program')} in {out}", {**figures, "seed": seed, "file": out}, as_json)
 
 
 @app.command()
