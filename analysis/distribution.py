@@ -6,7 +6,6 @@ Also the diversity of one program's environments (5.5.2, figure 5-4).
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -41,9 +40,10 @@ def observed(path: Path, knowledge: Knowledge, limit: int | None = None) -> tupl
         for home, name in sorted(value.get("graphs", {}).items()):
             text = release.text_of(value, value["grounded"][home]) if home in value.get("grounded", {}) else ""
             graphs = release.json_of(value, name)
-            if isinstance(text, str) and not isinstance(graphs, Diagnostic):
-                with suppress(KeyError, TypeError, AttributeError):  # a graph that lacks what a graph has counts less
-                    _count_graph(graphs["init_graph"], _bound(text), knowledge, places, states)
+            # What a build refuses of the release does not count either.
+            refused = isinstance(graphs, Diagnostic) or isinstance(release.graphs_of(graphs, name), Diagnostic)
+            if isinstance(text, str) and not refused:
+                _count_graph(graphs["init_graph"], _bound(text), knowledge, places, states)
     return dict(places), dict(states)
 
 

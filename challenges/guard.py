@@ -78,10 +78,8 @@ class Guarded:
             if step is None or (isinstance(step, Message) and self.messages and read_message(str(step)) == step):
                 return step
             if not isinstance(step, Step):
-                raise HearthError.of(
-                    Code.BAD_ARGUMENT,
-                    f"the answer is {type(step).__name__}, not a Step, a message that can be read, or None",
-                )
+                wanted = "a Step, a message that can be read, or None"
+                raise HearthError.of(Code.BAD_ARGUMENT, f"the answer is {type(step).__name__}, not {wanted}")
             if step in legal or self._may_try(step, observation):
                 return self._plain(step, observation)
             self.refused += 1
@@ -90,10 +88,8 @@ class Guarded:
     def _plain(self, step: Step, view: View) -> Step:
         """The instruction as records have it: an action and nodes. Agents could write one in many ways."""
         home = view.world.home
-        refs = (
-            ObjectRef(home.classes[home.index[ref.node]], 0, ref.node) for ref in step.objects if ref.node is not None
-        )
-        return Step(step.action, tuple(refs), self.number)
+        nodes = [ref.node for ref in step.objects if ref.node is not None]
+        return Step(step.action, tuple(ObjectRef(home.classes[home.index[i]], 0, i) for i in nodes), self.number)
 
     def _may_try(self, step: Step, view: View) -> bool:
         """Whether it is about what is seen; the engine says then why it can't be done."""

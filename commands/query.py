@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.commands import output
+from hearth.storage.names import numbered
 
 
 def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> None:
@@ -44,11 +45,10 @@ def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> No
 
 
 def _different(columns: Sequence[str]) -> list[str]:
-    """Names of columns; of several of one name, the later ones with a number that none has."""
+    """Names of columns; of several of one name, the later ones with a number: `a~2`."""
     found: list[str] = []
     for name in columns:
-        names = (name, *(f"{name}_{number}" for number in range(1, len(columns) + 1)))
-        found.append(next(each for each in names if each not in found and (each == name or each not in columns)))
+        found.append(numbered(name, {*found, *columns}) if name in found else name)
     return found
 
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hearth.datasets.format.catalog import quoted
 from hearth.datasets.steady import version
 from hearth.schemas.tables import KEYS
 
@@ -34,7 +35,7 @@ def reading_between(folder: Path, table: str, low: str, high: str) -> str:
     (key,) = KEYS[table]
     ranges = _ranges(str(folder.resolve()), table, key, version(folder))
     found = [each.path for each in ranges if each.low <= high and low <= each.high]
-    names = ", ".join("'" + glob.escape(path).replace("'", "''") + "'" for path in found)
+    names = ", ".join(quoted(glob.escape(path)) for path in found)
     return f"read_parquet([{names}])" if found else table
 
 

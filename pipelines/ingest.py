@@ -3,7 +3,6 @@
 import shutil
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from itertools import chain, count
 from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
@@ -28,7 +27,7 @@ from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import INGESTED
 from hearth.storage.archives import DamagedError
 from hearth.storage.files import value_digest
-from hearth.storage.names import inside
+from hearth.storage.names import inside, numbered
 from hearth.storage.partitions import Counts
 from hearth.storage.rejects import Reject, as_text
 
@@ -264,9 +263,7 @@ def write_scenes(job: Job, counts: Counts) -> None:
     for path in sorted(job.folder.glob("part-*.parquet")) if counts.tally["scene"] else ():
         for row in pq.read_table(path, columns=["title", "groundings"], filters=[("kind", "=", "scene")]).to_pylist():
             folder.mkdir(exist_ok=True)
-            title = row["title"]
-            names = chain([title], (f"{title}~{number}" for number in count(2)))
-            name = next(each for each in names if each not in taken)
+            name = numbered(row["title"], taken)
             taken.add(name)
             write_home(inside(folder, f"{name}.json"), graph_of(row["groundings"][0]["start"]))
 

@@ -2,6 +2,8 @@
 
 import hashlib
 import os
+from collections.abc import Container
+from itertools import chain, count
 from pathlib import Path, PurePosixPath
 
 from hearth.schemas.diagnostics import HearthError
@@ -15,6 +17,12 @@ def leaves(name: str) -> bool:
     """Whether a name, as an archive or a store lists it, points outside the folder that it is given for."""
     path = PurePosixPath(name.replace("\\", "/"))
     return path.is_absolute() or ".." in path.parts or (len(name) > 1 and name[1] == ":")
+
+
+def numbered(name: str, taken: Container[str]) -> str:
+    """A name, with the least number from 2 on with which it is not taken, if it is: `a~2`."""
+    names = chain([name], (f"{name}~{number}" for number in count(2)))
+    return next(each for each in names if each not in taken)
 
 
 def inside(folder: Path, name: str) -> Path:

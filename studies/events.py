@@ -86,9 +86,13 @@ class MemoryLedger:
         """The events of a stream."""
         return list(self.events.get(stream, ()))
 
+    def _next(self, event: Event) -> bool:
+        """Whether an event is the next of its stream."""
+        return event.number == len(self.events.get(event.stream, ()))
+
     def append(self, event: Event) -> bool:
         """Keep an event."""
-        if event.number != len(self.events.get(event.stream, ())):
+        if not self._next(event):
             return False
         self.events.setdefault(event.stream, []).append(event)
         return True
@@ -137,7 +141,7 @@ class FileLedger(MemoryLedger):
 
     def append(self, event: Event) -> bool:
         """Keep an event in the file."""
-        if event.number != len(self.events.get(event.stream, ())):
+        if not self._next(event):
             return False
         with self.path.open("ab") as file:  # first, so that memory never has what the file lacks
             file.write(_line(event_data(event)))

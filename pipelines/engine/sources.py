@@ -4,7 +4,6 @@ import hashlib
 from collections.abc import Iterable
 from functools import lru_cache, partial
 from hashlib import blake2b
-from itertools import count
 from pathlib import Path
 
 from hearth.pipelines.engine.settings import Settings
@@ -12,6 +11,7 @@ from hearth.pipelines.readers.item import Source
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import tree_digest, value_digest, walk
+from hearth.storage.names import numbered
 from hearth.storage.rejects import as_text
 
 
@@ -27,11 +27,9 @@ def labelled(paths: Iterable[str]) -> list[Source]:
     named = sorted((Path(text).name or Path(text).resolve().name, text) for text in paths)
     taken, seen = {name for name, _ in named}, set()
     for name, text in named:
-        label = name
-        if name in seen:
-            label = next(other for number in count(2) if (other := f"{name}~{number}") not in taken)
-            taken.add(label)
+        label = numbered(name, taken) if name in seen else name
         seen.add(name)
+        taken.add(label)
         sources.append(Source(as_text(label), Path(text)))
     missing = [source.path for source in sources if not source.path.exists()]
     if missing:

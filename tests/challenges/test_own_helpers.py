@@ -94,8 +94,21 @@ def test_what_is_not_seen_changes_nothing_that_a_helper_is_told_of_places(name, 
     helper = ONLINE[name].make(which.goals_in)
     helper.reset(view, None, 0)
     hidden = [n for n, thing in enumerate(helper.space.things) if not view.mask >> thing & 1]
-    told, true = helper.places(view), helper.space.places(start)
-    assert len(hidden) > 10 and sum(told[n] != true[n] for n in hidden) > len(hidden) / 3
+    shown, true = helper.places(view), helper.space.places(start)
+    assert len(hidden) > 10 and sum(shown[n] != true[n] for n in hidden) > len(hidden) / 3
     whole = Env(partial=False)
     whole.restore(start)
     assert helper.places(whole.observe(1)) == true
+
+
+def test_what_cannot_be_inferred_or_learned_is_refused_with_a_code(tmp_path):
+    pytest.importorskip("torch")
+    from hearth.analysis.online_inference import inference
+    from hearth.challenges.learning_to_help import learn
+    from hearth.models.interface import Training
+
+    alone = run(FEW, Lineup("human_like", "none"), 1, tmp_path / "alone.jsonl", default)
+    for refused in (lambda: inference(alone, default), lambda: learn("wah", "subgoals", default, Training(), limit=1)):
+        with pytest.raises(HearthError) as found:
+            refused()
+        assert found.value.diagnostics[0].code == Code.BAD_ARGUMENT

@@ -239,3 +239,19 @@ def test_a_network_with_context_is_restored(clips, model, tmp_path):
     made = replace(model, settings=settings, network=settings.network(model.table).eval())
     save(made.checkpoint(), tmp_path)
     assert SeenModel.restored(load(tmp_path)).named(clips) == made.named(clips)
+
+
+def test_a_stopped_training_goes_on_with_its_own_dataset_alone(clips, monkeypatch):
+    """What was begun is known by the dataset's files and by the weights that predict masks."""
+    tasks = []
+    monkeypatch.setattr(Clips, "of", lambda dataset, part, films=0: clips)
+    monkeypatch.setattr(seen_model, "predicted", lambda *_: clips)
+    networks = {name: SimpleNamespace(network=torch.nn.Linear(1, number)) for number, name in enumerate("ab", 1)}
+    monkeypatch.setattr(seen_model, "mask_predictor", networks.get)
+    monkeypatch.setattr(
+        seen_model, "train", lambda task, *_: tasks.append(task.identity) or SimpleNamespace(record=dict)
+    )
+    for files, masks in (("one", ""), ("other", ""), ("one", "a"), ("one", "b"), ("one", "")):
+        data = SimpleNamespace(knowledge=default(), manifest={"files": {files: 1}})
+        SeenModel(width=16, layers=1, masks=masks).fit(data, Training())
+    assert tasks[0] == tasks[-1] and len({str(each) for each in tasks}) == 4

@@ -439,16 +439,3 @@ def test_a_limit_counts_programs(write, built):
     limited = built(folder, limit=3)
     limited.run("ingest")
     assert [row["kind"] for row in limited.rows("ingest")] == ["description"] * 3 + ["program"] * 3
-
-
-def test_several_assignments_of_a_task_are_several_answers(write):
-    """The ordinary form of a batch with more than one assignment; a row that came twice is still a copy."""
-    header = f"AssignmentId,AcceptTime,{HEADER}"
-    answers = [
-        "A1,1,H1,W1,Approved,kitchen,Make tea,I boil water and pour it over the tea.",
-        "A2,2,H1,W2,Approved,kitchen,Brew tea,I put the kettle on and wait for the water to boil.",
-        "A1,3,H1,W1,Approved,kitchen,Make tea,I boil water and pour it over the tea.",
-    ]
-    found = [item for _, item in items(labelled([str(write("batch.csv", "\n".join([header, *answers])))]))]
-    assert [item.record_id for item in found if item.reader == crowd.NAME] == ["crowd:H1", "crowd:H1:A2"]
-    assert sum(item.reader == "refused" for item in found) == 1

@@ -9,10 +9,12 @@ import threading
 import pytest
 from web.playing import Player, alone, begun, connected, session_of
 
+from hearth.challenges.published_tasks import tasks
 from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking
 from hearth.web.play import recorded_episode
 from hearth.web.play.game_results import results
@@ -279,3 +281,32 @@ def test_the_form_begins_a_game(person):
     assert "in rowan" in person.get(begun.headers["location"]).text
     for name, task in (("x", "1"), ("wah", "1000"), ("wah", "-1")):
         assert person.post("/play/new", data={"challenge": name, "task": task}).status_code == 400
+
+
+def test_a_game_that_was_deleted_is_refused_with_a_code(server):
+    from hearth.web.play import game_store
+    from hearth.web.web_errors import WebError
+
+    with pytest.raises(WebError) as found:
+        server.store.read(lambda connection: game_store.stored(connection, "G0"))
+    assert found.value.code == Code.UNKNOWN_ID
+
+
+def test_seeds_of_games_stay_within_what_a_file_can_have(monkeypatch):
+    from dataclasses import dataclass
+    from types import SimpleNamespace
+
+    from hearth.web.play import game_results
+
+    @dataclass
+    class Made:
+        task: str
+        seed: int
+        helped: bool = False
+
+    monkeypatch.setattr(game_results, "MOST_SEEDS", 3)
+    task = tasks("wah", "test-1", limit=1)[0]
+    game = SimpleNamespace(trial=SimpleNamespace(task=task, helper="none", goal=""), record=lambda: Made(task.id, 2))
+    found = game_results.results([game] * 5)
+    (one,) = found.values()
+    assert [each.seed for each in one.records] == [0, 1, 2] and one.header.seeds == 3
