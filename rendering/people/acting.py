@@ -12,7 +12,8 @@ from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.variety import person
-from hearth.rendering.scene.places import Places, Pose
+from hearth.rendering.scene.free_poses import Pose
+from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import local_size
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot

@@ -14,8 +14,10 @@ from hearth.rendering.people.body_pose import BodyPose, Hand, Held
 from hearth.rendering.people.holding import Hold, grip_point, hold_of_node
 from hearth.rendering.people.rotations import unit
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, in_reach
+from hearth.rendering.scene.free_poses import Pose
 from hearth.rendering.scene.instances import own_mesh
-from hearth.rendering.scene.places import HANDS, Places, Pose
+from hearth.rendering.scene.locations import HANDS
+from hearth.rendering.scene.places import Places
 from hearth.schemas.graph import EnvironmentGraph, Node, Point
 from hearth.schemas.program import Step
 

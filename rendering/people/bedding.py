@@ -9,7 +9,8 @@ from math import cos, pi, radians, sin
 from hearth.homes.forms import form
 from hearth.rendering.models.drape import EMPTY
 from hearth.rendering.people.acting import Actor
-from hearth.rendering.scene.places import Places, Pose
+from hearth.rendering.scene.free_poses import Pose
+from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import local_size
 from hearth.schemas.graph import Box, Node, Point
 from hearth.simulation.world.affordance import is_of_kind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import hypot, pi, sin, sqrt
+from math import dist, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,13 @@ HEADS, HANDS = 1.1, 1.7
 
 QUICKENING = 9.0
 """Greatest acceleration of heads and hands in blends of poses, metres per second squared."""
+
+
+COMES = 2.45
+"""How much faster than evenly the gap between a hand and what it holds closes at its fastest."""
+
+TURNING = 360.0
+"""Greatest speed at which things turn in the hand, degrees per second."""
 
 
 class Segment(NamedTuple):
@@ -73,6 +80,10 @@ def least_seconds(one: Actor, other: Actor) -> float:
         far = float(np.linalg.norm(end - start))
         # An eased motion is fastest in its middle, and quickens most at its ends.
         least = max(least, far * pi / 2 / speed, pi * sqrt(far / 2 / QUICKENING))
+    for side in "rl":
+        held, then = (actor.body_pose.hand(side).held for actor in (one, other))
+        turns = abs(held.turn - then.turn) * pi / 2 / TURNING
+        least = max(least, dist(held.gap, then.gap) * COMES / HANDS, turns)
     return least
 
 

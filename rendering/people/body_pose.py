@@ -99,6 +99,7 @@ class BodyPose:
         effort: 0 to 1, how far the body stoops; None is the least with which the hands reach.
         between: the pose that this one is changing from; None if it has.
         tucked: 0 to 1, how far the right and the left arm are drawn in before the body, for want of room.
+        sink: metres by which the hips are lower, so that they do not drop at once where a step needs it.
     """
 
     posture: str = "standing"
@@ -114,6 +115,7 @@ class BodyPose:
     effort: float | None = None
     between: Between | None = None
     tucked: tuple[float, float] = (0.0, 0.0)
+    sink: float = 0.0
 
     def target(self, side: str) -> Point | None:
         """The target of the `r` or `l` palm."""

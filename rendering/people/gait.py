@@ -8,12 +8,13 @@ from itertools import pairwise
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
 from typing import NamedTuple
 
-from numpy import interp
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import BodyPose, Foot, drawn_in
-from hearth.rendering.people.skeleton import STEP, effort_of, feet_of
+from hearth.rendering.people.skeleton import STEP, effort_of, feet_of, sinking
 from hearth.schemas.graph import Spot
 
 STEP_TIME = 0.52
@@ -58,6 +59,13 @@ SETTLING = 0.4
 
 SMOOTHED = ((-0.13, 0.25), (0.0, 0.5), (0.13, 0.25))
 """Seconds before and after a moment, and their weights, over which the swing of the arms is averaged."""
+
+
+BOBBING = 0.05
+"""Seconds between the moments of a walk at which it is looked how low the hips have to be."""
+
+SOFT = 2
+"""Number of those before and after a moment at which the hips are as low, and over which that is averaged."""
 
 
 class Place(NamedTuple):
@@ -183,7 +191,7 @@ def slowed(move: Movement) -> Movement:
         real.append(real[-1] + max(end - start, abs(angle(one, other)) / CORNERING))
     if real[-1] < move.seconds + 1e-6:
         return move
-    return Movement(real[-1], lambda time: move.at(float(interp(time, real, times))))
+    return Movement(real[-1], lambda time: move.at(float(np.interp(time, real, times))))
 
 
 def movements(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> list[Movement]:
@@ -234,6 +242,7 @@ class Gait:
         self.step = self.moving / self.count
         self.seconds = self.moving + self.step
         self.prints = self._prints()
+        self.sinks = self._sinks()
         self.arms = None
         if arms is not None:
             count = ceil(self.moving / SAMPLED) + 1
@@ -312,6 +321,24 @@ class Gait:
             pitch = HEEL * min(ahead / (0.35 * length), 1.0) * eased(1 - (later.start - time) / (0.45 * self.step))
         return _local(place, here.place, 0.0, pitch)
 
+    def _sinks(self) -> Floats:
+        """How low the hips are every `BOBBING` seconds: as low as feet that are far apart need, without haste."""
+        pose, own = replace(self.actor.body_pose, stride=0.0), self.actor.body.proportions
+        found = np.zeros(ceil(self.seconds / BOBBING) + 1)
+        for number in range(len(found)):
+            time = min(number * BOBBING, self.moving)
+            feet = self.feet(min(number * BOBBING, self.seconds), self.place(time))
+            found[number] = sinking(replace(pose, feet=feet), own)
+        around = np.pad(found, 2 * SOFT)
+        lowest = sliding_window_view(around, 2 * SOFT + 1).max(axis=1)
+        smooth: Floats = sliding_window_view(lowest, 2 * SOFT + 1).mean(axis=1)
+        return smooth
+
+    def sink(self, time: float) -> float:
+        """Metres by which the hips are lower."""
+        ends = eased(min(time, self.seconds - time) / SETTLING)
+        return float(np.interp(time / BOBBING, np.arange(len(self.sinks)), self.sinks)) * ends
+
     def stride(self, time: float) -> float:
         """The swing of the arms: as far as the feet are apart on average over some moments, -1.3 to 1.3."""
         found = 0.0
@@ -335,6 +362,7 @@ class Gait:
             place = self.place(min(time, self.moving))
             feet = self.feet(time, place)
         pose = replace(self.carried(self.tucked(time)), feet=feet, stride=self.stride(time), effort=self.effort)
+        pose = replace(pose, sink=self.sink(time))
         return replace(self.actor, spot=(place.x, place.z), yaw=place.yaw, body_pose=pose)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model, choice_of
+from hearth.rendering.models.mesh import rotation
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import Held
 from hearth.rendering.people.rotations import Vector
@@ -110,16 +111,34 @@ def grip_point(hold: Hold, box: Box, yaw: float) -> Point:
 
 
 def held_things(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...]) -> dict[int, tuple[Thing, ...]]:
-    """The drawn things that hands hold and heads wear, with what pours out of them, by node id."""
+    """The drawn things that hands hold and heads wear, what is in and on them, and what pours out of them, by id."""
     nodes = {node.id: node for node in places.graph.nodes}
     found: dict[int, tuple[Thing, ...]] = {}
     for actor in actors:
         for node, side in places.holds.get(actor.node.id, {}).items():
             found[node] = tuple(_in_hand(prepared, places, actor, nodes[node], side))
+            found |= _contents(prepared, places, nodes[node], found[node][0], nodes) if found[node] else {}
         for edge in places.graph.edges:
             worn = edge.target == actor.node.id and edge.relation == "ON"
             if worn and "hat" in nodes[edge.source].class_name:
                 found[edge.source] = tuple(_on_head(prepared, places, actor, nodes[edge.source]))
+    return found
+
+
+def _contents(
+    prepared: PreparedScene, places: Places, vessel: Node, drawn: Thing, nodes: Mapping[int, Node]
+) -> dict[int, tuple[Thing, ...]]:
+    """The drawn things that are in and on one, by id."""
+    found: dict[int, tuple[Thing, ...]] = {}
+    turn = rotation("y", drawn.yaw) @ tilted(drawn.tilt)
+    for number, pose in places.packed.get(vessel.id, {}).items():
+        still = prepared.things(replace(nodes[number], box=pose.box, yaw=pose.yaw))
+        things: list[Thing] = []
+        for thing in still:
+            x, y, z = (np.array(drawn.position) + turn @ np.array(thing.position)).tolist()
+            things.append(replace(thing, position=(x, y, z), yaw=drawn.yaw, tilt=drawn.tilt))
+        found[number] = tuple(things)
+        found |= _contents(prepared, places, nodes[number], things[0], nodes) if things else {}
     return found
 
 

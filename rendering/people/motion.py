@@ -6,23 +6,19 @@ from typing import NamedTuple
 
 from hearth.rendering.film.snapshots import Keyframe, Trajectory
 from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.arrivals import Arrivals, arrivals
 from hearth.rendering.people.bedding import Remade
-from hearth.rendering.people.gait import eased
 from hearth.rendering.people.holding import held_things
-from hearth.rendering.people.pushing import slides
 from hearth.rendering.people.tracks import HOLD, Track, motionless, track
 from hearth.rendering.scene.effects import at_time
+from hearth.rendering.scene.free_poses import Pose
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.places import Pose
 from hearth.rendering.scene.scene import Scene
-from hearth.schemas.graph import Node, Spot
+from hearth.schemas.graph import Node
 from hearth.schemas.program import Step
 
 OPENING = 0.5
 """Seconds in which doors, lids and drawers open or close."""
-
-SLIDING = 0.5
-"""Seconds in which things that are pushed or pulled slide."""
 
 
 class Frame(NamedTuple):
@@ -64,9 +60,8 @@ def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Ite
     """
     set_ = _SceneCache(trajectory)
     number = 0
-    for span, before, after, tracks in _spans(trajectory, speed):
+    for span, before, after, tracks, coming in _spans(trajectory, speed):
         change, swings = _change(tracks), swinging(before, after)
-        slide = slides(before.places, after.places, span.steps)
         while number / fps < span.end:
             time = number / fps
             past = (time - span.start) * speed
@@ -74,8 +69,8 @@ def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Ite
             keyframe, share = (after, (past - change) / OPENING) if past >= change else (before, 1.0)
             ajar = {node: share if opens else 1 - share for node, opens in swings.items()} if share < 1 else {}
             scene = set_.scene(keyframe, actors, ajar, _bedding(before, after, tracks, past), time)
-            if slide and 0 <= past - change < SLIDING:
-                scene = _sliding(scene, slide, 1 - eased((past - change) / SLIDING))
+            if past >= change:
+                scene = coming.at(scene, past - change)
             yield Frame(time, span.tick, span.steps, scene, actors, keyframe.places.holds)
             number += 1
 
@@ -91,14 +86,12 @@ def _bedding(before: Keyframe, after: Keyframe, tracks: Sequence[Track], past: f
     return found
 
 
-def _sliding(scene: Scene, slide: Mapping[int, Spot], left: float) -> Scene:
-    """A scene in which things have a share of their way over the floor left."""
-
-    def back(thing: Thing) -> Thing:
-        (x, y, z), (dx, dz) = thing.position, slide[thing.id]
-        return replace(thing, position=(x - dx * left, y, z - dz * left))
-
-    return replace(scene, things=tuple(back(thing) if thing.id in slide else thing for thing in scene.things))
+def _arrivals(trajectory: Trajectory, before: Keyframe, after: Keyframe, tracks: Sequence[Track]) -> Arrivals:
+    """What has a way left when all hands have arrived; bedding that people move is not counted."""
+    change = _change(tracks)
+    actors = tuple(track.at(change) for track in tracks)
+    moved = _bedding(before, after, tracks, change).keys()
+    return arrivals(trajectory.prepared, before.places, after.places, actors, moved)
 
 
 def swinging(before: Keyframe, after: Keyframe) -> dict[int, bool]:
@@ -117,10 +110,12 @@ def spans(trajectory: Trajectory, speed: float = 1.0) -> list[Span]:
     return [span for span, *_ in _spans(trajectory, speed)]
 
 
-def _spans(trajectory: Trajectory, speed: float) -> Iterator[tuple[Span, Keyframe, Keyframe, tuple[Track, ...]]]:
+def _spans(
+    trajectory: Trajectory, speed: float
+) -> Iterator[tuple[Span, Keyframe, Keyframe, tuple[Track, ...], Arrivals]]:
     first = trajectory.keyframes[0]
     static = tuple(Track((motionless(actor, 1.0),), 0.0) for actor in first.actors)
-    yield Span(0, (), 0.0, 1.0 / speed), first, first, static
+    yield Span(0, (), 0.0, 1.0 / speed), first, first, static, Arrivals({})
     time = 1.0 / speed
     for before, after in zip(trajectory.keyframes, trajectory.keyframes[1:], strict=False):
         by_agent = {step.agent: step for step in after.steps}
@@ -131,8 +126,10 @@ def _spans(trajectory: Trajectory, speed: float) -> Iterator[tuple[Span, Keyfram
         takes = [found.seconds for found in tracks] or [HOLD]
         if swinging(before, after):
             takes.append(_change(tracks) + OPENING)
+        coming = _arrivals(trajectory, before, after, tracks)
+        takes.append(_change(tracks) + coming.seconds)
         end = time + max(takes) / speed
-        yield Span(after.tick, after.steps, time, end), before, after, tracks
+        yield Span(after.tick, after.steps, time, end), before, after, tracks, coming
         time = end
 
 

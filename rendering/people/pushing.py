@@ -8,7 +8,8 @@ from math import cos, hypot, radians, sin
 
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.scene.places import Places, Pose
+from hearth.rendering.scene.free_poses import Pose
+from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.solids import Solids
 from hearth.schemas.graph import Box, Node, Spot
 from hearth.schemas.program import Step
@@ -55,9 +56,7 @@ def _with(places: Places, target: int) -> list[int]:
     """A thing and all that is on or in it."""
     found = [target]
     for number in found:
-        found += [
-            thing for thing, at in places.locations.items() if at.holder == number and at.kind in ("on", "inside")
-        ]
+        found += places.contents(number)
     return found
 
 
@@ -89,15 +88,3 @@ def _across(half: Spot, yaw: float) -> Spot:
 def _shifted(pose: Pose, by: Spot) -> Pose:
     (x, y, z), size = pose.box.center, pose.box.size
     return pose._replace(box=Box((x + by[0], y, z + by[1]), size))
-
-
-def slides(before: Places, after: Places, steps: Sequence[Step]) -> dict[int, Spot]:
-    """By how much things slid between two keyframes, by id."""
-    found: dict[int, Spot] = {}
-    for step in steps:
-        target = (step.objects[0].node or 0) if gesture_of(step).moves and step.objects else 0
-        for number in _with(after, target) if target else ():
-            one, other = before.poses.get(number), after.poses.get(number)
-            if one is not None and other is not None and one.box.center != other.box.center:
-                found[number] = other.box.center[0] - one.box.center[0], other.box.center[2] - one.box.center[2]
-    return found

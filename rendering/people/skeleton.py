@@ -154,7 +154,7 @@ def feet_of(body_pose: BodyPose, body: Proportions) -> tuple[Foot, Foot]:
 def _hips(body_pose: BodyPose, body: Proportions, drop: float) -> Vector:
     if body_pose.posture == "sitting":
         return np.array((0.0, body_pose.seat + PELVIS_ON_SEAT * body.height, 0.0))
-    high = body.pelvis - drop
+    high = body.pelvis - drop - body_pose.sink
     # Both feet are reached with knees that are never quite straight.
     legs = (body.thigh + body.shin) * 0.995
     for foot, sign in zip(feet_of(body_pose, body), (1.0, -1.0), strict=True):
@@ -162,6 +162,11 @@ def _hips(body_pose: BodyPose, body: Proportions, drop: float) -> Vector:
         far = hypot(ankle[0] - sign * body.hip, ankle[2] + drop * 0.35)
         high = min(high, float(ankle[1]) + sqrt(max(legs**2 - far**2, 0.01)))
     return np.array((0.0, high, -drop * 0.35))
+
+
+def sinking(body_pose: BodyPose, body: Proportions) -> float:
+    """Metres by which the hips of who walks upright are lower than standing, so that both feet are reached."""
+    return body.pelvis - float(_hips(body_pose, body, 0.0)[1])
 
 
 def ankle_of(foot: Foot, body: Proportions) -> Vector:

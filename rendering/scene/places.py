@@ -2,49 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import cos, radians, sin
 from types import MappingProxyType
-from typing import NamedTuple
 
 from hearth.homes.forms import form
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.look import Look, Region
 from hearth.rendering.models.looks import recipe_of
+from hearth.rendering.scene.free_poses import Pose, best, lying_flat, overlap
+from hearth.rendering.scene.locations import BUILDING, HANDS, Location, locations_of, parents_first
 from hearth.rendering.scene.prepared import LIQUIDS, PreparedScene, liquid, local_size
 from hearth.rendering.scene.solids import Solids, solids_of
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 
-HANDS = {"HOLDS_RH": "right", "HOLDS_LH": "left"}
-BUILDING = frozenset({"floor", "wall", "ceiling", "doorjamb", "window"})
-STEP = 0.04
-"""Metres between candidate positions."""
-
+FITS = 1.5
+"""How many times as long as a vessel what it holds may be, so that it is carried along."""
 
 NOWHERE: Mapping[int, Spot] = MappingProxyType({})
-
-
-class Location(NamedTuple):
-    """A thing's location in the graph.
-
-    Attributes:
-        kind: `held`, `worn`, `on`, `inside`, or `room` if no nearer holder is known.
-        holder: id of the character, support, container or room.
-    """
-
-    kind: str
-    holder: int
-
-
-class Pose(NamedTuple):
-    """A box and its direction."""
-
-    box: Box
-    yaw: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,16 +78,19 @@ class Places:
             near: character id -> its position; things are put down on that side.
             at: where things are put down, by id.
         """
-        locations = locations_of(graph)
         nodes = {node.id: node for node in graph.nodes}
+        locations = self._along(locations_of(graph), nodes)
+        in_hands = _carried(locations)
         poses: dict[int, Pose] = {}
-        for node_id in _parents_first(nodes, locations):
+        for node_id in parents_first(nodes, locations):
             node, location = nodes[node_id], locations.get(node_id)
             if node.category in (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts"):
                 if node_id in self.poses:
                     poses[node_id] = self.poses[node_id]
                 continue
-            pose = self._pose(node, location, nodes, poses, tuple((near or {}).values()))
+            if node_id in in_hands:
+                continue
+            pose = self._pose(node, location, nodes, poses, near or {})
             if pose is not None and node_id in at and location is not None and location.kind in ("on", "inside"):
                 (x, z), (_, y, _) = at[node_id], pose.box.center
                 pose = Pose(Box((x, y, z), pose.box.size), pose.yaw)
@@ -145,24 +126,87 @@ class Places:
         location: Location | None,
         nodes: Mapping[int, Node],
         poses: Mapping[int, Pose],
-        near: tuple[Point, ...],
+        people: Mapping[int, Point],
     ) -> Pose | None:
-        before = self.poses.get(node.id)
-        if location is None or location.kind in ("held", "worn"):
-            return before if location is None else None
-        if before and self.locations.get(node.id) == location:
-            old, new = self.poses.get(location.holder), poses.get(location.holder)
-            if location.kind == "room" or old is None or new is None or old == new:
-                return before
-        parent = nodes.get(location.holder)
-        if parent is None:
+        before, old = self.poses.get(node.id), self.locations.get(node.id)
+        if location is None or location.holder not in nodes:
             return before
+        if before and old == location:
+            stood, stands = self.poses.get(location.holder), poses.get(location.holder)
+            if location.kind == "room" or stood is None or stands is None or stood == stands:
+                return before
+        parent, near = nodes[location.holder], tuple(people.values())
+        if location.kind == "room" and old is not None:
+            left = self.locations.get(old.holder) if before and old.kind in ("on", "inside") else None
+            if before and left and left.kind in ("on", "inside") and left.holder in poses:
+                # What was in or on a thing that somebody took stays there where that was.
+                return self._placed(
+                    node, nodes[left.holder], poses[left.holder], left.kind, poses, (before.box.center,)
+                )
+            if old.kind == "worn" and old.holder in people:
+                near = (people[old.holder],)
+                parent = self._room_at(near[0], nodes) or parent
+            elif left and before:
+                near = (before.box.center,)
         support = poses.get(location.holder)
         if location.kind == "room" or parent.class_name == "floor" or support is None:
             return self._on_floor(node, parent, poses, near) if location.kind != "on" or support else before
-        if node.class_name in LIQUIDS and location.kind == "inside" and max(support.box.size) < 0.5:
+        return self._in_or_on(node, parent, support, location.kind, poses, near)
+
+    def _along(self, found: Mapping[int, Location], nodes: Mapping[int, Node]) -> Mapping[int, Location]:
+        """Locations; what is in or on a vessel that somebody carries stays there, though the rules forget it."""
+        kept: dict[int, Location] = {}
+        for thing, now in found.items():
+            old = self.locations.get(thing)
+            if now.kind != "room" or old is None or old.kind not in ("on", "inside") or old.holder not in nodes:
+                continue
+            if self._goes_along(nodes[thing], nodes[old.holder]):
+                kept[thing] = old
+        return {**found, **kept} if kept else found
+
+    def _goes_along(self, thing: Node, vessel: Node) -> bool:
+        """Whether a thing stays in or on a vessel that somebody takes."""
+        holds = {"RECIPIENT", "CONTAINERS", "SURFACES"} & {*vessel.properties}
+        if not holds or "GRABBABLE" not in vessel.properties or "SITTABLE" in vessel.properties:
+            return False
+        if thing.class_name in LIQUIDS:
+            return True
+        return "GRABBABLE" in thing.properties and max(self.size_of(thing)) <= FITS * max(self.size_of(vessel))
+
+    def contents(self, vessel: int) -> list[int]:
+        """Ids of the things that are in or on one, which go where that goes."""
+        return [thing for thing, at in self.locations.items() if at.holder == vessel and at.kind in ("on", "inside")]
+
+    @cached_property
+    def packed(self) -> Mapping[int, Mapping[int, Pose]]:
+        """Carried thing -> each thing in or on it -> its pose in the frame of the former, foot in the origin."""
+        nodes = {node.id: node for node in self.graph.nodes}
+        found: dict[int, dict[int, Pose]] = {}
+        for number in _carried(self.locations):
+            at = self.locations[number]
+            if at.kind in ("on", "inside"):
+                w, h, d = self.size_of(nodes[at.holder])
+                support, beside = Pose(Box((0.0, h / 2, 0.0), (w, h, d)), 0.0), found.setdefault(at.holder, {})
+                beside[number] = self._in_or_on(nodes[number], nodes[at.holder], support, at.kind, beside, ())
+        return found
+
+    def _room_at(self, point: Point, nodes: Mapping[int, Node]) -> Node | None:
+        """The room over whose floor a point is."""
+        x, _, z = point
+        for number, pose in self.poses.items():
+            (cx, _, cz), (w, _, d) = pose.box.center, pose.box.size
+            inside = abs(x - cx) <= w / 2 and abs(z - cz) <= d / 2
+            if inside and number in nodes and nodes[number].category == ROOM_CATEGORY:
+                return nodes[number]
+        return None
+
+    def _in_or_on(
+        self, node: Node, parent: Node, support: Pose, kind: str, poses: Mapping[int, Pose], near: tuple[Point, ...]
+    ) -> Pose:
+        """A pose in or on a thing that has a pose."""
+        if node.class_name in LIQUIDS and kind == "inside" and max(support.box.size) < 0.5:
             return Pose(liquid(node, support.box).box or support.box, support.yaw)
-        return self._placed(node, parent, support, location.kind, poses, near)
+        return self._placed(node, parent, support, kind, poses, near)
 
     def _placed(
         self, node: Node, parent: Node, support: Pose, kind: str, poses: Mapping[int, Pose], near: tuple[Point, ...]
@@ -176,12 +220,12 @@ class Places:
         regions = (recipe.inside if kind == "inside" else recipe.on)(Look(size, level=level, kind=""))
         regions = regions or (Region(0.02, -size[0] * 0.3, size[0] * 0.3, -size[2] * 0.3, size[2] * 0.3, size[1]),)
         wanted = (
-            _lying_flat(self.size_of(node))
+            lying_flat(self.size_of(node))
             if kind == "on" and recipe_of(node.class_name, self.knowledge).size[1] < 0.05
             else self.size_of(node)
         )
         others = self._around(support.box, poses, (node.id, parent.id))
-        return _best(wanted, regions, support, others, near, derive(0, "place", node.id))
+        return best(wanted, regions, support, others, near, derive(0, "place", node.id))
 
     def _around(self, box: Box, poses: Mapping[int, Pose], but: tuple[int, ...]) -> list[Box]:
         """The boxes of other things above or in a box."""
@@ -189,7 +233,7 @@ class Places:
         space = Box((x, y + 0.5, z), (w, h + 1.0, d))
         bulky = {node.id for node in self.graph.nodes if node.category == ROOM_CATEGORY}
         found = (pose.box for other, pose in poses.items() if other not in but and other not in bulky)
-        return [other for other in found if _overlap(other, space) > 0]
+        return [other for other in found if overlap(other, space) > 0]
 
     def _on_floor(self, node: Node, room: Node, poses: Mapping[int, Pose], near: tuple[Point, ...]) -> Pose | None:
         """A pose on the floor beside a character, else in the middle of the room."""
@@ -203,129 +247,20 @@ class Places:
         others = self._around(Box((x, top + 0.05, z), (w, 0.1, d)), poses, (node.id, room.id))
         people = [Box((px, top + 0.9, pz), (0.4, 1.8, 0.4)) for px, _, pz in near]
         inside = [p for p in near if abs(p[0] - x) < w / 2 and abs(p[2] - z) < d / 2]
-        return _best(self.size_of(node), (region,), ground, others + people, tuple(inside), derive(0, "place", node.id))
+        return best(self.size_of(node), (region,), ground, others + people, tuple(inside), derive(0, "place", node.id))
 
 
-def locations_of(graph: EnvironmentGraph) -> dict[int, Location]:
-    """The most specific location of every thing: hand, wearer, support, container or room."""
-    nodes = {node.id: node for node in graph.nodes}
-    ranks = {"held": 0, "worn": 1, "on": 2, "inside": 3, "on building": 4, "room": 5}
-    best: dict[int, tuple[int, int, Location]] = {}
-    for edge in graph.edges:
-        kind, thing, holder = _read(edge.relation, edge.source, edge.target, nodes)
-        if not kind:
-            continue
-        rank = (ranks[kind], holder, Location(kind.removesuffix(" building"), holder))
-        if thing not in best or rank < best[thing]:
-            best[thing] = rank
-    return {thing: found[2] for thing, found in sorted(best.items())}
+def _carried(locations: Mapping[int, Location]) -> list[int]:
+    """Ids of what is held or worn, and of what is in or on that."""
+    found: dict[int, bool] = {}
 
+    def carried(number: int, depth: int = 8) -> bool:
+        at = locations.get(number)
+        if number not in found:
+            vessel = at is not None and at.kind in ("on", "inside") and depth > 0
+            found[number] = at is not None and (
+                at.kind in ("held", "worn") or (vessel and carried(at.holder, depth - 1))
+            )
+        return found[number]
 
-def _read(relation: str, source: int, target: int, nodes: Mapping[int, Node]) -> tuple[str, int, int]:
-    """(kind, thing, holder) of the location that an edge gives; kind is empty if it gives none."""
-    if source not in nodes or target not in nodes:
-        return "", source, target
-    if relation in HANDS:
-        return "held", target, source
-    if nodes[source].category == CHARACTER_CATEGORY:
-        return "", source, target
-    if relation == "ON":
-        if nodes[target].category == CHARACTER_CATEGORY:
-            return "worn", source, target
-        return "on building" if nodes[target].class_name in BUILDING else "on", source, target
-    if relation == "INSIDE":
-        return "room" if nodes[target].category == ROOM_CATEGORY else "inside", source, target
-    return "", source, target
-
-
-def _parents_first(nodes: Mapping[int, Node], locations: Mapping[int, Location]) -> list[int]:
-    """Ids, each after its support or container."""
-    done: dict[int, None] = {}
-
-    def visit(node_id: int, trail: tuple[int, ...]) -> None:
-        location = locations.get(node_id)
-        if location and location.holder in nodes and location.holder not in done and location.holder not in trail:
-            visit(location.holder, (*trail, node_id))
-        done.setdefault(node_id)
-
-    # Things that stay come first: low ids are the home's own.
-    for node_id in sorted(nodes):
-        visit(node_id, ())
-    return list(done)
-
-
-def _lying_flat(size: Point) -> Point:
-    """The size of a flat thing lying down."""
-    w, h, d = size
-    return (w, d, h) if h > d else size
-
-
-def _best(
-    size: Point, regions: Iterable[Region], support: Pose, others: list[Box], near: tuple[Point, ...], seed: int
-) -> Pose:
-    """The free pose nearest to a character, in the first region that has one; stacked if none has."""
-    yaw = support.yaw or 0.0
-    fallback: tuple[float, Pose] | None = None
-    for region in regions:
-        fitted = _fitted(size, region)
-        for pose in _candidates(fitted, region, support, yaw, near, seed):
-            crowd = sum(_overlap(pose.box, other) for other in others)
-            if crowd <= 1e-9:
-                return pose
-            if fallback is None or crowd < fallback[0]:
-                fallback = (crowd, pose)
-    assert fallback is not None
-    return _stacked(fallback[1], others)
-
-
-def _fitted(size: Point, region: Region) -> Point:
-    """The size, scaled down to fit the region."""
-    room = (region.x1 - region.x0, region.clear, region.z1 - region.z0)
-    share = min(1.0, *(max(r, 0.01) / max(s, 1e-6) for r, s in zip(room, size, strict=True)))
-    return size[0] * share, size[1] * share, size[2] * share
-
-
-def _candidates(
-    size: Point, region: Region, support: Pose, yaw: float, near: tuple[Point, ...], seed: int
-) -> list[Pose]:
-    """Candidate poses all over a region, best first."""
-    (cx, cy, cz), height = support.box.center, support.box.size[1]
-    c, s = cos(radians(yaw)), sin(radians(yaw))
-    y = cy - height / 2 + region.y + size[1] / 2 + 0.001
-    xs = _ticks(region.x0 + size[0] / 2, region.x1 - size[0] / 2)
-    zs = _ticks(region.z0 + size[2] / 2, region.z1 - size[2] / 2)
-    found = []
-    for i, x in enumerate(xs):
-        for k, z in enumerate(zs):
-            at = (cx + x * c + z * s, y, cz - x * s + z * c)
-            away = min((abs(at[0] - p[0]) + abs(at[2] - p[2]) for p in near), default=0.0)
-            middle = abs(x) * 0.3 + abs(z - (region.z0 + region.z1) / 2) * 0.15
-            found.append((round(away * 0.7 + middle + 0.02 * ((seed + i * 7919 + k * 104729) % 101) / 101, 6), at))
-    w, d = (size[0], size[2]) if abs(c) > abs(s) else (size[2], size[0])
-    return [Pose(Box(at, (w, size[1], d)), yaw) for _, at in sorted(found)]
-
-
-def _ticks(low: float, high: float) -> list[float]:
-    if high <= low:
-        return [(low + high) / 2]
-    count = min(max(1, int((high - low) / STEP)), 40)
-    return [low + (high - low) * k / count for k in range(count + 1)]
-
-
-def _overlap(a: Box, b: Box) -> float:
-    """Volume of the intersection of two boxes."""
-    volume = 1.0
-    for p, q, s, t in zip(a.center, b.center, a.size, b.size, strict=True):
-        side = (s + t) / 2 - abs(p - q)
-        if side <= 1e-4:
-            return 0.0
-        volume *= min(side, s, t)
-    return volume
-
-
-def _stacked(pose: Pose, others: list[Box]) -> Pose:
-    """The pose lifted onto things at its position that are small enough to carry it."""
-    (x, y, z), size = pose.box.center, pose.box.size
-    low = y - size[1] / 2
-    tops = [o.center[1] + o.size[1] / 2 for o in others if _overlap(pose.box, o) > 1e-9 and o.size[1] < 0.35]
-    return Pose(Box((x, max([low, *tops]) + size[1] / 2, z), size), pose.yaw)
+    return [number for number in locations if carried(number)]

@@ -8,7 +8,8 @@ from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.hand_gestures import gesturing
 from hearth.rendering.people.variety import person
-from hearth.rendering.scene.places import Places, Pose
+from hearth.rendering.scene.free_poses import Pose
+from hearth.rendering.scene.places import Places
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
 

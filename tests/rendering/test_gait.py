@@ -48,3 +48,14 @@ def test_no_step_is_longer_than_legs_reach(speed):
         places = [each.place for each in prints]
         steps = [hypot(b.x - a.x, b.z - a.z) for a, b in pairwise(places)]
         assert max(steps) < 2 * LONGEST * 1.05
+
+
+@pytest.mark.parametrize("speed", [WALKING, RUNNING])
+def test_hips_neither_drop_nor_rise_at_once(speed):
+    actor = Actor(Node(1, "character", "Characters", (), (), None), person(3), (0.0, 0.0), 0.0, 0.0, BodyPose(), 0)
+    gait = Gait(actor, movements(Place(0.0, 0.0, 0.0), STRAIGHT, speed, 0.0), speed=speed)
+    count = int(gait.seconds * 10)
+    heights = [float(gait.at(k / 10).figure().joints()["pelvis"][1]) for k in range(count + 1)]
+    assert max(abs(a - 2 * b + c) for a, b, c in zip(heights, heights[1:], heights[2:], strict=False)) < 0.06
+    standing = actor.body.proportions.pelvis
+    assert heights[0] == pytest.approx(standing, abs=1e-3) and min(heights) > standing - 0.16
