@@ -89,12 +89,40 @@ def dressed(body: Body, asleep: bool = False) -> Dressed:
     normals = normals_of(at, triangles)
     at = at + normals * (data.offsets[points] * body.height / SIZE)[:, None]
     at[:, 1] += SOLE * body.height / SIZE
+    spots = {name: slice(a, b) for name, a, b in zip(parts_worn(body), starts[:-1], starts[1:], strict=True)}
+    under = np.zeros(len(at), bool)
+    under[spots[body.legwear]] = tucked_in(at[spots[body.garment]], at[spots[body.legwear]])
+    shown = ~under[triangles].all(axis=1)
+    triangles, slots = triangles[shown], slots[shown]
     surface, textures, density = _painted(body, data, slots)
     return Dressed(
         np.ascontiguousarray(at, np.float32), np.ascontiguousarray(normals_of(at, triangles), np.float32),
         np.ascontiguousarray(data.bone_of[points]), np.ascontiguousarray(data.weights[points]),
         triangles, _uvs(at, triangles, density), surface, textures,
     )  # fmt: skip
+
+
+HEM, WEDGES = 0.035, 24
+"""Metres above the hem of a shirt from which what is under it is not drawn; directions in which the hem is found."""
+
+
+def tucked_in(shirt: Floats, legs: Floats) -> NDArray[np.bool_]:
+    """(P,) which points of trousers or a skirt are under a shirt, which they would pierce as the body bends.
+
+    Args:
+        shirt, legs: (N, 3) and (P, 3) points in the rest pose, with arms held off.
+    """
+    middle = legs[:, 2].mean()
+    wide = np.abs(legs[:, 0]).max() + HEM
+    trunk = shirt[np.abs(shirt[:, 0]) < wide]
+    wedge, other = (
+        ((np.arctan2(at[:, 0], at[:, 2] - middle) / (2 * np.pi) + 0.5) * WEDGES).astype(int) % WEDGES
+        for at in (trunk, legs)
+    )  # fmt: skip
+    hem = np.full(WEDGES, np.inf)
+    np.minimum.at(hem, wedge, trunk[:, 1])
+    found: NDArray[np.bool_] = legs[:, 1] > hem[other] + HEM
+    return found
 
 
 SOLE = 0.0

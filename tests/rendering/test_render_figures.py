@@ -8,6 +8,7 @@ import pytest
 
 from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose, Foot, Hand
+from hearth.rendering.people.dressed import dressed, parts_worn, tucked_in
 from hearth.rendering.people.figure import Figure, figure_mesh
 from hearth.rendering.people.grips import GRIPS
 from hearth.rendering.people.proportions import standard
@@ -172,3 +173,21 @@ print(hashlib.sha256(b"".join(mesh.corners.tobytes() + mesh.surface.tobytes() fo
 def test_people_are_the_same_in_every_process():
     runs = [subprocess.run([sys.executable, "-c", DIGEST], capture_output=True, text=True, check=True) for _ in "ab"]
     assert len({run.stdout for run in runs}) == 1
+
+
+def test_trousers_end_under_the_shirt():
+    around = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    ring = np.stack([0.15 * np.sin(around), np.zeros(48), 0.12 * np.cos(around)], axis=1)
+    shirt = np.concatenate([ring * 1.1 + (0.0, y, 0.0) for y in (0.85, 0.95, 1.3)] + [np.array([[0.7, 0.4, 0.0]])])
+    legs = np.concatenate([ring + (0.0, y, 0.0) for y in (0.1, 0.86, 0.95, 1.0)])
+    assert tucked_in(shirt, legs).reshape(4, 48).all(axis=1).tolist() == [False, False, True, True]
+    assert not tucked_in(shirt, legs).reshape(4, 48)[:2].any()
+
+
+def test_what_is_under_a_shirt_is_not_drawn():
+    for number in range(8):
+        body = person(number)
+        span = body_data().parts[body.legwear]
+        whole = sum(b - a for _, _, a, b in (body_data().parts[name] for name in parts_worn(body)))
+        left = whole - len(dressed(body).triangles)
+        assert 0 < left < 0.5 * (span[3] - span[2])
