@@ -1,11 +1,14 @@
 """What a larger corpus is worth: retrieval of programs by description, trained on its first part and on all of it."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from hearth.analysis.corpus_statistics import Corpus, gather
 from hearth.datasets.format.ids import activity_id
-from hearth.datasets.format.splits import Similarity, SplitProgram
+from hearth.datasets.format.split_columns import SplitProgram, SplitPrograms
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.build import FIRST, corpus
 from hearth.schemas.diagnostics import HearthError
@@ -66,7 +69,7 @@ def _described(found: Corpus) -> list[SplitProgram]:
             one.program_id,
             activity_id(one.title),
             "",
-            one.program_id,
+            None,
             tuple(print_step(step) for step in one.steps),
             f"{one.title} {found.descriptions[one.description_id]}",
         )
@@ -78,14 +81,18 @@ def _described(found: Corpus) -> list[SplitProgram]:
 
 def _apart(test: Sequence[SplitProgram], train: Sequence[SplitProgram]) -> set[str]:
     """The ids of the training programs that are of other activities than the tests and not near duplicates of any."""
-    near = Similarity([*test, *train])
+    # Both corpora may have programs of one id.
+    every = [replace(one, program_id=str(number).zfill(9)) for number, one in enumerate((*test, *train))]
+    known = SplitPrograms.of(every)
+    tested, trained = np.arange(len(test)), np.arange(len(test), len(every))
+    like = known.steps.among(known.steps.around(tested), trained)
+    # A text between two, like both, keeps them together.
+    like |= known.texts.among(known.texts.like(known.texts.around(tested)), trained)
     activities = {one.activity for one in test}
-    steps = {like for one in test for like in near.by_steps(one)}
-    texts = {like for one in test for like in near.by_text(one)}
     return {
         one.program_id
-        for one in train
-        if one.activity not in activities and one.steps not in steps and texts.isdisjoint(near.by_text(one))
+        for one, is_like in zip(train, like.tolist(), strict=True)
+        if one.activity not in activities and not is_like
     }
 
 
@@ -101,4 +108,4 @@ def _scored(train: Sequence[SplitProgram], test: Sequence[SplitProgram], known: 
 
 
 def _examples(programs: Iterable[SplitProgram]) -> Iterable[Example]:
-    return (Example(one.program_id, one.description, steps_of(read(list(one.steps)))) for one in programs)
+    return (Example(one.program_id, one.description, steps_of(read(list(map(str, one.steps))))) for one in programs)

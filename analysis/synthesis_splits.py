@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from hearth.analysis.synthesis import Synthetic
 from hearth.datasets.format.near_duplicates import near_texts
-from hearth.datasets.format.splits import NEAR, normalised
+from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.schemas.rng import derive
 from hearth.storage.files import write_bytes
 

@@ -47,21 +47,25 @@ class Dataset:
         [True]
     """
 
-    def __init__(self, folder: Path, manifest: dict[str, Any], failures: bool = False) -> None:
+    def __init__(
+        self, folder: Path, manifest: dict[str, Any], failures: bool = False, remembers: bool = True
+    ) -> None:  # fmt: skip
         self.folder = folder
         self.manifest = manifest
         self.failures = failures
+        self.remembers = remembers
         self._version = version(folder)
 
     @classmethod
     @explained
-    def open(cls, path: str | Path, failures: bool = False) -> Dataset:
+    def open(cls, path: str | Path, failures: bool = False, remembers: bool = True) -> Dataset:
         """Open a dataset, or the dataset of a build's folder; of a URL that fsspec knows, a local copy of it.
 
         Args:
             path: of the folder.
             failures: whether runs, exports and scores have the executions in which the program fails, too. Queries
                 always have them.
+            remembers: whether what queries learn of the files stays in memory, 0.1 MB a file: the next are faster.
 
         Raises:
             HearthError: the path is not a dataset, or a newer version wrote it, or it is incomplete.
@@ -73,7 +77,7 @@ class Dataset:
         if not (folder / NAME).exists() and (present(folder / "publish") / NAME).exists():
             folder = present(folder / "publish")
         opened, content = version(folder), published_manifest(folder, str(path))
-        dataset = cls(folder, content, failures)
+        dataset = cls(folder, content, failures, remembers)
         dataset._version = opened
         return dataset
 
@@ -109,7 +113,8 @@ class Dataset:
     @cached_property
     def _attached(self) -> Any:
         with reading(self.folder):
-            return attach(self.folder, absent_tables(self.folder, self.manifest), self.manifest["format"])
+            absent = absent_tables(self.folder, self.manifest)
+            return attach(self.folder, absent, self.manifest["format"], self.remembers)
 
     @cached_property
     def _described(self) -> None:

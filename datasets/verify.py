@@ -1,8 +1,10 @@
 """Verification of a dataset: files, columns, counts, references, and a replay of every execution from disk."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from itertools import islice
+from math import ceil
 from pathlib import Path
 
 from hearth.datasets.dataset import Dataset
@@ -75,7 +77,7 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
         (True, ())
     """
     opened.cache_clear()
-    dataset = Dataset.open(path)
+    dataset = Dataset.open(path, remembers=False)
     files = len(dataset.manifest["files"])
     note = other_base(dataset.manifest)
     odd = tuple(unknown(dataset))
@@ -248,10 +250,36 @@ Wrong = list[tuple[str, str]]
 
 
 def _replayed(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Wrong]:
-    # In file order, which is the same for environments and programs: a share lies in few row groups of each.
-    names = [name for (name,) in dataset.rows("SELECT execution_id FROM executions")[1]]
-    jobs = [(str(dataset.folder), names[start : start + SHARE]) for start in range(0, len(names), SHARE)]
-    return spread(_replay, jobs, workers, seen)
+    return spread(_replay, Shares(dataset), workers, seen)
+
+
+class Shares(Collection[tuple[str, list[str]]]):
+    """The ids of all executions, `SHARE` at a time, with the dataset's folder.
+
+    They come in file order, which is the same for environments and programs: a share lies in few row groups of each.
+    """
+
+    def __init__(self, dataset: Dataset) -> None:
+        self._folder = dataset.folder
+        self._count = ceil(_count(dataset, "executions") / SHARE)
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __iter__(self) -> Iterator[tuple[str, list[str]]]:
+        names = self._names()
+        while share := list(islice(names, SHARE)):
+            yield str(self._folder), share
+
+    def __contains__(self, share: object) -> bool:
+        return any(share == each for each in self)
+
+    def _names(self) -> Iterator[str]:
+        import pyarrow.parquet as pq
+
+        for path in sorted((self._folder / "executions").glob("*.parquet")):
+            with pq.ParquetFile(path) as file:
+                yield from file.read(["execution_id"])["execution_id"].to_pylist()
 
 
 def _replay(job: tuple[str, list[str]]) -> Wrong:
@@ -276,5 +304,5 @@ def _replay(job: tuple[str, list[str]]) -> Wrong:
 @lru_cache(maxsize=1)
 def opened(folder: str) -> tuple[Dataset, StoredHomes]:
     """A dataset and its homes, cached per process."""
-    dataset = Dataset.open(folder)
+    dataset = Dataset.open(folder, remembers=False)
     return dataset, StoredHomes(dataset)

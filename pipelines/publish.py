@@ -12,7 +12,8 @@ import pyarrow.parquet as pq
 from hearth.datasets.format.cases import difference_on_replay
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.format.ids import STAMP, activity_id
-from hearth.datasets.format.splits import LEFT_OUT, PARTS
+from hearth.datasets.format.split_columns import PARTS
+from hearth.datasets.format.splits import LEFT_OUT
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.final_tables import finish, strength_used
 from hearth.pipelines.engine.overlays import overlays, overlays_used
@@ -62,19 +63,21 @@ def partitions(job: Job) -> Iterator[Partition]:
     """The parts of the stages before, each with the parts of its programs."""
     part_of = job.context.assignment.part_of
     for partition in input_partitions(job):
-        names = {name for path in partition.payload for name in _programs(path)}
-        mine = {name: part_of[name] for name in sorted(names)}
-        yield replace(partition, digest=value_digest([partition.digest, mine]), payload=(partition.payload, mine))
+        mine = [part_of(name) for name in _programs(partition.payload)]
+        named = dict(zip(_programs(partition.payload), mine, strict=True))
+        yield replace(partition, digest=value_digest([partition.digest, named]), payload=(partition.payload, mine))
 
 
-def _programs(path: str) -> list[str]:
-    names: list[str] = pq.read_table(path, columns=["program_id"])["program_id"].unique().to_pylist()
-    return names
+def _programs(paths: Iterable[str]) -> list[str]:
+    """The ids of the programs of some files, in order."""
+    tables = (pq.read_table(path, columns=["program_id"])["program_id"].unique().to_pylist() for path in paths)
+    return sorted({*chain.from_iterable(tables)})
 
 
 def records(job: Job, partition: Partition) -> Iterator[SplitCaseRow]:
     """The cases of a partition."""
-    paths, part_of = partition.payload
+    paths, parts = partition.payload
+    part_of = dict(zip(_programs(paths), parts, strict=True))
     cases: Iterator[CaseRow] = chain.from_iterable(read_rows(Path(path)) for path in paths)
     for case in cases:
         yield {**case, "split": part_of[case["program_id"]]}

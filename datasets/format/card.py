@@ -10,7 +10,8 @@ import pyarrow as pa
 
 from hearth.datasets.format.croissant import SUMMARY
 from hearth.datasets.format.datasheet import datasheet
-from hearth.datasets.format.splits import LEFT_OUT, PARTS
+from hearth.datasets.format.split_columns import PARTS
+from hearth.datasets.format.splits import LEFT_OUT
 from hearth.repair.strengths import MILD
 from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.storage.files import write_bytes

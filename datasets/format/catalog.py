@@ -130,7 +130,7 @@ _CLOSED = (
 """Settings that keep queries from other files, the network and Python's variables; the last one locks them."""
 
 
-def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> Any:
+def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remembers: bool = True) -> Any:
     """A connection with the dataset's views, limited to this folder.
 
     DuckDB cannot forbid writing: queries of strangers go through `check_question` first.
@@ -139,6 +139,7 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> An
         folder: of the dataset.
         absent: tables without files; their views are empty, unless the format has a query for them.
         format: of the dataset.
+        remembers: whether footers of files stay in memory.
     """
     import duckdb
 
@@ -146,7 +147,7 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> An
 
     root = f"{folder.resolve()}/"
     connection = duckdb.connect()
-    connection.execute("SET parquet_metadata_cache = true")
+    connection.execute(f"SET parquet_metadata_cache = {remembers}")
     connection.execute("SET enable_external_file_cache = false")  # the system keeps files in memory, once for all
     text = statements(root)
     for table in TABLES:

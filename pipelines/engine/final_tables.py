@@ -1,7 +1,6 @@
 """The tables that need all cases, the pictures and the catalog, published last."""
 
 import shutil
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -20,6 +19,8 @@ from hearth.datasets.format.catalog import write_catalog
 from hearth.datasets.format.codecs import node_row
 from hearth.datasets.format.croissant import write_croissant
 from hearth.datasets.format.ids import STAMP, activity_id
+from hearth.datasets.format.split_columns import Run, Runs
+from hearth.datasets.format.split_summary import summary
 from hearth.datasets.tensors import EDGE_TYPES
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.annotated_sketches import inherited_annotations
@@ -265,17 +266,17 @@ def _frames(job: Job, kind: str) -> Iterator[Row]:
 
 
 def _splits(job: Job) -> Iterable[published_rows.SplitRow]:
-    known, seed = job.context.assignment, job.settings.seed
-    same = {each.program_id: each.program_id for each in known.programs}
-    runs: list[splits.Run] = []
+    programs, seed = job.context.assignment.programs, job.settings.seed
+    runs = Runs(_runs(job))
+    rows = splits.SplitRows(programs, runs, seed, _parts_of_sources(job))
+    write_json(job.folder / "splits.json", summary(programs, runs, rows, seed))
+    return rows
+
+
+def _runs(job: Job) -> Iterator[Run]:
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["execution_id", "program_id", "home"], filters=[("executable", "=", True)])
-        names, programs, homes = (table[name].to_pylist() for name in table.column_names)
-        # Each text is kept once: there are a million runs.
-        runs.extend(zip(names, map(same.__getitem__, programs), map(sys.intern, homes), strict=True))
-    rows = splits.SplitRows(known.programs, runs, seed, known.similarity, _parts_of_sources(job))
-    write_json(job.folder / "splits.json", splits.summary(known.programs, runs, rows, seed, known.similarity))
-    return rows
+        yield from zip(*(table[name].to_pylist() for name in table.column_names), strict=True)
 
 
 def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:

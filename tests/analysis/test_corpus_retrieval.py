@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from hearth.analysis import corpus_retrieval as study
-from hearth.datasets.format.splits import SplitProgram
+from hearth.datasets.format.split_columns import SplitProgram
 
 
 def program(name, activity, steps, text):
-    return SplitProgram(name, activity, "", name, tuple(steps), text)
+    return SplitProgram(name, activity, "", None, tuple(steps), text)
 
 
 def test_training_programs_of_tested_activities_and_near_duplicates_are_left_out():

@@ -12,7 +12,7 @@ from hearth.analysis.described import described
 from hearth.cli import app
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.near_duplicates import near_texts
-from hearth.datasets.format.splits import NEAR, normalised
+from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.grounding.environments.sampling import sample
 from hearth.kb import grammar as action_grammar
 from hearth.models.data import corpus

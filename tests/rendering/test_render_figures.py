@@ -179,7 +179,7 @@ def test_trousers_end_under_the_shirt():
     around = np.linspace(0, 2 * np.pi, 48, endpoint=False)
     ring = np.stack([0.15 * np.sin(around), np.zeros(48), 0.12 * np.cos(around)], axis=1)
     shirt = np.concatenate([ring * 1.1 + (0.0, y, 0.0) for y in (0.85, 0.95, 1.3)] + [np.array([[0.7, 0.4, 0.0]])])
-    legs = np.concatenate([ring + (0.0, y, 0.0) for y in (0.1, 0.86, 0.95, 1.0)])
+    legs = np.concatenate([np.add(ring, (0.0, y, 0.0)) for y in (0.1, 0.86, 0.95, 1.0)])
     assert tucked_in(shirt, legs).reshape(4, 48).all(axis=1).tolist() == [False, False, True, True]
     assert not tucked_in(shirt, legs).reshape(4, 48)[:2].any()
 

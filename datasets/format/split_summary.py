@@ -1,0 +1,107 @@
+"""What splits are and how much leaks between their parts, beside a random split."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.datasets.format.split_columns import NEAR, Runs, SplitPrograms
+from hearth.datasets.format.splits import RULES, held_out
+from hearth.schemas.published_rows import SplitRow
+from hearth.schemas.rng import derive
+
+OWN = "by program: the parts that its source gives; augmented programs have those of their originals"
+"""The rule of a split that comes with a source."""
+
+_SPANS = ((1, 4), (5, 5), (5, 6), (1, 5), (6, 7))
+
+Places = NDArray[np.int64]
+"""Places of programs, in order."""
+
+
+def summary(programs: SplitPrograms, runs: Runs, rows: Iterable[SplitRow], seed: int) -> dict[str, Any]:
+    """Homes in order, and for each split rule, counts of runs and programs by part, and leakage, as JSON.
+
+    `leakage` counts test programs with a program in train that has the same original (`siblings`), nearly the same
+    steps (`steps`), or nearly the same description (`texts`); `at_random` is the leakage of a random split of equal
+    size.
+
+    Args:
+        programs: all published programs.
+        runs: as of `SplitRows`.
+        rows: sorted by split.
+        seed: of the assignment.
+    """
+    homes, out = runs.homes, held_out(runs, seed)
+    spans = {f"{first}_{last}": ", ".join(homes[first - 1 : last]) or "none here" for first, last in _SPANS}
+    measured = {
+        split: _measured(Members.of(some, programs), programs, seed)
+        for split, some in groupby(rows, lambda row: row["split"])
+    }
+    rules = {**RULES, **dict.fromkeys(sorted(measured.keys() - RULES.keys()), OWN)}
+    nobody = _measured(Members(), programs, seed)
+    described = {
+        split: {"rule": rule.format(held_out=out, **spans), **measured.get(split, nobody)}
+        for split, rule in rules.items()
+    }
+    return {"seed": seed, "near": NEAR, "homes": homes, "held_out": out, "splits": described}
+
+
+@dataclass(slots=True)
+class Members:
+    """How many runs the parts of a split have, and which programs, as (ids,) masks."""
+
+    runs: Counter[str | None] = field(default_factory=Counter)
+    programs: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, rows: Iterable[SplitRow], programs: SplitPrograms) -> Members:
+        """Those of the rows of a split."""
+        found = cls()
+        for row in rows:
+            part = row["part"]
+            found.runs[part] += 1
+            if part:
+                if part not in found.programs:
+                    found.programs[part] = np.zeros(len(programs.ids), bool)
+                found.programs[part][programs.place(row["program_id"])] = True
+        return found
+
+
+def _measured(members: Members, programs: SplitPrograms, seed: int) -> dict[str, Any]:
+    parts = dict(sorted(members.programs.items()))
+    train = np.flatnonzero(parts["train"]) if "train" in parts else np.zeros(0, np.int64)
+    tested = np.zeros(len(programs.ids), bool)
+    for part, mask in parts.items():
+        tested |= mask if part.startswith("test") else False
+    test = np.flatnonzero(tested)
+    return {
+        "runs": {part: members.runs[part] for part in parts},
+        "runs_without_part": members.runs[None],
+        "programs": {part: int(mask.sum()) for part, mask in parts.items()},
+        "leakage": leakage(programs, train, test),
+        "at_random": leakage(programs, *_at_random(programs, np.concatenate([train, test]), len(test), seed)),
+    }
+
+
+def _at_random(programs: SplitPrograms, places: Places, tested: int, seed: int) -> tuple[Places, Places]:
+    keys = (derive(seed, "random split", programs.ids[place]) for place in places.tolist())
+    shuffled = places[np.argsort(np.fromiter(keys, np.uint64, len(places)), kind="stable")]
+    return shuffled[tested:], shuffled[:tested]
+
+
+def leakage(programs: SplitPrograms, train: Places, test: Places) -> dict[str, int]:
+    """Number of test programs with a sibling, similar steps or a similar description in train."""
+    steps, texts = programs.steps, programs.texts
+    return {
+        "programs": len(test),
+        "siblings": int(np.isin(programs.root[test], programs.root[train]).sum()),
+        "steps": int(steps.among(steps.around(train), test).sum()),
+        "texts": int(texts.among(texts.around(train), test).sum()),
+    }
