@@ -72,6 +72,13 @@ WHOLE_RUNS = (
         "programs: largest process",
     ),
     (
+        "scale_checks",
+        "programs verified, all their executions done again",
+        "programs: verified by 2 workers",
+        "programs: verified, processor a program",
+        "programs: verified, largest process",
+    ),
+    (
         "challenge_scale",
         "episodes played",
         "episodes: played by 2 workers",
@@ -160,7 +167,7 @@ def page() -> str:
         "",
         *whole(),
         *memory(),
-        "`python benchmarks/scale.py` and `python benchmarks/challenge_scale.py` print seconds, memory and bytes of",
+        "`python benchmarks/scale.py`, `scale_checks.py` and `challenge_scale.py` print seconds, memory and bytes of",
         "whole runs of any size.",
     ]
     return "\n".join(lines) + "\n"
