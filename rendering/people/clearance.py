@@ -7,6 +7,7 @@ from dataclasses import replace
 from math import ceil
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
@@ -106,13 +107,17 @@ def _hanging(actor: Actor, swing: float) -> Floats:
 
 
 def _soft(inside: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Booleans (n, 2) by moment, each extended by `AHEAD` seconds, with soft starts and ends."""
+    """Booleans (n, 2) by moment, each extended by `AHEAD` seconds, with soft starts and ends and no brief gaps."""
     wide = ceil(AHEAD / SAMPLED)
     window = np.array([eased((k + 1) / (wide + 1)) for k in range(wide)])
     window = np.concatenate((window, [1.0], window[::-1]))
     padded = np.pad(inside.astype(float), ((wide, wide), (0, 0)))
     moments = np.stack([padded[k : k + len(inside)] * window[k] for k in range(2 * wide + 1)])
-    found: NDArray[np.float64] = moments.max(axis=0)
+    found = moments.max(axis=0)
+    # Arms that would soon be drawn in again stay so: they would swing out and back at once.
+    for reach in (np.max, np.min):
+        around = np.pad(found, ((wide, wide), (0, 0)), mode="edge")
+        found = reach(sliding_window_view(around, 2 * wide + 1, axis=0), axis=2)
     return found
 
 

@@ -8,7 +8,7 @@ import pytest
 from hearth.kb.loading.load import default
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, drawn_in
-from hearth.rendering.people.clearance import arms_on_the_way, at_rest, faults, in_world
+from hearth.rendering.people.clearance import _soft, arms_on_the_way, at_rest, faults, in_world
 from hearth.rendering.people.gait import Place
 from hearth.rendering.people.variety import person
 from hearth.rendering.scene.prepared import prepared_scene
@@ -94,3 +94,12 @@ def test_doorways_have_two_posts_and_soft_things_give_way():
 def test_arms_of_who_rests_stay_as_they_are(posture):
     actor = replace(ACTOR, body_pose=BodyPose(posture, 0.45))
     assert at_rest(actor, WALL).body_pose.tucked == (0.0, 0.0)
+
+
+def test_arms_stay_drawn_in_between_two_things_that_follow_each_other():
+    inside = np.zeros((60, 2), bool)
+    inside[[10, 20], 0] = inside[[5, 50], 1] = True
+    found = _soft(inside)
+    assert found[10:21, 0].min() == 1.0 and found[30:, 0].max() == 0.0
+    # Things that are far apart let the arm swing between them.
+    assert found[5, 1] == found[50, 1] == 1.0 and found[25:30, 1].max() == 0.0
