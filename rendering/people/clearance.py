@@ -113,7 +113,7 @@ def _soft(inside: NDArray[np.bool_]) -> NDArray[np.float64]:
     window = np.concatenate((window, [1.0], window[::-1]))
     padded = np.pad(inside.astype(float), ((wide, wide), (0, 0)))
     moments = np.stack([padded[k : k + len(inside)] * window[k] for k in range(2 * wide + 1)])
-    found = moments.max(axis=0)
+    found: NDArray[np.float64] = moments.max(axis=0)
     # Arms that would soon be drawn in again stay so: they would swing out and back at once.
     for reach in (np.max, np.min):
         around = np.pad(found, ((wide, wide), (0, 0)), mode="edge")
