@@ -63,7 +63,7 @@ def read_pairs(
         pairs = [_pair(row, _program(row, "reference", path, reader, faults), path, reader, faults) for row in rows]
     else:
         known = _references(references, reader, faults)
-        rows = [_as_known(row, known) for row in _rows(path, ("id", "predicted"), faults, named)]
+        rows = _unique((_as_known(row, known) for row in _rows(path, ("id", "predicted"), faults, named)), path, faults)
         faults.extend(_unknown_ids(rows, known, path))
         by_id = {row.id: row for row in rows}
         pairs = [
@@ -89,14 +89,20 @@ def _references(references: Path | Mapping[str, Source], reader: Reader, faults:
 
 def _rows(path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None) -> list[Row]:
     """The rows of a file with unique ids; faults of the others are added to `faults`."""
+    rows = _unique(rows_of(path, columns, faults, named), path, faults)
+    if not rows and not faults:
+        raise HearthError.of(Code.EMPTY, "no predictions", file=str(path), suggestion=f"write rows like {EXAMPLE}")
+    return rows
+
+
+def _unique(found: Iterable[Row], path: Path, faults: FirstFaults) -> list[Row]:
+    """The first row of each id; the others are faults."""
     rows: dict[str, Row] = {}
-    for row in rows_of(path, columns, faults, named):
+    for row in found:
         first = rows.setdefault(row.id, row)
         if first is not row:
             message = f"a second row of id `{row.id}`; the first is line {first.line}"
             faults.append(Diagnostic(Code.DUPLICATE, message, str(path), row.line, suggestion="keep one row an id"))
-    if not rows and not faults:
-        raise HearthError.of(Code.EMPTY, "no predictions", file=str(path), suggestion=f"write rows like {EXAMPLE}")
     return list(rows.values())
 
 

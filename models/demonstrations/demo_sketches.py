@@ -22,11 +22,18 @@ BEYOND = 32
 
 
 def demonstrated(
-    models: Sequence[Path | str], beam: int, there: Demonstrations, split: str, names: Sequence[str], seed: int
+    models: Sequence[Path | str],
+    beam: int,
+    there: Demonstrations,
+    split: str,
+    names: Sequence[str],
+    seed: int,
+    sketches: str,
 ) -> Iterator[tuple[str, Mapping[str, Steps]]]:
     """The sketches of some executions by each model that reads demonstrations, and by the yardsticks.
 
-    The yardsticks take a sketch of training: a random one, and that of the demonstration whose masks are most alike.
+    The yardsticks take a sketch of training, of the kind that is asked (`annotated` or `inferred`): a random one, and
+    that of the demonstration whose masks are most alike.
 
     Raises:
         HearthError: BAD_ARGUMENT, if none of the models reads demonstrations.
@@ -35,11 +42,11 @@ def demonstrated(
     if not readers:
         message = "table 5.5 needs a model that writes sketches of demonstrations"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name a trained `demo2sketch` with --model")
-    known = shown(there, examples(there.dataset, split, "train", originals=True))
+    known = shown(there, examples(there.dataset, split, "train", True, sketches))
     train = [(each.sketch, name) for each, name in known if each.sketch]
     if train:
-        sketches = [sketch for sketch, _ in train]
-        yield "random sketch", {name: rng(seed, "random sketch", name).choice(sketches) for name in names}
+        known_sketches = [sketch for sketch, _ in train]
+        yield "random sketch", {name: rng(seed, "random sketch", name).choice(known_sketches) for name in names}
         yield "nearest masks", dict(zip(names, _nearest(there, train, names), strict=True))
     for name, trained in readers:
         seen = [trained.see(there.pictures(each)) for each in names]

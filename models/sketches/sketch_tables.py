@@ -109,7 +109,7 @@ def table(
     if number == "5.4":
         methods = _after(_texts(models, beam, dataset, names), methods)
     elif number == "5.5":
-        written = list(demonstrated(models, beam, there, split, names, seed))
+        written = list(demonstrated(models, beam, there, split, names, seed, sketches))
         methods = [*(each for each in methods if each.name == "empty program"), *_after(written, methods)]
     elif number == "5.3":
         methods = [each for each in methods if each.name == "planner" or "(K=" in each.name]

@@ -9,7 +9,7 @@ from hearth.kb.knowledge import Knowledge, key_of
 LONGEST = 3
 """Words of the longest name that is looked for."""
 
-_ENDINGS = (("ies", "y"), ("ves", "f"), ("es", ""), ("s", ""))
+_ENDINGS = (("ies", "y"), ("ves", "f"), ("ves", "fe"), ("es", ""), ("s", ""))
 """Endings of plurals, and what stands in the singular instead."""
 
 

@@ -198,3 +198,11 @@ def test_nodes_that_are_no_numbers(write, node):
     step = {"action": "Walk", "objects": [{"name": "sofa", "instance": 1, "node": node}]}
     ((code, line, _, _),) = faults(write({"id": "a", "predicted": [step], "reference": "[Walk] <sofa> (1)"}))
     assert (code, line) == ("BAD_TABLE", 1)
+
+
+def test_rows_under_two_versions_of_an_id_are_two_rows_of_it(write):
+    old, new = "crowd:3D0001ABCDE@maple", "written:3D0001ABCDE@maple"
+    path = write({"id": old, "predicted": ""}, {"id": new, "predicted": "[Walk] <sofa> (1)"})
+    assert faults(path, {new: "[Walk] <sofa> (1)"}) == [
+        (Code.DUPLICATE, 2, f"a second row of id `{new}`; the first is line 1", "keep one row an id")
+    ]
