@@ -42,7 +42,7 @@ def demonstrated(
     if not readers:
         message = "table 5.5 needs a model that writes sketches of demonstrations"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name a trained `demo2sketch` with --model")
-    known = shown(there, examples(there.dataset, split, "train", True, sketches))
+    known = shown(there, examples(there.dataset, split, "train", originals=True, sketches=sketches))
     train = [(each.sketch, name) for each, name in known if each.sketch]
     if train:
         known_sketches = [sketch for sketch, _ in train]

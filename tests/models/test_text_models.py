@@ -190,4 +190,4 @@ def test_mentions(knowledge):
     found = mentions(["put", "the", "plates", "and", "the", "coffee", "maker", "next", "to", "the", "salt"], known)
     assert [place for place, _ in found] == [2, 5, 10]
     assert {"plate"} <= {name for _, name in found}
-    assert [name for _, name in mentions(["knives", "and", "shelves"], known)][0] == "knife"
+    assert next(iter(mentions(["knives"], known)))[1] == "knife"
