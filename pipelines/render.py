@@ -135,9 +135,8 @@ def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Co
 
     name, job, known = case["execution_id"], context.job, context.homes.knowledge
     trajectory = trajectory_of(execution, place.graph, known, variation=drawn(job.settings.seed, name))
-    numbers = {thing.name: thing.id for thing in known.objects.values()}
     coloured = clip_cases.coloured(name, job.settings.seed)
-    film = clips.clip_film(trajectory, place.graph, numbers, clips.MODALITIES if coloured else clips.MASKS_ONLY)
+    film = clips.clip_film(trajectory, place.graph, known.class_ids, clips.MODALITIES if coloured else clips.MASKS_ONLY)
     file = f"{FILMS}/{_folder(name)}/{FILE}"
     path = job.folder / file
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -170,8 +169,7 @@ def _demonstrated(
     from hearth.rendering.film import pictures_from_above
 
     job, known = context.job, context.homes.knowledge
-    numbers = {thing.name: thing.id for thing in known.objects.values()}
-    found = pictures_from_above.demonstration(execution, place.graph, known, numbers, job.settings.seed)
+    found = pictures_from_above.demonstration(execution, place.graph, known, known.class_ids, job.settings.seed)
     file = f"{FRAMES}/{_folder(case['execution_id'])}/{pictures_from_above.FILE}"
     path = job.folder / file
     path.parent.mkdir(parents=True, exist_ok=True)

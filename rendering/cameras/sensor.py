@@ -27,7 +27,7 @@ class CameraSensor:
     """Pictures of an episode, for an environment: `env.camera_sensor = CameraSensor(home, knowledge)`.
 
     From the first picture on, the sensor follows the episode: characters stand where their steps brought them, and
-    objects lie where they were put.
+    objects lie where they were put. `class_ids` are those of the table `vocabulary`.
 
     Args:
         home: the home's graph as it was built, with boxes.
@@ -65,7 +65,8 @@ class CameraSensor:
 
     def __call__(self, env: Env, agent: int, modalities: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """The current pictures of an agent, by modality."""
-        return render(self.scene(env), self.camera(env, agent), modalities, quality=self.quality)
+        how: dict[str, Any] = {"quality": self.quality, "class_ids": self.prepared.knowledge.class_ids}
+        return render(self.scene(env), self.camera(env, agent), modalities, **how)
 
     def scene(self, env: Env) -> Scene:
         """What there is to picture now."""

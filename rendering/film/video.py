@@ -137,15 +137,17 @@ def film(
     """
     speed = trajectory.variation.speed
     selector = CameraSelector(trajectory, home, view, size)
+    class_ids = trajectory.prepared.knowledge.class_ids
     last: IncrementalFrame | None = None
     for frame, later in _with_next(frames(trajectory, fps, speed)):
         camera = selector.camera(frame)
         if quality == "fine":
-            shot = shoot(frame.scene, camera, after=later.scene, by_rays=True)
-            yield FilmFrame(frame, camera, shot, pictures_of(shot, ["rgb"], quality)["rgb"])
+            shot = shoot(frame.scene, camera, by_rays=True)
+            picture = pictures_of(shot, ["rgb"], quality)["rgb"]
         else:
             last = incremental_frame(frame.scene, camera, last)
-            yield FilmFrame(frame, camera, replace(last.shot, after=later.scene), last.picture)
+            shot, picture = last.shot, last.picture
+        yield FilmFrame(frame, camera, replace(shot, after=later.scene, class_ids=class_ids), picture)
 
 
 def _with_next(found: Iterable[Frame]) -> Iterator[tuple[Frame, Frame]]:
@@ -283,7 +285,8 @@ def record(
         trajectory, home, view, size, fps: as in `film`.
         out: an existing folder.
         suffixes: of `CODECS`.
-        modalities, quality: as in `modalities.render`; `graph` is the scene graph after the tick.
+        modalities, quality: as in `modalities.render`; `class_ids` are those of the table `vocabulary`, and `graph` is
+            the scene graph after the tick.
 
     Raises:
         HearthError: the camera does not exist, a modality or quality is unknown, or a file can't be written; complete

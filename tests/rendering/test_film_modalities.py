@@ -11,7 +11,7 @@ from hearth.grounding.trial import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.frame_files import pictures_in
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.snapshots import snapshots, trajectory_of
 from hearth.rendering.film.video import film, record
 from hearth.rendering.modalities import MODALITIES, PICTURES
 from hearth.schemas.diagnostics import HearthError
@@ -22,12 +22,15 @@ HOW = {"size": (48, 36), "fps": 2.0}
 EVERY = [*MODALITIES, "graph"]
 
 
+def sat(graph):
+    program, _ = parse_program("Sit\nRest.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n")
+    return attempt(program, Home.from_graph(graph, "maple", default())).execution
+
+
 @pytest.fixture(scope="module")
 def filmed():
     graph = library.load_graph("maple", default())
-    program, _ = parse_program("Sit\nRest.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n")
-    done = attempt(program, Home.from_graph(graph, "maple", default())).execution
-    return graph, trajectory_of(done, graph, default())
+    return graph, trajectory_of(sat(graph), graph, default())
 
 
 def test_every_modality_of_every_frame_is_written(filmed, tmp_path):
@@ -55,6 +58,17 @@ def test_flow_is_towards_the_next_frame(filmed):
     found = [frame.pictures(["flow", "instance_ids"]) for frame in moving]
     shifts = [np.nan_to_num(each["flow"][each["instance_ids"] == person]) for each in found]
     assert max(np.abs(shift).max(initial=0) for shift in shifts) > 0.5
+
+
+def test_classes_of_films_and_snapshots_have_the_numbers_of_the_vocabulary(filmed):
+    graph, trajectory = filmed
+    frame = next(film(trajectory, graph, "auto", **HOW))
+    (start, *_) = snapshots(sat(graph), graph, default(), ["auto"], ("class_ids", "instance_ids"), size=HOW["size"])
+    for found in (frame.pictures(["class_ids", "instance_ids"]), start.pictures):
+        wanted = {thing.id: default().objects[thing.class_name].id for thing in frame.frame.scene.everything}
+        ids, places = np.unique(found["instance_ids"], return_inverse=True)
+        classes = np.array([wanted.get(node, 0) for node in ids.tolist()])
+        assert len(ids) > 3 and (classes[places.reshape(found["class_ids"].shape)] == found["class_ids"]).all()
 
 
 def test_the_same_film_has_the_same_bytes(filmed, tmp_path):
