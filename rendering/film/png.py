@@ -19,7 +19,8 @@ def encode(image: NDArray[Any]) -> bytes:
     Args:
         image: (H, W) or (H, W, 3 in the order red, green, blue), uint8 or uint16; float32 unit vectors (normals)
             are written as 16 bits a component, (n + 1) / 2 * 65535; (H, W, 2) float32 (flow) as 16 bits
-            64 * f + 32768 in red and green, with blue 1 where the flow is known (KITTI's encoding).
+            64 * f + 32768 in red and green, with blue 1 where the flow is known (KITTI's encoding) and within 512
+            pixels, which this can say.
 
     Raises:
         HearthError: the array's shape or type has no PNG encoding.
@@ -38,10 +39,10 @@ def encode(image: NDArray[Any]) -> bytes:
 
 
 def _flow_code(flow: NDArray[Any]) -> NDArray[np.uint16]:
-    known = np.isfinite(flow).all(axis=2)
+    found = np.rint(flow * 64 + 32768)
+    known = ((found >= 0) & (found <= 65535)).all(axis=2)
     code = np.zeros((*flow.shape[:2], 3), np.uint16)
-    code[..., :2] = np.clip(np.rint(np.where(known[..., None], flow, 0) * 64 + 32768), 0, 65535)
-    code[~known, :2] = 0
+    code[..., :2] = np.where(known[..., None], found, 0)
     code[..., 2] = known
     return code
 

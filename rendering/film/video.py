@@ -109,7 +109,10 @@ class FilmFrame(NamedTuple):
     rgb: Image
 
     def pictures(self, modalities: Iterable[str], quality: str = "draft") -> dict[str, Any]:
-        """Further modalities of the picture, as `modalities.render` gives them; flow is towards the next frame."""
+        """Further modalities of the picture, as `modalities.render` gives them.
+
+        Flow is towards the next frame by that frame's camera, and unknown (NaN) across a cut.
+        """
         return pictures_of(self.shot, modalities, quality)
 
 
@@ -139,20 +142,23 @@ def film(
     selector = CameraSelector(trajectory, home, view, size)
     class_ids = trajectory.prepared.knowledge.class_ids
     last: IncrementalFrame | None = None
-    for frame, later in _with_next(frames(trajectory, fps, speed)):
-        camera = selector.camera(frame)
+    pictured = ((frame, selector.camera(frame)) for frame in frames(trajectory, fps, speed))
+    for (frame, camera), (later, next_camera) in _with_next(pictured):
         if quality == "fine":
             shot = shoot(frame.scene, camera, by_rays=True)
             picture = pictures_of(shot, ["rgb"], quality)["rgb"]
         else:
             last = incremental_frame(frame.scene, camera, last)
             shot, picture = last.shot, last.picture
-        yield FilmFrame(frame, camera, replace(shot, after=later.scene, class_ids=class_ids), picture)
+        # The other views move; `auto` has cameras that stand, and changes between them.
+        cut = selector.view == AUTO and next_camera != camera
+        after: dict[str, Any] = {"after": later.scene, "after_camera": next_camera, "cut": cut}
+        yield FilmFrame(frame, camera, replace(shot, class_ids=class_ids, **after), picture)
 
 
-def _with_next(found: Iterable[Frame]) -> Iterator[tuple[Frame, Frame]]:
-    """Each frame and the one after it; the last one and itself."""
-    before: Frame | None = None
+def _with_next(found: Iterable[tuple[Frame, Camera]]) -> Iterator[tuple[tuple[Frame, Camera], tuple[Frame, Camera]]]:
+    """Each frame and the one after it, with their cameras; the last one and itself."""
+    before: tuple[Frame, Camera] | None = None
     for frame in found:
         if before is not None:
             yield before, frame

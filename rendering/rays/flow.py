@@ -8,7 +8,7 @@ from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.models.mesh import rotation
 from hearth.rendering.rays.maps import HORIZON, motion
 from hearth.rendering.rays.shading import chunks
-from hearth.rendering.rays.shot import Shot, everywhere, shoot_after
+from hearth.rendering.rays.shot import Shot, everywhere, shoot, shoot_after
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.rendering.scene.scene import Scene
@@ -40,8 +40,12 @@ def flow(shot: Shot, after: Shot) -> Floats:
 
 
 def flow_of(scene: Scene, shot: Shot) -> Floats:
-    """Flow from a shot to the same camera's shot of `scene`."""
-    return flow(shot, shoot_after(scene, shot))
+    """Flow from a shot to the shot of `scene` by the shot's next camera; unknown everywhere across a cut."""
+    if shot.cut:
+        return np.full((shot.camera.height, shot.camera.width, 2), np.nan, np.float32)
+    camera = shot.after_camera or shot.camera
+    still = camera == shot.camera
+    return flow(shot, shoot_after(scene, shot) if still else shoot(scene, camera, by_rays=shot.by_rays))
 
 
 def _ids(shot: Shot) -> NDArray[np.int32]:

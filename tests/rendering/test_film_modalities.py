@@ -1,6 +1,7 @@
 """Films with every modality: what is read back equals what a picture of the frame has."""
 
 import json
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -58,6 +59,34 @@ def test_flow_is_towards_the_next_frame(filmed):
     found = [frame.pictures(["flow", "instance_ids"]) for frame in moving]
     shifts = [np.nan_to_num(each["flow"][each["instance_ids"] == person]) for each in found]
     assert max(np.abs(shift).max(initial=0) for shift in shifts) > 0.5
+
+
+@pytest.mark.parametrize("view", ["first", "third"])
+def test_flow_is_as_the_next_camera_sees_it(filmed, view):
+    """Things that stand still are seen by the next frame's camera where the flow takes them."""
+    graph, trajectory = filmed
+    frames = [f for _, f in zip(range(8), film(trajectory, graph, view, **HOW), strict=False)]
+    turned = [(a, b) for a, b in pairwise(frames) if a.camera != b.camera]
+    assert turned
+    for one, other in turned:
+        shot, found = one.shot, one.pictures(["flow"])["flow"].reshape(-1, 2)
+        static = (shot.hits.triangle >= 0) & (shot.hits.triangle < shot.geometry.first) & np.isfinite(found[:, 0])
+        points = (shot.rays[:, :3] + shot.rays[:, 3:] * shot.hits.distance[:, None])[static]
+        there = other.camera.project(points.astype(np.float64))[0]
+        rows, columns = np.divmod(np.flatnonzero(static), shot.camera.width)
+        assert len(rows) and np.abs(np.stack((columns, rows), 1) + 0.5 + found[static] - there).max() < 0.1
+    assert max(np.nanmax(np.abs(one.pictures(["flow"])["flow"])) for one, _ in turned) > 1
+
+
+def test_no_flow_is_known_across_a_cut(filmed):
+    graph, trajectory = filmed
+    cuts = 0
+    for one, other in pairwise(film(trajectory, graph, "auto", size=(24, 18), fps=2.0)):
+        unknown = np.isnan(one.pictures(["flow"])["flow"])
+        cut = one.camera != other.camera
+        assert unknown.all() == cut
+        cuts += cut
+    assert cuts
 
 
 def test_classes_of_films_and_snapshots_have_the_numbers_of_the_vocabulary(filmed):

@@ -68,6 +68,12 @@ def test_flow_survives_a_file():
     assert code[..., 2].tolist() == [[1, 0]]
 
 
+def test_flow_that_a_file_cannot_hold_is_unknown_in_it():
+    values = np.array([[[511.9, -512.0], [512.0, 0.0], [3.0, -512.1], [np.inf, 0.0]]], np.float32)
+    code = png.decode(png.encode(values))
+    assert code[..., 2].tolist() == [[1, 0, 0, 0]] and not code[0, 1:].any()
+
+
 def test_boxes_around_what_is_seen():
     scene = Scene((BACK, slab(2, (0, 0, 4.5), (1, 1, 1)), slab(3, (0.5, 0, 3.05), (1, 4, 0.1))))
     found = {one.node: one for one in seen(shoot(scene, CAMERA))}
