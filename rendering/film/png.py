@@ -9,6 +9,9 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
 
+STORED = (np.uint8, np.uint16, np.float32)
+"""Types of arrays that have an encoding; OpenCV silently makes 8 bits of some others."""
+
 LEVEL = 1
 """zlib's fastest: four times as fast as the default for a few per cent more bytes."""
 
@@ -27,6 +30,9 @@ def encode(image: NDArray[Any]) -> bytes:
     """
     cv2 = library("cv2")
 
+    if image.dtype not in STORED:
+        how = "uint8, uint16 or float32; nodes and classes with numbers above 65535 need lower ones"
+        raise HearthError.of(Code.NOT_RENDERED, f"no PNG of {image.shape} {image.dtype}", suggestion=how)
     if image.dtype == np.float32 and image.shape[-1] == 2:
         image = _flow_code(image)
     if image.dtype == np.float32:
