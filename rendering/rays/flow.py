@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.models.looks import Model
 from hearth.rendering.models.mesh import rotation
 from hearth.rendering.rays.maps import HORIZON, motion
 from hearth.rendering.rays.shading import chunks
@@ -62,15 +63,21 @@ def _shifts(shot: Shot, after: Shot) -> Floats:
     """(M, 3, 3) displacements of the moving triangles' corners until the later shot."""
     part = shot.geometry.moving
     shifts = np.zeros_like(part.mesh.corners)
-    later: dict[int, Thing] = {}
+    later: dict[tuple[int, str], Thing] = {}
     for thing in after.geometry.moving.things:
-        later.setdefault(thing.id, thing)
+        later.setdefault(_part(thing), thing)
     there = set(after.geometry.moving.things)
     for thing, start in zip(part.things, part.starts.tolist(), strict=True):
-        if thing not in there and thing.id in later:
+        other = later.get(_part(thing))
+        if thing not in there and other is not None:
             before = placed(thing).corners
-            shifts[start : start + len(before)] = _displaced(before, thing, later[thing.id])
+            shifts[start : start + len(before)] = _displaced(before, thing, other)
     return np.ascontiguousarray(shifts, np.float32)
+
+
+def _part(thing: Thing) -> tuple[int, str]:
+    """What stays the same of a part of a node: a machine's steam is not the machine."""
+    return thing.id, thing.model.recipe if isinstance(thing.model, Model) else ""
 
 
 def _displaced(before: Floats, thing: Thing, other: Thing) -> Floats:
