@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.rendering.annotations import camera_of, described, seen, skeletons
+from hearth.rendering.annotations import camera_of, described, poses, seen, skeletons
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film import png
 from hearth.rendering.models.look import Look
@@ -120,3 +120,15 @@ def test_a_picture_is_described_in_plain_values():
     assert np.array(row["camera"]["intrinsics"])[0, 0] == pytest.approx(FOCAL, abs=1e-3)
     assert [one["node"] for one in row["objects"]] == [1, 9]
     assert row["people"][0]["joints_3d"].keys() == row["people"][0]["joints_2d"].keys()
+
+
+def test_joints_behind_the_camera_are_nowhere_in_the_picture():
+    """Who stands astride of the camera has joints on both sides of it."""
+    person = Thing(9, "character", Figure(BODIES["ben"], BodyPose()), (0.0, -0.9, 0.013), 90.0)
+    shot = shoot(Scene((BACK, person)), CAMERA)
+    (found,), (row,) = skeletons(shot), poses(shot)
+    ahead = {name for name, at in found.joints.items() if at[2] > 0}
+    assert 0 < len(ahead) < len(found.joints)
+    assert {name for name, at in row["joints_2d"].items() if at is not None} == ahead
+    assert all(np.isnan(found.pixels[name][:2]).all() for name in found.joints.keys() - ahead)
+    assert set(row["visible"]) <= ahead
