@@ -127,7 +127,7 @@ def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Con
 
 
 def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Context) -> Iterator[ClippedRow]:
-    """Write a film's arrays, and give the rows of its clips."""
+    """Write a film's arrays, and give the rows of its clips; no file without clips."""
     from hearth.rendering.film import clips
     from hearth.rendering.film.clip_file import FILE
     from hearth.rendering.film.snapshots import trajectory_of
@@ -137,6 +137,8 @@ def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Co
     trajectory = trajectory_of(execution, place.graph, known, variation=drawn(job.settings.seed, name))
     coloured = clip_cases.coloured(name, job.settings.seed)
     film = clips.clip_film(trajectory, place.graph, known.class_ids, clips.MODALITIES if coloured else clips.MASKS_ONLY)
+    if not film.clips:
+        return
     file = f"{FILMS}/{_folder(name)}/{FILE}"
     path = job.folder / file
     path.parent.mkdir(parents=True, exist_ok=True)
