@@ -93,14 +93,14 @@ class Snapshot:
         tick, steps: the keyframe's.
         camera: the camera.
         pictures: modality -> array, as `modalities.render` gives them.
-        seen: visible share of the acting character and the objects that the steps name.
+        seen: visible share of the objects that the steps name; None where they name none.
     """
 
     tick: int
     steps: tuple[Step, ...]
     camera: Camera
     pictures: Mapping[str, Any]
-    seen: float = 1.0
+    seen: float | None = None
 
 
 def keyframes(
@@ -375,9 +375,11 @@ def snapshots(
             yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named))
 
 
-def _seen(shot: Shot, named: tuple[int, ...]) -> float:
-    """Share of the nodes with a pixel."""
+def _seen(shot: Shot, named: tuple[int, ...]) -> float | None:
+    """Share of the nodes with a pixel; None of no nodes."""
+    if not named:
+        return None
     numbers = np.flatnonzero(np.bincount(shot.owner + 1, minlength=1)[1:])
     ids = {shot.geometry.things[number].id for number in numbers.tolist()}
     found = [node_id in ids for node_id in dict.fromkeys(named)]
-    return sum(found) / len(found) if found else 1.0
+    return sum(found) / len(found)

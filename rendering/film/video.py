@@ -245,7 +245,7 @@ def times(found: Sequence[Span]) -> list[FilmedStepRow]:
             "start": round(span.start, 4),
             "end": round(span.end, 4),
             "cameras": [],
-            "visible": 0.0,
+            "visible": None,
         }
         for span in found
     ]
@@ -257,7 +257,8 @@ class Recorded(NamedTuple):
     Attributes:
         files: the videos.
         frames: number of pictures in each.
-        steps: as `times` gives them, each with its cameras and the share of its objects that some picture shows.
+        steps: as `times` gives them, each with its cameras and the share of its objects that some picture shows; None
+            where it names none.
         track: tick and camera of each picture.
         keyframes: the last picture of each tick, for a contact sheet.
         further: files of the other modalities, and their index.
@@ -328,7 +329,7 @@ def record(
     for writer in writers:
         writer.close()
     for step, tick in zip(steps, known, strict=True):
-        step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else 1.0
+        step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else None
     keyframes = [(picture, known[tick]) for tick, picture in last.items()]
     videos = tuple(writer.path for writer in writers)
     return Recorded(videos, len(track), steps, track, keyframes, files.close(fps, steps))

@@ -42,6 +42,7 @@ def test_every_modality_of_every_frame_is_written(filmed, tmp_path):
     assert set(index["files"]) == set(EVERY) - {"rgb"}
     assert len(index["frames"]) == done.frames
     assert [step["tick"] for step in index["steps"]] == [0, 1, 2]
+    assert [step["visible"] is None for step in index["steps"]] == [True, False, False], "the start names nothing"
     for name, file in index["files"].items():
         written = list(pictures_in(tmp_path / file)) if name in PICTURES else (tmp_path / file).read_text().splitlines()
         assert len(written) == done.frames, name
