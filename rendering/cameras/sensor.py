@@ -87,16 +87,20 @@ class CameraSensor:
 
     def _follow(self, env: Env) -> None:
         """Apply the ticks since the last picture."""
-        went_on = self._ticks <= len(env.ticks) and (
-            self._ticks == 0 or (len(env.ticks) > 0 and env.ticks[self._ticks - 1].world is self._world)
-        )
-        if self._world is None or not went_on or (not env.ticks and env.world is not self._world):
+        if self._world is None or self._world is not self._world_after(env, self._ticks):
             self._begin(env)
         for tick in env.ticks[self._ticks :]:
             steps = tuple(step for number, step in tick.instructions.items() if number not in tick.failures)
             floor = self.floors.at(self.places.nodes())
             self.actors, self.places = advanced(self.actors, self.places, tick.world.graph(), floor, steps, tick.world)
             self._ticks, self._world, self._scene = self._ticks + 1, tick.world, None
+
+    @staticmethod
+    def _world_after(env: Env, ticks: int) -> World | None:
+        """The episode's world after that many ticks; None where it has had fewer."""
+        if ticks < len(env.ticks):
+            return env.ticks[ticks].before
+        return env.world if ticks == len(env.ticks) else None
 
     def _begin(self, env: Env) -> None:
         graph = env.world.graph()
