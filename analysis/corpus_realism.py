@@ -138,12 +138,15 @@ def compare(
         By measure: `ours`, `theirs`, `ratio`; each a mean and the bounds of its 95% bootstrap interval over draws.
 
     Raises:
-        HearthError: EMPTY, a corpus has fewer than `FEWEST` programs.
+        HearthError: EMPTY, a corpus has fewer than `FEWEST` programs, or halves by activity have fewer than two.
     """
     for source, found in (("compared", ours), ("other", theirs)):
         if len(found) < FEWEST:
             message = f"the {source} corpus has {len(found)} programs; {FEWEST} are needed"
             raise HearthError.of(Code.EMPTY, message, suggestion="give a source with more programs")
+    if by_activity and len({one.activity for one in theirs}) < 2:
+        message = "the other corpus has one activity; halves by activity need two"
+        raise HearthError.of(Code.EMPTY, message, suggestion="give a source with more activities, or halve by programs")
     vocabulary = frozenset(step for one in (*ours, *theirs) for step in one.steps)
     columns: dict[str, list[float | None]] = defaultdict(list)
     for number in range(draws):

@@ -6,6 +6,7 @@ Also the diversity of one program's environments (5.5.2, figure 5-4).
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from html import escape
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -207,13 +208,13 @@ def heat_map(counts: Counts, title: str) -> str:
     kinds = sorted(counts)
     places = sorted({place for found in counts.values() for place in found}, key=lambda p: (p == NOWHERE, p))
     cell, left, above = 14, 150, 140
-    lines = [f'<text x="8" y="16" font-size="13">{title}</text>']
+    lines = [f'<text x="8" y="16" font-size="13">{escape(title)}</text>']
     for j, place in enumerate(places):
         x = left + j * cell + 10
-        lines.append(f'<text x="{x}" y="{above - 6}" transform="rotate(-60 {x} {above - 6})">{place}</text>')
+        lines.append(f'<text x="{x}" y="{above - 6}" transform="rotate(-60 {x} {above - 6})">{escape(place)}</text>')
     for i, kind in enumerate(kinds):
         y = above + i * cell
-        lines.append(f'<text x="{left - 6}" y="{y + 11}" text-anchor="end">{kind}</text>')
+        lines.append(f'<text x="{left - 6}" y="{y + 11}" text-anchor="end">{escape(kind)}</text>')
         total = counts[kind].total()
         for j, place in enumerate(places):
             share = counts[kind][place] / total
@@ -236,13 +237,13 @@ def bar_chart(groups: Mapping[str, Counts], names: Sequence[str]) -> str:
     for k, group in enumerate(groups):
         x = left + 110 * k
         lines.append(f'<rect x="{x}" y="8" width="10" height="10" fill="{COLOURS[k % 3]}"/>')
-        lines.append(f'<text x="{x + 14}" y="17">{group}</text>')
+        lines.append(f'<text x="{x + 14}" y="17">{escape(group)}</text>')
     for name in names:
-        lines.append(f'<text x="8" y="{y + 12}" font-size="13" font-weight="bold">{name}</text>')
+        lines.append(f'<text x="8" y="{y + 12}" font-size="13" font-weight="bold">{escape(name)}</text>')
         y += 20
         kinds = sorted({kind for found in groups.values() for kind in found[name]})
         for kind in kinds:
-            lines.append(f'<text x="{left - 6}" y="{y + bar - 2}" text-anchor="end">{kind}</text>')
+            lines.append(f'<text x="{left - 6}" y="{y + bar - 2}" text-anchor="end">{escape(kind)}</text>')
             for k, found in enumerate(groups.values()):
                 share = found[name][kind] / max(1, found[name].total())
                 lines.append(f'<rect x="{left}" y="{y}" width="{wide * share:.1f}" height="{bar - 2}" '

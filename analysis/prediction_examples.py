@@ -139,7 +139,8 @@ def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[t
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.scene.with_geometry import with_geometry
 
-    graph = with_geometry(ran.worlds[0].graph(), home, dataset.knowledge).graph
+    # Not the run's start graph: what the environment moves would be drawn where the home has it.
+    graph = with_geometry(dataset.home(home), home, dataset.knowledge).graph
     trajectory = trajectory_of(ran, graph, dataset.knowledge)
     ticks = list(ran.program.ticks())
     numbers = sorted({round((n + 1) * len(ticks) / count) for n in range(count)} - {0})

@@ -73,11 +73,16 @@ def draw_by_lcs(found: Agreement, title: str, path: Path) -> list[Path]:
     width = 0.8 / len(JUDGES)
     for turn, (name, label) in enumerate(JUDGES.items()):
         places = [place + (turn - (len(JUDGES) - 1) / 2) * width for place in range(len(found.bands))]
-        values = [row.scores[name] or 0 for row in found.bands]
+        shown = [(place, score) for place, row in zip(places, found.bands, strict=True)
+                 if (score := row.scores[name]) is not None]  # fmt: skip
         rho = found.correlations[name]
         note = "" if rho is None else f" (rank correlation {rho:.2f})"
-        bars = axes.bar(places, values, width * 0.94, label=label + note, color=("#b8b8b8", "#31688e", "#1b9e77")[turn])
+        color = ("#b8b8b8", "#31688e", "#1b9e77")[turn]
+        heights = [score for _, score in shown]
+        bars = axes.bar([place for place, _ in shown], heights, width * 0.94, label=label + note, color=color)
         axes.bar_label(bars, fmt="%.2f", padding=2, fontsize=7)
+        for place in sorted({*places} - {place for place, _ in shown}):
+            axes.annotate("none", (place, 0), (0, 2), textcoords="offset points", ha="center", fontsize=7)
     names = [f"{row.low:.2f} to {row.high:.2f}\n{row.programs} programs" for row in found.bands]
     axes.set_xticks(range(len(found.bands)), names, fontsize=8)
     axes.set_xlabel("normalised LCS of the program's steps")

@@ -105,7 +105,7 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
         if shot.camera.name != TOP:
             frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
             seen.append(shot.seen)
-    visible = [share for share in seen[1:] if share is not None]
+    visible = [share for share in seen if share is not None]
     found = round(sum(share == 1 for share in visible) / len(visible), 4) if visible else None
     return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(shooting, frames)}
 

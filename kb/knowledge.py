@@ -66,6 +66,11 @@ class Knowledge:
     _held: Mapping[str, tuple[Placement, ...]] = field(repr=False)
     _limits: Mapping[str, Mapping[str, int]] = field(repr=False)
 
+    @cached_property
+    def class_ids(self) -> Mapping[str, int]:
+        """The number of each class, as in the table `vocabulary`."""
+        return {thing.name: thing.id for thing in self.objects.values()}
+
     # Actions
 
     def action(self, text: str) -> Action | None:

@@ -127,7 +127,7 @@ def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Con
 
 
 def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Context) -> Iterator[ClippedRow]:
-    """Write a film's arrays, and give the rows of its clips."""
+    """Write a film's arrays, and give the rows of its clips; no file without clips."""
     from hearth.rendering.film import clips
     from hearth.rendering.film.clip_file import FILE
     from hearth.rendering.film.snapshots import trajectory_of
@@ -135,9 +135,10 @@ def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Co
 
     name, job, known = case["execution_id"], context.job, context.homes.knowledge
     trajectory = trajectory_of(execution, place.graph, known, variation=drawn(job.settings.seed, name))
-    numbers = {thing.name: thing.id for thing in known.objects.values()}
     coloured = clip_cases.coloured(name, job.settings.seed)
-    film = clips.clip_film(trajectory, place.graph, numbers, clips.MODALITIES if coloured else clips.MASKS_ONLY)
+    film = clips.clip_film(trajectory, place.graph, known.class_ids, clips.MODALITIES if coloured else clips.MASKS_ONLY)
+    if not film.clips:
+        return
     file = f"{FILMS}/{_folder(name)}/{FILE}"
     path = job.folder / file
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -170,8 +171,7 @@ def _demonstrated(
     from hearth.rendering.film import pictures_from_above
 
     job, known = context.job, context.homes.knowledge
-    numbers = {thing.name: thing.id for thing in known.objects.values()}
-    found = pictures_from_above.demonstration(execution, place.graph, known, numbers, job.settings.seed)
+    found = pictures_from_above.demonstration(execution, place.graph, known, known.class_ids, job.settings.seed)
     file = f"{FRAMES}/{_folder(case['execution_id'])}/{pictures_from_above.FILE}"
     path = job.folder / file
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -42,7 +42,8 @@ class Skeleton(NamedTuple):
     Attributes:
         node: the character's.
         joints: name -> position in the world, metres.
-        pixels: name -> (column, row, depth in metres); may lie outside the picture.
+        pixels: name -> (column, row, depth in metres); may lie outside the picture. Column and row are NaN behind the
+            camera.
         visible: names of the joints that nothing but the body itself hides.
     """
 
@@ -126,6 +127,7 @@ def skeletons(shot: Shot) -> list[Skeleton]:
             continue
         joints = {name: _placed(thing, point_of(at)) for name, at in sorted(thing.model.joints().items())}
         places, depths = camera.project(np.array(list(joints.values())))
+        places[depths <= 0] = np.nan
         pixels = {
             name: (float(x), float(y), float(depth)) for name, (x, y), depth in zip(joints, places, depths, strict=True)
         }
@@ -176,12 +178,12 @@ def boxes(shot: Shot) -> list[dict[str, Any]]:
 
 
 def poses(shot: Shot) -> list[dict[str, Any]]:
-    """3D and 2D joints of every character, as plain values."""
+    """3D and 2D joints of every character, as plain values; 2D joints behind the camera are None."""
     return [
         {
             "node": one.node,
             "joints_3d": {name: _rounded(at) for name, at in one.joints.items()},
-            "joints_2d": {name: _rounded(at[:2]) for name, at in one.pixels.items()},
+            "joints_2d": {name: _rounded(at[:2]) if at[2] > 0 else None for name, at in one.pixels.items()},
             "visible": list(one.visible),
         }
         for one in skeletons(shot)

@@ -45,7 +45,7 @@ def render(
         along the camera's axis; `instance_ids` uint16 node ids (int32 if one is larger); `class_ids` uint16; `normals`
         float32 unit vectors of the world; `flow` float32 pixels right and down, NaN for points that the next picture
         does not show. The background is 0. `camera`, `boxes` (2D and 3D, of every object) and `poses` (2D and 3D
-        joints of every character) are plain values, see `annotations`.
+        joints of every character; None where a 2D joint is behind the camera) are plain values, see `annotations`.
 
     Raises:
         HearthError: an unknown modality or quality, or open3d is missing.

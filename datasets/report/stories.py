@@ -47,11 +47,13 @@ class Stories:
 
     @cached_property
     def films(self) -> dict[str, Row]:
-        """Execution id -> its film's file, and the end of each tick in seconds."""
-        query = "SELECT execution_id, file, list_transform(steps, lambda s: s.end) FROM videos ORDER BY 1, 2"
+        """Execution id -> its film's file, and the second at which each tick starts; tick 0 is before all steps."""
+        query = "SELECT execution_id, file, list_transform(steps, lambda s: s.start) FROM videos ORDER BY 1, 2"
         found = self.dataset.rows(query)[1]
         return {
-            name: {"file": self.pictures[file], "ends": ends} for name, file, ends in found if file in self.pictures
+            name: {"file": self.pictures[file], "starts": starts or []}
+            for name, file, starts in found
+            if file in self.pictures
         }
 
     def story(self, program: ProgramRow, runs: Iterable[Any], repairs: Iterable[RepairedRow]) -> Row:

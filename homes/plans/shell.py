@@ -15,6 +15,8 @@ WALL = 0.06
 TILE = 2.5
 PANEL = 3.0
 DOOR_HEIGHT = 2.05
+LINTEL = 0.05
+"""What a wall has above its openings, at least."""
 LEAF = 0.045
 SAME = 0.011
 """Walls closer than this are one wall."""
@@ -88,6 +90,7 @@ def interior(room: Room) -> Rect:
 def build(plan: Plan, faults: Faults) -> Shell:
     """The shell of a plan; openings that do not fit their walls are noted and left out."""
     shell = Shell()
+    _check_height(plan, faults)
     for number, door in enumerate(plan.doorways, 1):
         _add_door(plan, door, number, shell, faults)
     for room in plan.rooms:
@@ -100,6 +103,14 @@ def build(plan: Plan, faults: Faults) -> Shell:
             holes = [o for o in shell.openings if o.room == room.name and o.wall == wall]
             shell.things.extend(_panels(plan, room, wall, sorted(holes, key=lambda o: o.start)))
     return shell
+
+
+def _check_height(plan: Plan, faults: Faults) -> None:
+    """Doors need some wall above them."""
+    least = DOOR_HEIGHT + LINTEL
+    if plan.doorways and plan.height < least:
+        faults.add(Code.NO_PLACE, f"doors, {DOOR_HEIGHT:g} m high, do not fit into walls of {plan.height:g} m",
+                   plan.doorways[0].line, f"`height:` at least {least:g}")  # fmt: skip
 
 
 def shared_wall(a: Rect, b: Rect) -> tuple[str, float, float] | None:
@@ -168,6 +179,11 @@ def _add_door(plan: Plan, door: Doorway, number: int, shell: Shell, faults: Faul
         faults.add(Code.UNKNOWN_OBJECT, f"a door to `{unknown[0]}`, which is not a room of the plan", door.line,
                    f"rooms are {', '.join(sorted(names))}, {OUTSIDE}")  # fmt: skip
         return
+    own = [name for name in door.rooms if name != OUTSIDE]
+    if door.into and door.into not in own:
+        faults.add(Code.UNKNOWN_OBJECT, f"a door of {' and '.join(own)} opens into `{door.into}`", door.line,
+                   f"`into:` {' or '.join(own)}")  # fmt: skip
+        return
     room = plan.room(door.rooms[0])
     place = _door_wall(plan, door, room, faults)
     if place is None:
@@ -178,6 +194,11 @@ def _add_door(plan: Plan, door: Doorway, number: int, shell: Shell, faults: Faul
         faults.add(Code.NO_PLACE, f"a door {door.width:g} m wide reaches beyond the {end - start:.2f} m of wall that "
                    f"{' and '.join(door.rooms)} share", door.line, "move it by `at`, or make it narrower")  # fmt: skip
         return
+    other = _behind(plan, room, wall, begin, finish) if door.rooms[1] == OUTSIDE else None
+    if other is not None:
+        faults.add(Code.NO_PLACE, f"a door from {room.name} to the {OUTSIDE} leads into a wall of {other.name}",
+                   door.line, f"choose an outer wall, or `between: [{room.name}, {other.name}]`")  # fmt: skip
+        return
     for name, side in ((door.rooms[0], wall), (door.rooms[1], OPPOSITE_WALL[wall])):
         if name != OUTSIDE:
             shell.openings.append(Opening(name, side, begin, finish, 0.0, DOOR_HEIGHT, door=door, number=number))
@@ -186,6 +207,15 @@ def _add_door(plan: Plan, door: Doorway, number: int, shell: Shell, faults: Faul
             zone = strip(interior(plan.room(name)), side, begin, finish, depth)
             shell.kept_free.append((name, zone, door.line))
     shell.things.extend(_door_things(plan, door, wall, begin, finish))
+
+
+def _behind(plan: Plan, room: Room, wall: str, begin: float, finish: float) -> Room | None:
+    """The room on the other side of a stretch of a room's wall; None outside."""
+    for other in plan.rooms:
+        shared = shared_wall(room.rect, other.rect)
+        if other is not room and shared and shared[0] == wall and begin < shared[2] and finish > shared[1]:
+            return other
+    return None
 
 
 def _door_wall(plan: Plan, door: Doorway, room: Room, faults: Faults) -> tuple[str, float, float] | None:
@@ -232,16 +262,15 @@ def _add_window(plan: Plan, room: Room, window: Window, number: int, *, shell: S
     start, end = span(inner, window.wall)
     begin, finish = _fit(start, end, window.at, window.width)
     y1 = window.sill + window.height
-    if begin < start - SAME or finish > end + SAME or y1 > plan.height - 0.05:
+    if begin < start - SAME or finish > end + SAME or y1 > plan.height - LINTEL:
         faults.add(Code.NO_PLACE, f"a window of {room.name} reaches beyond its {window.wall} wall", window.line,
                    f"the wall is {end - start:.2f} m by {plan.height:g} m")  # fmt: skip
         return
-    for other in plan.rooms:
-        shared = shared_wall(room.rect, other.rect)
-        if other is not room and shared and shared[0] == window.wall and begin < shared[2] and finish > shared[1]:
-            faults.add(Code.NO_PLACE, f"a window of {room.name} looks into {other.name}", window.line,
-                       "put it in an outer wall")  # fmt: skip
-            return
+    other = _behind(plan, room, window.wall, begin, finish)
+    if other is not None:
+        faults.add(Code.NO_PLACE, f"a window of {room.name} looks into {other.name}", window.line,
+                   "put it in an outer wall")  # fmt: skip
+        return
     shell.openings.append(Opening(room.name, window.wall, begin, finish, window.sill, y1, window=window, number=number))
     glass = strip(inner, window.wall, begin, finish, -WALL)
     base = f"{room.name}/window.{number}"

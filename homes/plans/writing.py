@@ -1,19 +1,22 @@
 """Plans as the YAML that people write: the inverse of reading one."""
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+import orjson
 
 from hearth.homes.plans.plan import Doorway, Piece, Plan, Room, Window
 
 
 def plan_text(plan: Plan) -> str:
     """A plan as YAML that reads back as the same plan, but for the lines its entries stand on."""
-    lines = [f"home: {plan.name}"]
+    lines = [f"home: {_text(plan.name)}"]
     if plan.about:
-        lines.append(f'about: "{plan.about}"')
+        lines.append(f"about: {_quoted(plan.about)}")
     lines.append(f"height: {plan.height:g}")
     if plan.character:
-        lines.append(f"character: {plan.character}")
+        lines.append(f"character: {_text(plan.character)}")
     lines += ["", "rooms:"]
     for room in plan.rooms:
         lines += [*_room(room), ""]
@@ -23,9 +26,9 @@ def plan_text(plan: Plan) -> str:
 
 
 def _room(room: Room) -> Iterator[str]:
-    yield f"  - name: {room.name}"
+    yield f"  - name: {_text(room.name)}"
     if room.class_name != room.name:
-        yield f"    class: {room.class_name}"
+        yield f"    class: {_text(room.class_name)}"
     yield f"    at: {_flow([room.rect.x0, room.rect.z0])}"
     yield f"    size: {_flow([_metres(room.rect.width), _metres(room.rect.depth)])}"
     if room.windows:
@@ -37,7 +40,7 @@ def _room(room: Room) -> Iterator[str]:
 
 
 def _piece(piece: Piece) -> str:
-    what = f"{piece.class_name}*{piece.count}" if piece.count > 1 else piece.class_name
+    what = _text(f"{piece.class_name}*{piece.count}" if piece.count > 1 else piece.class_name)
     fields: dict[str, Any] = {"name": piece.name} if piece.name else {}
     fields |= {key: _place(value) for key, value in piece.place.items()}
     fields |= {key: size for key, size in zip(("width", "height", "depth"), piece.size, strict=True) if size}
@@ -84,4 +87,20 @@ def _flow(value: Any) -> str:
         return _piece(value)
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, str):
+        return _text(value)
     return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+_PLAIN = re.compile(r"(?!(?:true|false|yes|no|on|off|null|y|n)\b)[A-Za-z_][\w.]*(?:\*\d+)?", re.ASCII | re.IGNORECASE)
+"""Texts that YAML reads as themselves without quotes."""
+
+
+def _text(value: str) -> str:
+    return value if _PLAIN.fullmatch(value) else _quoted(value)
+
+
+def _quoted(value: str) -> str:
+    """A text in double quotes: as in JSON, which is YAML, with YAML's own escapes for what YAML may not contain."""
+    written = orjson.dumps(value).decode()
+    return "".join(letter if letter.isprintable() else f"\\U{ord(letter):08x}" for letter in written)

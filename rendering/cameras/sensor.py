@@ -27,7 +27,7 @@ class CameraSensor:
     """Pictures of an episode, for an environment: `env.camera_sensor = CameraSensor(home, knowledge)`.
 
     From the first picture on, the sensor follows the episode: characters stand where their steps brought them, and
-    objects lie where they were put.
+    objects lie where they were put. `class_ids` are those of the table `vocabulary`.
 
     Args:
         home: the home's graph as it was built, with boxes.
@@ -65,7 +65,8 @@ class CameraSensor:
 
     def __call__(self, env: Env, agent: int, modalities: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """The current pictures of an agent, by modality."""
-        return render(self.scene(env), self.camera(env, agent), modalities, quality=self.quality)
+        how: dict[str, Any] = {"quality": self.quality, "class_ids": self.prepared.knowledge.class_ids}
+        return render(self.scene(env), self.camera(env, agent), modalities, **how)
 
     def scene(self, env: Env) -> Scene:
         """What there is to picture now."""
@@ -86,16 +87,20 @@ class CameraSensor:
 
     def _follow(self, env: Env) -> None:
         """Apply the ticks since the last picture."""
-        went_on = self._ticks <= len(env.ticks) and (
-            self._ticks == 0 or (len(env.ticks) > 0 and env.ticks[self._ticks - 1].world is self._world)
-        )
-        if self._world is None or not went_on or (not env.ticks and env.world is not self._world):
+        if self._world is None or self._world is not self._world_after(env, self._ticks):
             self._begin(env)
         for tick in env.ticks[self._ticks :]:
             steps = tuple(step for number, step in tick.instructions.items() if number not in tick.failures)
             floor = self.floors.at(self.places.nodes())
             self.actors, self.places = advanced(self.actors, self.places, tick.world.graph(), floor, steps, tick.world)
             self._ticks, self._world, self._scene = self._ticks + 1, tick.world, None
+
+    @staticmethod
+    def _world_after(env: Env, ticks: int) -> World | None:
+        """The episode's world after that many ticks; None where it has had fewer."""
+        if ticks < len(env.ticks):
+            return env.ticks[ticks].before
+        return env.world if ticks == len(env.ticks) else None
 
     def _begin(self, env: Env) -> None:
         graph = env.world.graph()

@@ -67,7 +67,7 @@ class ClipFilm(NamedTuple):
 
     Attributes:
         pictures: modality -> (T, H, W) or (T, H, W, 3), one for each frame.
-        clips: in order.
+        clips: in order; none of ticks in which several agents act, which one instruction does not tell.
         changes: the frames at which the camera changes, from 0; the first is 0.
         cameras: from those frames on.
     """
@@ -120,12 +120,15 @@ def _taken(
 
 
 def _clips(kept: Sequence[tuple[Frame, Camera]], classes: Mapping[int, str]) -> Iterator[Clip]:
-    """At most `MOST` clips of each tick, their middles spread evenly over it; the film's ends have no whole clip."""
+    """At most `MOST` clips of each tick, their middles spread evenly over it; the film's ends have no whole clip.
+
+    Ticks in which several agents act have none: the camera may show any of them.
+    """
     half = FRAMES // 2
     whole = range(half, len(kept) - half)
     for tick, group in groupby(whole, key=lambda number: kept[number][0].tick):
         middles = [*group]
-        if not tick:
+        if not tick or len(kept[middles[0]][0].steps) != 1:
             continue
         count = min(MOST, len(middles))
         for k in range(count):

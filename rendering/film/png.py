@@ -9,6 +9,9 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
 
+STORED = (np.uint8, np.uint16, np.float32)
+"""Types of arrays that have an encoding; OpenCV silently makes 8 bits of some others."""
+
 LEVEL = 1
 """zlib's fastest: four times as fast as the default for a few per cent more bytes."""
 
@@ -19,13 +22,17 @@ def encode(image: NDArray[Any]) -> bytes:
     Args:
         image: (H, W) or (H, W, 3 in the order red, green, blue), uint8 or uint16; float32 unit vectors (normals)
             are written as 16 bits a component, (n + 1) / 2 * 65535; (H, W, 2) float32 (flow) as 16 bits
-            64 * f + 32768 in red and green, with blue 1 where the flow is known (KITTI's encoding).
+            64 * f + 32768 in red and green, with blue 1 where the flow is known (KITTI's encoding) and within 512
+            pixels, which this can say.
 
     Raises:
         HearthError: the array's shape or type has no PNG encoding.
     """
     cv2 = library("cv2")
 
+    if image.dtype not in STORED:
+        how = "uint8, uint16 or float32; nodes and classes with numbers above 65535 need lower ones"
+        raise HearthError.of(Code.NOT_RENDERED, f"no PNG of {image.shape} {image.dtype}", suggestion=how)
     if image.dtype == np.float32 and image.shape[-1] == 2:
         image = _flow_code(image)
     if image.dtype == np.float32:
@@ -38,10 +45,10 @@ def encode(image: NDArray[Any]) -> bytes:
 
 
 def _flow_code(flow: NDArray[Any]) -> NDArray[np.uint16]:
-    known = np.isfinite(flow).all(axis=2)
+    found = np.rint(flow * 64 + 32768)
+    known = ((found >= 0) & (found <= 65535)).all(axis=2)
     code = np.zeros((*flow.shape[:2], 3), np.uint16)
-    code[..., :2] = np.clip(np.rint(np.where(known[..., None], flow, 0) * 64 + 32768), 0, 65535)
-    code[~known, :2] = 0
+    code[..., :2] = np.where(known[..., None], found, 0)
     code[..., 2] = known
     return code
 

@@ -93,14 +93,14 @@ class Snapshot:
         tick, steps: the keyframe's.
         camera: the camera.
         pictures: modality -> array, as `modalities.render` gives them.
-        seen: visible share of the acting character and the objects that the steps name.
+        seen: visible share of the objects that the steps name; None where they name none.
     """
 
     tick: int
     steps: tuple[Step, ...]
     camera: Camera
     pictures: Mapping[str, Any]
-    seen: float = 1.0
+    seen: float | None = None
 
 
 def keyframes(
@@ -340,7 +340,8 @@ def snapshots(
         execution, home, knowledge, seed, hour: as in `keyframes`.
         cameras: fixed cameras; `top` is a bird's-eye view of the home, `auto` the camera of the character's room that
             best shows the step's objects.
-        modalities, quality: as in `modalities.render`; `flow` is towards the next tick, and `graph` is the scene graph.
+        modalities, quality: as in `modalities.render`; `flow` is towards the next tick, by the same camera; `class_ids`
+            are those of the table `vocabulary`; `graph` is the scene graph.
         size: width and height for `top` and `auto`.
 
     Raises:
@@ -363,9 +364,10 @@ def snapshots(
                 camera = best_view(keyframe.scene, views, actor, named, rooms.get(actor.room))
             if quality == "draft":
                 last_frames[choice] = incremental_frame(keyframe.scene, camera, last_frames.get(choice))
-                shot, known = replace(last_frames[choice].shot, after=later.scene), {"rgb": last_frames[choice].picture}
+                shot, known = last_frames[choice].shot, {"rgb": last_frames[choice].picture}
             else:
-                shot, known = shoot(keyframe.scene, camera, after=later.scene, by_rays=True), {}
+                shot, known = shoot(keyframe.scene, camera, by_rays=True), {}
+            shot = replace(shot, after=later.scene, class_ids=knowledge.class_ids)
             pictures = known | pictures_of(shot, [name for name in drawn if name not in known], quality)
             if "graph" in wanted:
                 pictures["graph"] = to_release(keyframe.places.graph)
@@ -373,9 +375,11 @@ def snapshots(
             yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named))
 
 
-def _seen(shot: Shot, named: tuple[int, ...]) -> float:
-    """Share of the nodes with a pixel."""
+def _seen(shot: Shot, named: tuple[int, ...]) -> float | None:
+    """Share of the nodes with a pixel; None of no nodes."""
+    if not named:
+        return None
     numbers = np.flatnonzero(np.bincount(shot.owner + 1, minlength=1)[1:])
     ids = {shot.geometry.things[number].id for number in numbers.tolist()}
     found = [node_id in ids for node_id in dict.fromkeys(named)]
-    return sum(found) / len(found) if found else 1.0
+    return sum(found) / len(found)

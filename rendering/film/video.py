@@ -109,7 +109,10 @@ class FilmFrame(NamedTuple):
     rgb: Image
 
     def pictures(self, modalities: Iterable[str], quality: str = "draft") -> dict[str, Any]:
-        """Further modalities of the picture, as `modalities.render` gives them; flow is towards the next frame."""
+        """Further modalities of the picture, as `modalities.render` gives them.
+
+        Flow is towards the next frame by that frame's camera, and unknown (NaN) across a cut.
+        """
         return pictures_of(self.shot, modalities, quality)
 
 
@@ -137,20 +140,25 @@ def film(
     """
     speed = trajectory.variation.speed
     selector = CameraSelector(trajectory, home, view, size)
+    class_ids = trajectory.prepared.knowledge.class_ids
     last: IncrementalFrame | None = None
-    for frame, later in _with_next(frames(trajectory, fps, speed)):
-        camera = selector.camera(frame)
+    pictured = ((frame, selector.camera(frame)) for frame in frames(trajectory, fps, speed))
+    for (frame, camera), (later, next_camera) in _with_next(pictured):
         if quality == "fine":
-            shot = shoot(frame.scene, camera, after=later.scene, by_rays=True)
-            yield FilmFrame(frame, camera, shot, pictures_of(shot, ["rgb"], quality)["rgb"])
+            shot = shoot(frame.scene, camera, by_rays=True)
+            picture = pictures_of(shot, ["rgb"], quality)["rgb"]
         else:
             last = incremental_frame(frame.scene, camera, last)
-            yield FilmFrame(frame, camera, replace(last.shot, after=later.scene), last.picture)
+            shot, picture = last.shot, last.picture
+        # The other views move; `auto` has cameras that stand, and changes between them.
+        cut = selector.view == AUTO and next_camera != camera
+        after: dict[str, Any] = {"after": later.scene, "after_camera": next_camera, "cut": cut}
+        yield FilmFrame(frame, camera, replace(shot, class_ids=class_ids, **after), picture)
 
 
-def _with_next(found: Iterable[Frame]) -> Iterator[tuple[Frame, Frame]]:
-    """Each frame and the one after it; the last one and itself."""
-    before: Frame | None = None
+def _with_next(found: Iterable[tuple[Frame, Camera]]) -> Iterator[tuple[tuple[Frame, Camera], tuple[Frame, Camera]]]:
+    """Each frame and the one after it, with their cameras; the last one and itself."""
+    before: tuple[Frame, Camera] | None = None
     for frame in found:
         if before is not None:
             yield before, frame
@@ -237,7 +245,7 @@ def times(found: Sequence[Span]) -> list[FilmedStepRow]:
             "start": round(span.start, 4),
             "end": round(span.end, 4),
             "cameras": [],
-            "visible": 0.0,
+            "visible": None,
         }
         for span in found
     ]
@@ -249,7 +257,8 @@ class Recorded(NamedTuple):
     Attributes:
         files: the videos.
         frames: number of pictures in each.
-        steps: as `times` gives them, each with its cameras and the share of its objects that some picture shows.
+        steps: as `times` gives them, each with its cameras and the share of its objects that some picture shows; None
+            where it names none.
         track: tick and camera of each picture.
         keyframes: the last picture of each tick, for a contact sheet.
         further: files of the other modalities, and their index.
@@ -283,7 +292,8 @@ def record(
         trajectory, home, view, size, fps: as in `film`.
         out: an existing folder.
         suffixes: of `CODECS`.
-        modalities, quality: as in `modalities.render`; `graph` is the scene graph after the tick.
+        modalities, quality: as in `modalities.render`; `class_ids` are those of the table `vocabulary`, and `graph` is
+            the scene graph after the tick.
 
     Raises:
         HearthError: the camera does not exist, a modality or quality is unknown, or a file can't be written; complete
@@ -319,7 +329,7 @@ def record(
     for writer in writers:
         writer.close()
     for step, tick in zip(steps, known, strict=True):
-        step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else 1.0
+        step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else None
     keyframes = [(picture, known[tick]) for tick, picture in last.items()]
     videos = tuple(writer.path for writer in writers)
     return Recorded(videos, len(track), steps, track, keyframes, files.close(fps, steps))

@@ -5,10 +5,11 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.models.looks import Model
 from hearth.rendering.models.mesh import rotation
 from hearth.rendering.rays.maps import HORIZON, motion
 from hearth.rendering.rays.shading import chunks
-from hearth.rendering.rays.shot import Shot, everywhere, shoot_after
+from hearth.rendering.rays.shot import Shot, everywhere, shoot, shoot_after
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.rendering.scene.scene import Scene
@@ -40,8 +41,12 @@ def flow(shot: Shot, after: Shot) -> Floats:
 
 
 def flow_of(scene: Scene, shot: Shot) -> Floats:
-    """Flow from a shot to the same camera's shot of `scene`."""
-    return flow(shot, shoot_after(scene, shot))
+    """Flow from a shot to the shot of `scene` by the shot's next camera; unknown everywhere across a cut."""
+    if shot.cut:
+        return np.full((shot.camera.height, shot.camera.width, 2), np.nan, np.float32)
+    camera = shot.after_camera or shot.camera
+    still = camera == shot.camera
+    return flow(shot, shoot_after(scene, shot) if still else shoot(scene, camera, by_rays=shot.by_rays))
 
 
 def _ids(shot: Shot) -> NDArray[np.int32]:
@@ -58,15 +63,21 @@ def _shifts(shot: Shot, after: Shot) -> Floats:
     """(M, 3, 3) displacements of the moving triangles' corners until the later shot."""
     part = shot.geometry.moving
     shifts = np.zeros_like(part.mesh.corners)
-    later: dict[int, Thing] = {}
+    later: dict[tuple[int, str], Thing] = {}
     for thing in after.geometry.moving.things:
-        later.setdefault(thing.id, thing)
+        later.setdefault(_part(thing), thing)
     there = set(after.geometry.moving.things)
     for thing, start in zip(part.things, part.starts.tolist(), strict=True):
-        if thing not in there and thing.id in later:
+        other = later.get(_part(thing))
+        if thing not in there and other is not None:
             before = placed(thing).corners
-            shifts[start : start + len(before)] = _displaced(before, thing, later[thing.id])
+            shifts[start : start + len(before)] = _displaced(before, thing, other)
     return np.ascontiguousarray(shifts, np.float32)
+
+
+def _part(thing: Thing) -> tuple[int, str]:
+    """What stays the same of a part of a node: a machine's steam is not the machine."""
+    return thing.id, thing.model.recipe if isinstance(thing.model, Model) else ""
 
 
 def _displaced(before: Floats, thing: Thing, other: Thing) -> Floats:

@@ -35,6 +35,8 @@ class Shot:
         after: the next scene, if known, for optical flow.
         behind: first hits on static things, reused by the next shot.
         by_rays: whether first hits are cast, as for fine pictures; else they are rasterised.
+        after_camera: the next scene's; None if it is this one.
+        cut: whether the film is cut before the next scene, so that no point can be followed to it.
     """
 
     scene: Scene
@@ -47,6 +49,8 @@ class Shot:
     after: Scene | None = None
     behind: Hits | None = None
     by_rays: bool = False
+    after_camera: Camera | None = None
+    cut: bool = False
 
     @cached_property
     def owner(self) -> NDArray[np.int32]:

@@ -86,8 +86,8 @@ def changes(thing: Thing) -> bool:
 
 
 def at_time(thing: Thing, time: float) -> Iterator[Thing]:
-    """A thing as it looks some seconds after a film's start, and the steam above it."""
-    model, moved = thing.model, thing
+    """A thing as it looks some seconds after a film's start, then the steam above it: a node's first part is itself."""
+    model, moved, above = thing.model, thing, list[Thing]()
     for effect in effects_of(model.recipe, model.look.states) if isinstance(model, Model) else ():
         assert isinstance(model, Model)
         start = derive(0, "effect", thing.id) % 97
@@ -99,8 +99,9 @@ def at_time(thing: Thing, time: float) -> Iterator[Thing]:
             x, y, z = moved.position
             moved = replace(moved, position=(x + way * cos(radians(thing.yaw)), y, z - way * sin(radians(thing.yaw))))
         if effect.steam:
-            yield _steam(thing, model.look, effect.steam, int(time / RISES + 1e-6) + start)
+            above.append(_steam(thing, model.look, effect.steam, int(time / RISES + 1e-6) + start))
     yield moved
+    yield from above
 
 
 def _steam(thing: Thing, look: Look, height: float, moment: int) -> Thing:

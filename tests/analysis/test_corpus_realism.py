@@ -65,6 +65,13 @@ def test_too_few_programs_are_an_error():
         numbers.compare(corpus(2, ["a"]), corpus(20, ["a"]))
 
 
+def test_one_activity_has_no_halves_by_activity():
+    one = [each._replace(activity="only") for each in corpus(8, ["a", "b"])]
+    with pytest.raises(HearthError, match="halves by activity need two"):
+        numbers.compare(corpus(8, ["a"]), one, draws=2, by_activity=True)
+    assert numbers.compare(corpus(8, ["a"]), one, draws=2)
+
+
 def test_the_command_compares_and_draws(tmp_path):
     source = "data_raw/crowd"
     words = ["corpus", "realism", source, "--against", source, "--draws", "2", "--out", str(tmp_path), "--json"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import subprocess
 from pathlib import Path
 from urllib.parse import quote
 
@@ -22,6 +23,11 @@ from hearth.schemas.tables import TABLES
 
 MILK = "release:batch-1/file1_1"
 NASTY = "<script>alert(1)</script><b>"
+FILMED = [
+    {"tick": tick, "steps": [], "start": start, "end": end, "cameras": [], "visible": None}
+    for tick, (start, end) in enumerate([(0.0, 1.0), (1.0, 7.8457), (7.8457, 11.8192)])
+]
+"""A film's steps: tick 0 is what is before the first of them."""
 DRAWN = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 """Chromium draws 3D without a graphics card."""
 
@@ -154,7 +160,8 @@ def pictured(made, ds, tmp_path_factory):
     looks = ((0, "auto", "one.png"), (5, "top", "above.png"), (5, "auto", "late.png"))
     rows = [{**frame, "tick": tick, "camera": camera, "file": file} for tick, camera, file in looks]
     pq.write_table(pa.Table.from_pylist(rows, TABLES["frames"]), folder / "frames/part-00000.parquet")
-    film = {field.name: None for field in TABLES["videos"]} | {"execution_id": runs[1], "file": "film.webm"}
+    film = {field.name: None for field in TABLES["videos"]}
+    film |= {"execution_id": runs[1], "file": "film.webm", "steps": FILMED}
     (folder / "videos").mkdir(exist_ok=True)
     pq.write_table(pa.Table.from_pylist([film], TABLES["videos"]), folder / "videos/part-00000.parquet")
     write_report(hearth.load(folder), folder.parent / "report")
@@ -169,6 +176,19 @@ def test_rows_name_a_late_picture_that_is_not_from_above(pictured):
     assert kind == 1
     assert (report / picture).read_bytes() == b"late.png"
     assert set(map(tuple, rows.values())) == {("", 0)}
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
+def test_a_films_player_shows_the_step_that_the_film_shows(pictured):
+    report, (_, other) = pictured
+    told = [each for path in report.glob("data/stories-*.js") for each in data(path) if each["id"] == other]
+    (film,) = (run["film"] for run in told[0]["runs"] if run["film"])
+    moments = [0, 0.5, 1, 0.9999999, 4.4, 7.8457, 9, 30]
+    asked = f"[{moments}.map((at) => HEARTH.filming.tickAt({json.dumps(film)}, at)),"
+    asked += f" [0, 1, 2].map((tick) => HEARTH.filming.startOf({json.dumps(film)}, tick))]"
+    page = f"globalThis.HEARTH = {{}};\n{(report / 'page.js').read_text()}\nconsole.log(JSON.stringify({asked}));"
+    said = subprocess.run(["node", "-"], input=page, capture_output=True, text=True, check=True, timeout=60).stdout
+    assert json.loads(said) == [[0, 0, 1, 1, 1, 2, 2, 2], [0, 1, 7.8457]]
 
 
 @pytest.mark.slow

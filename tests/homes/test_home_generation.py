@@ -1,15 +1,19 @@
 """Procedural homes: always sound, the same for the same seed, written as plans that people can edit."""
 
+from dataclasses import replace
+
 import pytest
 
 from hearth.homes import library
 from hearth.homes.lint import lint
+from hearth.homes.plans.entries import read_plan
 from hearth.homes.plans.layout import read
 from hearth.homes.plans.writing import plan_text
 from hearth.homes.procedural.generate import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.yaml_fields import Faults
 
 KITCHENS = {"kitchen", "dining_room", "home_office"}
 
@@ -64,6 +68,27 @@ def test_designed_plans_are_written_and_read_back_too(name):
     assert [(t.name, t.box, t.yaw, t.on, t.inside) for t in again.things] == [
         (t.name, t.box, t.yaw, t.on, t.inside) for t in layout.things
     ]
+
+
+@pytest.mark.parametrize(
+    "text", ['the "blue" house', "bed: room", "12", "no", "a #b\\n\n\x85 {é🏠", "- [x]", "~", "1.5"]
+)
+def test_any_text_of_a_plan_reads_back(text):
+    plan = library.load_layout("birch", default()).plan
+    (first, *rest), named = plan.rooms, replace(plan.doorways[0], rooms=(text, plan.rooms[1].name), into=text)
+    (piece, *others) = first.furniture
+    odd = replace(first, name=text, furniture=(replace(piece, name=text), *others))
+    again = parsed(replace(plan, name=text, about=text, character=text, rooms=(odd, *rest), doorways=(named,)))
+    assert (again.name, again.about, again.character) == (text, text, text)
+    assert again.rooms[0].name == text and again.rooms[0].furniture[0].name == text
+    assert again.doorways[0].rooms[0] == text and again.doorways[0].into == text
+
+
+def parsed(plan):
+    faults = Faults("")
+    found = read_plan(plan_text(plan), "", default(), faults)
+    assert not list(faults)
+    return found
 
 
 @pytest.mark.slow

@@ -82,6 +82,24 @@ def test_a_plan_of_absurd_size_is_refused_before_it_is_arranged(text, named):
     assert fault.code is Code.FILE_TOO_LARGE and named in fault.message
 
 
+HALL = "- {name: hall, class: bedroom, at: [4, 0], size: [3, 3]}\n"
+
+
+@pytest.mark.parametrize(
+    ("door", "height", "named"),
+    [
+        ("between: [kitchen, hall]", 2.0, "do not fit into walls of 2 m"),
+        ("between: [kitchen, outside], wall: east", 2.5, "leads into a wall of hall"),
+        ("between: [kitchen, hall], into: kitchn", 2.5, "opens into `kitchn`"),
+        ("between: [kitchen, outside], wall: west, into: outside", 2.5, "opens into `outside`"),
+    ],
+)
+def test_doors_fit_under_the_ceiling_and_lead_and_open_where_there_is_room(door, height, named):
+    text = plan([], f"[{{{door}}}, {{between: [kitchen, hall], at: 0.1}}]").replace("doors", HALL + "doors")
+    found = [fault for fault in faults_of(f"height: {height}\n{text}") if named in fault.message]
+    assert len(found) == 1 and found[0].line > 1 and found[0].suggestion
+
+
 def test_furniture_may_not_wall_in_other_furniture():
     walled = ["fridge: {corner: southwest}", "table: {spot: [1.0, 1.45], width: 2.0, depth: 1.0}",
               "bookshelf: {spot: [1.2, 0.5], width: 0.8, facing: west}"]  # fmt: skip

@@ -12,6 +12,7 @@ from hearth import cli
 from hearth.analysis.prediction_examples import examples_page, prediction_examples, spread_over
 from hearth.models.data import examples
 from hearth.models.predicting import write
+from hearth.rendering.film import snapshots
 from hearth.scoring.dataset_scores import score_given
 from hearth.scoring.evaluate import Scored
 from hearth.scoring.lines import steps_of
@@ -52,6 +53,19 @@ def test_both_programs_stand_side_by_side(parted, given):
     assert all(both for _, _, both in best.steps) and best.scores["LCS"] == "1.00"
     assert not any(right for _, right, _ in worst.steps) and worst.scores["LCS"] == "0.00"
     assert best.home in best.request.id and not best.pictures
+
+
+def test_pictures_are_of_the_home_as_built_and_what_its_environment_moves(parted, given, monkeypatch):
+    """What an environment moves is found by comparing its graph with the home's, which must be the home's own."""
+    pytest.importorskip("open3d")
+    asked = []
+    whole = snapshots.trajectory_of
+    monkeypatch.setattr(snapshots, "trajectory_of", lambda *given: asked.append(given) or whole(*given))
+    list(prediction_examples(parted, score_given(parted, given), 2, pictures=1))
+    ((ran, graph, _),) = asked
+    home = parted.home(ran.worlds[0].home.name)
+    assert graph.edges == home.edges and [node.id for node in graph.nodes] == [node.id for node in home.nodes]
+    assert set(ran.worlds[0].graph().edges) != set(home.edges)
 
 
 def test_texts_of_strangers_stay_texts(parted, given):

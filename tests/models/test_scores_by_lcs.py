@@ -7,8 +7,20 @@ import json
 from typer.testing import CliRunner
 
 from hearth import cli
+from hearth.analysis.scores_by_lcs import Agreement, BandRow, draw_by_lcs
 from hearth.models.data import examples
 from hearth.models.predicting import write
+
+
+def test_a_score_that_no_program_has_is_no_bar_of_height_0(tmp_path):
+    one, other = (
+        {"executable": 0.5, "goal_fraction": None, "f1": 0.0},
+        {"executable": 0.2, "goal_fraction": None, "f1": 1},
+    )
+    found = Agreement([BandRow(0, 0.25, 3, one), BandRow(0.95, 1, 2, other)], dict.fromkeys(one))
+    text = draw_by_lcs(found, "t", tmp_path / "bands")[1].read_text()
+    drawn = [text.count(f">{value}<") for value in ("none", "0.00", "0.20")]
+    assert drawn == [2, 2, 1], "one 0.00 is of the axis"
 
 
 def test_true_programs_are_in_the_last_band_and_empty_ones_in_the_first(parted, tmp_path):

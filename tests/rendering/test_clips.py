@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from io import BytesIO
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -92,6 +93,15 @@ def test_the_file_is_read_without_pickle_and_has_equal_bytes(film):
             "depth": ("uint16", (96, 128)),
             "rgb": ("uint8", (96, 128, 3)),
         }
+
+
+def test_what_two_agents_do_at_once_is_in_no_clip():
+    (step,) = hearth.parse_program("A\nb\n\n\n[StandUp]\n").steps
+    other = replace(step, agent=1)
+    acts = {0: (), 1: (step,), 2: (step, other), 3: (other,)}
+    kept = [(SimpleNamespace(tick=k // 12, steps=acts[k // 12]), SimpleNamespace(name="a")) for k in range(48)]
+    found = [*clips._clips(kept, {})]
+    assert {(clip.tick, clip.step.agent) for clip in found} == {(1, 0), (3, 1)}
 
 
 def test_objects_have_the_classes_that_masks_show():

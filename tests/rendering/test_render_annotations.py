@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.rendering.annotations import camera_of, described, seen, skeletons
+from hearth.rendering.annotations import camera_of, described, poses, seen, skeletons
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film import png
 from hearth.rendering.models.look import Look
@@ -68,6 +68,12 @@ def test_flow_survives_a_file():
     assert code[..., 2].tolist() == [[1, 0]]
 
 
+def test_flow_that_a_file_cannot_hold_is_unknown_in_it():
+    values = np.array([[[511.9, -512.0], [512.0, 0.0], [3.0, -512.1], [np.inf, 0.0]]], np.float32)
+    code = png.decode(png.encode(values))
+    assert code[..., 2].tolist() == [[1, 0, 0, 0]] and not code[0, 1:].any()
+
+
 def test_boxes_around_what_is_seen():
     scene = Scene((BACK, slab(2, (0, 0, 4.5), (1, 1, 1)), slab(3, (0.5, 0, 3.05), (1, 4, 0.1))))
     found = {one.node: one for one in seen(shoot(scene, CAMERA))}
@@ -114,3 +120,15 @@ def test_a_picture_is_described_in_plain_values():
     assert np.array(row["camera"]["intrinsics"])[0, 0] == pytest.approx(FOCAL, abs=1e-3)
     assert [one["node"] for one in row["objects"]] == [1, 9]
     assert row["people"][0]["joints_3d"].keys() == row["people"][0]["joints_2d"].keys()
+
+
+def test_joints_behind_the_camera_are_nowhere_in_the_picture():
+    """Who stands astride of the camera has joints on both sides of it."""
+    person = Thing(9, "character", Figure(BODIES["ben"], BodyPose()), (0.0, -0.9, 0.013), 90.0)
+    shot = shoot(Scene((BACK, person)), CAMERA)
+    (found,), (row,) = skeletons(shot), poses(shot)
+    ahead = {name for name, at in found.joints.items() if at[2] > 0}
+    assert 0 < len(ahead) < len(found.joints)
+    assert {name for name, at in row["joints_2d"].items() if at is not None} == ahead
+    assert all(np.isnan(found.pixels[name][:2]).all() for name in found.joints.keys() - ahead)
+    assert set(row["visible"]) <= ahead

@@ -136,6 +136,15 @@ def test_png_keeps_sixteen_bits_and_the_order_of_colours():
     assert (png.decode(png.encode(depth)) == depth).all()
 
 
+def test_ids_that_no_png_can_hold_are_refused():
+    scene = Scene((slab(70_000, (0, 0, 4), (2, 2, 1)),))
+    ids = render(scene, plain((0, 0, 0), (0, 0, 1)), ("instance_ids",))["instance_ids"]
+    assert ids.max() == 70_000
+    with pytest.raises(HearthError, match="int32") as refused:
+        png.encode(ids)
+    assert "65535" in str(refused.value.diagnostics[0].suggestion)
+
+
 def test_unknown_modalities_are_told():
     with pytest.raises(HearthError, match="infrared"):
         render(Scene(()), plain((0, 0, 0), (0, 0, 1)), ("rgb", "infrared"))

@@ -52,6 +52,16 @@ def test_pictures_follow_what_is_done(env):
     assert np.array_equal(held["rgb"], again)
 
 
+def test_another_episode_whose_start_was_not_seen_is_begun_anew(env):
+    env.camera_sensor = CameraSensor(HOME, default(), size=(32, 24), view="top")
+    env.observe(0, "rgb")
+    env.reset(Home.from_graph(HOME, "", default()), agents=2, seed=4)
+    env.step({0: Step("Walk", (CUP,))})
+    assert env.observe(1, "rgb")["rgb"].shape == (24, 32, 3)
+    idle = env.world.agents[1].pose
+    assert [actor.spot for actor in env.camera_sensor.actors][1] == idle.point
+
+
 def test_a_new_beginning_is_seen(env):
     env.camera_sensor = CameraSensor(HOME, default(), size=(32, 24), view="third")
     start, first = env.world, env.observe(0, "rgb")["rgb"]

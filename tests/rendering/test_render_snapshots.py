@@ -160,7 +160,7 @@ def test_pictures_by_two_cameras_show_person_and_cup():
         assert (shot.pictures["instance_ids"] == ME).any()
     grabbed = taken[5]
     assert (grabbed.pictures["instance_ids"] == CUP).any()
-    assert grabbed.seen == 1.0
+    assert grabbed.seen == 1.0 and taken[0].seen is None and taken[1].seen is None, "the start names nothing"
     sheet = contact_sheet([(s.pictures["rgb"], caption(s.tick, s.steps)) for s in taken[1::2]], "Put the cup away")
     assert sheet.shape[1] > 4 * 80
     assert caption(2, taken[5].steps).startswith("2. [Grab] <cup>")

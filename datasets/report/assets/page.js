@@ -88,6 +88,19 @@ HEARTH.draw = (() => {
     return video;
   }
 
+  // Players may round the time to which they were sent down.
+  const NEARLY = 0.001;
+
+  function tickAt(film, seconds) {
+    return Math.max(0, film.starts.findLastIndex((start) => start <= seconds + NEARLY));
+  }
+
+  function startOf(film, tick) {
+    return film.starts[tick] ?? 0;
+  }
+
+  HEARTH.filming = { tickAt, startOf };
+
   function player(run, steps) {
     const controls = element("p", null, "controls");
     const button = element("button", "Play");
@@ -115,13 +128,12 @@ HEARTH.draw = (() => {
     }
     function go(to) {
       tick = Math.max(0, Math.min(run.ticks.length, to));
-      if (film) film.currentTime = tick > 1 ? run.film.ends[tick - 2] : 0;
+      if (film) film.currentTime = startOf(run.film, tick);
       draw();
     }
     if (film) {
       film.ontimeupdate = () => {
-        const now = run.film.ends.findIndex((end) => film.currentTime < end);
-        const shown = now < 0 ? run.ticks.length : film.currentTime ? now + 1 : tick;
+        const shown = Math.min(run.ticks.length, tickAt(run.film, film.currentTime));
         if (shown !== tick) { tick = shown; draw(); }
       };
       film.onplay = () => { button.textContent = "Pause"; };
