@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 from hearth.commands import inputs, output
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from hearth.kb.knowledge import Knowledge
     from hearth.rendering.cameras.visibility import TickVisibility
@@ -49,11 +49,12 @@ def program(
     from hearth.kb.loading.load import default
     from hearth.rendering.scene.with_geometry import with_geometry
 
+    _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
     known = default()
     execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, homes, seed, known)
     place = with_geometry(library.load_graph(home, known, homes), home, known)
     out.mkdir(parents=True, exist_ok=True)
-    title, size = f"{execution.program.title}, in {home}", (width, width * 3 // 4)
+    title, size = f"{execution.program.title}, in {home}", (width, _height(width, mode))
     shooting = Shooting(execution, place.graph, known, out, size, seed, hour, title, vary)
     if mode == "video":
         made = videos(shooting, _split(cameras), fps, "fine" if fine else "draft", _split(modalities or "rgb"))
@@ -74,6 +75,25 @@ def program(
         if failure:
             print(f"Stopped: {failure}")
     output.status(failure is not None, strict=True)
+
+
+def _check(mode: str, width: int, given: Mapping[str, bool]) -> None:
+    """Refuse options that would have no effect; `given` says of some whether they differ from what they are anyway."""
+    import typer
+
+    for name in ("--cameras", "--fps", "--vary"):
+        if mode != "video" and given[name]:
+            raise typer.BadParameter("only videos have it: add `--mode video`", param_hint=name)
+    if given["--vary"] and given["--hour"]:
+        raise typer.BadParameter("`--vary` draws the hour: leave one out", param_hint="--hour")
+    if mode == "video" and width % 2:
+        raise typer.BadParameter(f"a video's width is even: {width - 1} or {width + 1}", param_hint="--width")
+
+
+def _height(width: int, mode: str) -> int:
+    """3/4 of the width; even in videos, whose codecs would cut a pixel."""
+    height = width * 3 // 4
+    return height // 2 * 2 if mode == "video" else height
 
 
 class Shooting(NamedTuple):

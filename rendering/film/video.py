@@ -49,11 +49,18 @@ CODECS = {".webm": "VP80", ".mp4": "mp4v"}
 
 
 class Writer:
-    """Writes a video file, which gets its name only when it is complete."""
+    """Writes a video file, which gets its name only when it is complete.
+
+    Raises:
+        HearthError: an odd width or height, of which codecs would cut a pixel; or the file can't be written.
+    """
 
     def __init__(self, path: Path, width: int, height: int, fps: float) -> None:
         cv2 = library("cv2")
 
+        if width % 2 or height % 2:
+            even = f"{width // 2 * 2} by {height // 2 * 2}"
+            raise HearthError.of(Code.NOT_RENDERED, f"a video can't have {width} by {height} pixels", suggestion=even)
         codec = CODECS.get(path.suffix)
         self.path, self.part = path, path.with_name(f".part{path.suffix}")
         self.file: Any = None
@@ -131,7 +138,7 @@ def film(
         trajectory: as `snapshots.trajectory_of` gives it.
         home: the home's graph, with boxes.
         view: one of `VIEWS`, or the name of a room's camera.
-        size: width and height, pixels.
+        size: width and height, pixels; even for a file.
         fps: pictures per second.
         quality: as in `modalities.render`.
 
@@ -296,8 +303,8 @@ def record(
             the scene graph after the tick.
 
     Raises:
-        HearthError: the camera does not exist, a modality or quality is unknown, or a file can't be written; complete
-            files stay.
+        HearthError: the camera does not exist, a modality or quality is unknown, width or height is odd, or a file
+            can't be written; complete files stay.
 
     Examples:
         >>> trajectory = hearth.trajectory_of(execution, graph, known)

@@ -9,6 +9,7 @@ pytest.importorskip("open3d")
 from typer.testing import CliRunner
 
 from hearth.cli import app
+from hearth.commands.render import _height
 from hearth.rendering.film import png
 
 
@@ -52,3 +53,26 @@ def test_a_program_becomes_a_video_that_a_page_plays(tmp_path):
     assert "top.webm" in (tmp_path / "out/top.html").read_text()
     refused = CliRunner().invoke(app, [*command, "--cameras", "attic"])
     assert refused.exit_code != 0
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        ("--cameras top,nonsense", "--cameras"),
+        ("--fps 30", "--fps"),
+        ("--vary", "--vary"),
+        ("--mode video --vary --hour 22", "--hour"),
+        ("--mode video --width 331", "--width"),
+    ],
+)
+def test_options_without_effect_are_refused(tmp_path, options, named):
+    file = tmp_path / "sit.txt"
+    file.write_text("Sit\nRest\n\n\n[Sit] <couch> (1)\n")
+    result = CliRunner().invoke(app, ["render-program", str(file), "--out", str(tmp_path / "out"), *options.split()])
+    assert result.exit_code == 2 and named in result.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_videos_have_an_even_height():
+    assert [_height(width, "video") for width in (320, 330, 46)] == [240, 246, 34]
+    assert _height(330, "snapshots") == 247

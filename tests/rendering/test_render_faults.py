@@ -36,6 +36,14 @@ def test_a_film_that_could_not_be_written_leaves_the_complete_one(tmp_path):
     assert film.read_bytes() == b"an earlier one"
 
 
+@pytest.mark.parametrize("size", [(33, 24), (32, 23)])
+def test_a_film_of_an_odd_size_is_refused_rather_than_cut(tmp_path, size):
+    with pytest.raises(HearthError, match="a video can't have") as refused:
+        Writer(tmp_path / "auto.mp4", *size, 5)
+    assert refused.value.diagnostics[0].suggestion.startswith("32 by ")
+    assert not [*tmp_path.iterdir()]
+
+
 @pytest.mark.parametrize("suffix", [".webm", ".mp4"])
 def test_equal_films_are_equal_bytes(tmp_path, suffix):
     import cv2
