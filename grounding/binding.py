@@ -12,7 +12,7 @@ from operator import and_
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
-from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import act, ready, together
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import rows
@@ -31,8 +31,8 @@ class Binding:
     tried: int
 
     def apply(self, program: Program) -> Program:
-        """The program bound."""
-        return program.bound(self.nodes)
+        """The program bound; what has a node keeps it."""
+        return replace(program, steps=tuple(_bound(step, self.nodes, partly=True) for step in program.steps))
 
 
 def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
@@ -101,6 +101,8 @@ class _Search:
         self.furthest = Failure(Code.UNBOUND, expected="a step", actual="none")
         self.reached = -1
         self.uses: dict[Key, set[tuple[str, int]]] = {}
+        # Several nodes of a class may be named by their ids alone: `fixed` of `bind` has but one of them.
+        self.own = {(ref.name, ref.node) for ref in program.objects() if ref.node is not None}
         for step in program.steps:
             for position, ref in enumerate(step.objects):
                 self.uses.setdefault(ref.key, set()).add((step.action, position))
@@ -147,7 +149,8 @@ class _Search:
             mask = self.candidates[key] = self._candidates(key, world)
         agent = world.agents[min(agent_number, len(world.agents) - 1)]
         room_name = _room(key, world)
-        others = (node for other, node in nodes.items() if not room_name or other[0] == room_name)
+        every = {*self.own, *((other[0], node) for other, node in nodes.items())}
+        others = (node for name, node in every if not room_name or name == room_name)
         taken = {home.index[node] for node in others if node in home.index}
         room = rows.agent_room(world, agent)
         rank = {
@@ -189,6 +192,10 @@ def _room(key: Key, world: World) -> str:
     return key[0] if world.home.knowledge.is_room(key[0]) else ""
 
 
-def _bound(step: Step, nodes: dict[Key, int]) -> Step:
-    objects = tuple(ObjectRef(ref.name, ref.instance, nodes[ref.key]) for ref in step.objects)
+def _bound(step: Step, nodes: dict[Key, int], partly: bool = False) -> Step:
+    """A step with nodes for what has none; where objects may go without (`partly`) they are left as they are."""
+    objects = tuple(
+        ref if ref.node is not None or (partly and ref.key not in nodes) else replace(ref, node=nodes[ref.key])
+        for ref in step.objects
+    )
     return Step(step.action, objects, step.agent, step.joins, step.modifiers)

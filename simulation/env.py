@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, overload
 
 from hearth.kb.knowledge import Knowledge
@@ -141,7 +141,8 @@ class Env:
             alone = self._read(instructions)
             instructions = {alone.agent: alone}
         items = sorted(instructions.items())
-        tried = {number: self._read(given) for number, given in items if given is not None}
+        # The number decides who acts: a step read from text that names no agent says 0, and is kept as who did it.
+        tried = {n: replace(self._read(given), agent=n) for n, given in items if given is not None}
         after, failures = engine.tick(before, tried, self.rules)
         self._world = after
         self._last_actions |= {number: LastAction(step, failures.get(number)) for number, step in tried.items()}

@@ -30,7 +30,7 @@ def fill(partial: PartialEnvironment, least: int, most: int, some: int) -> None:
     home = base.home
     ids, rooms, bears, contents, kinds = home.ids, base.room, home.bears, home.contents, base.kind
     taken, seats = partial.taken, base.seats
-    node_id = FIRST_FILLED_ID + len(partial.nodes)
+    node_id = max(FIRST_FILLED_ID, partial.first_id) + len(partial.nodes)
     for _ in range(wanted):
         name, i, relation = choices[bisect_right(weights, random() * total)]
         if ids[i] in taken or (seats >> i & 1 and _is_full(partial, i, ids[i])):

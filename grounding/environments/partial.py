@@ -25,6 +25,7 @@ class PartialEnvironment:
         room: room's node id by node id, for what is not where the base has it.
         where: (relation, node id) a node stands ON or INSIDE, for what was placed here.
         movable: the random things, which come last.
+        first_id: the first new node's; those after it are numbered on.
         made_bed: whether beds stay made, as by the rule of that name.
     """
 
@@ -43,6 +44,8 @@ class PartialEnvironment:
         self.taken: set[int] = set()
         self.load: dict[int, int] = {}
         self.movable: list[Movable] = []
+        # Homes with added things, and the release's graphs, have ids beyond 1000 of their own.
+        self.first_id = max(FIRST_ADDED_ID, base.whole.ids[-1] + 1)
 
     def home(self) -> Home:
         """The home with all changes."""
@@ -57,9 +60,9 @@ class PartialEnvironment:
         room = self.base.room[index] if index >= 0 else -1
         return self.base.home.ids[room] if room >= 0 else -1
 
-    def add(self, name: str, room: int, first_id: int = FIRST_ADDED_ID) -> int:
+    def add(self, name: str, room: int) -> int:
         """A new node of a class in a room, in its default states; gives its id."""
-        node_id = first_id + len(self.nodes)
+        node_id = self.first_id + len(self.nodes)
         category, properties, states = self.base.kind(name)
         node = Node(node_id, name, category, properties, states)
         self.nodes.append(node)

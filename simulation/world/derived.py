@@ -164,10 +164,11 @@ def _twice(node_id: int) -> HearthError:
 def _append(home: Home, nodes: Sequence[Node]) -> None:
     """Append nodes that belong after all others; what is alike in several of them is entered once for all."""
     first = len(home.ids)
+    known = len(home.index)
     home.ids += [node.id for node in nodes]
     home.index.update(zip(home.ids[first:], range(first, len(home.ids)), strict=True))
-    if len(home.index) < first - home.absent.bit_count() + len(nodes):
-        raise _twice(next(node.id for i, node in enumerate(nodes, first) if home.index[node.id] != i))
+    if len(home.index) < known + len(nodes):
+        raise _twice(_repeated(home, first))
     home.nodes += nodes
     home.classes += [node.class_name for node in nodes]
     for rows in home.rows:
@@ -194,6 +195,16 @@ def _append(home: Home, nodes: Sequence[Node]) -> None:
                 home.properties[prop] = home.properties.get(prop, 0) | mask
         _enter(states, mask, node.states)
     home.states = tuple(states)
+
+
+def _repeated(home: Home, first: int) -> int:
+    """The first id from index `first` on that a node before it, which is not absent, has too."""
+    seen = {node_id for i, node_id in enumerate(home.ids[:first]) if not home.absent >> i & 1}
+    for node_id in home.ids[first:]:
+        if node_id in seen:
+            return node_id
+        seen.add(node_id)
+    raise LookupError(first)
 
 
 def _enter(states: list[int], bit: int, names: Iterable[str]) -> None:

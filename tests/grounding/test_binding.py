@@ -5,6 +5,7 @@ import pytest
 from hearth.grounding.binding import Binding, bind
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
 from hearth.simulation.world.home import Home
@@ -86,3 +87,15 @@ def test_a_room_may_serve_as_another_too(knowledge, rooms, nodes):
     lines = "".join(f"[Walk] <{room.replace(' ', '> ')}\n" for room in rooms)
     found = bind(parse_program(f"Rooms\n\n\n\n{lines}")[0], world)
     assert (list(found.nodes.values()) if isinstance(found, Binding) else None) == nodes
+
+
+def test_nodes_named_by_their_ids_alone_stay_apart(knowledge):
+    """As steps of `legal` name them: without instances, two of one class have one name."""
+    one, other = (ObjectRef("keyboard", 0, node) for node in (10, 12))
+    steps = [Step("Walk", (one,)), Step("Touch", (one,)), Step("Walk", (other,)), Step("Grab", (other,))]
+    given = Program("Work", "", tuple(steps))
+    found = bind(given, world(knowledge))
+    assert isinstance(found, Binding) and found.apply(given) == given
+    free = Step("Walk", (ObjectRef("keyboard", 1),))
+    taken = bind(given.with_steps([*steps, free]), world(knowledge))
+    assert isinstance(taken, Failure) and taken.code is Code.UNBOUND and taken.tick == 4

@@ -16,9 +16,10 @@ from hearth.homes.lint import lint
 from hearth.kb import grammar
 from hearth.kb.loading.load import default, load
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Edge, Node
+from hearth.schemas.graph import Edge, Node, from_release
 from hearth.schemas.literals import Literal
 from hearth.schemas.syntax import parse_program
+from hearth.schemas.vocabulary import FIRST_ADDED_ID
 from hearth.simulation.engine import run
 from hearth.simulation.holds import holds
 from hearth.simulation.world.edit import extended
@@ -231,6 +232,30 @@ def test_who_puts_back_takes_from_a_place(knowledge):
         assert execution.executable and program_node(environment) != 4
     taken = read("Phone\nIt.\n\n\n[Find] <phone> (1)\n[Grab] <phone> (1)\n", knowledge)
     assert {program_node(sample(taken, flat, seed)[0]) for seed in range(5)} == {4}
+
+
+@pytest.mark.parametrize("own", [(1000,), (1000, 1001, 2000), (2500,)])
+def test_homes_whose_own_ids_reach_those_of_new_nodes(knowledge, maple, own):
+    """As every home has to which something was added, and every graph of the release."""
+    fridge = maple.by_class["fridge"].bit_length() - 1
+    apples = [Node(node_id, "apple", "Food", ("EATABLE", "GRABBABLE"), ("CLEAN",)) for node_id in own]
+    home = extended(maple, apples, [Edge(apple.id, "INSIDE", maple.ids[fridge]) for apple in apples])
+    program = read("Laptop\nIt.\n\n\n[Walk] <cup> (1)\n[Walk] <laptop> (1)\n[Touch] <laptop> (1)\n", knowledge)
+    environment, execution = sample(program, home, 0)
+    assert execution.executable and len(set(environment.world.home.ids)) == len(environment.world.home.ids)
+    assert environment.world.home.ids[-1] > max(2000, *own)
+    assert set(own) <= set(environment.world.home.ids)
+
+
+def test_a_program_of_the_release_in_its_own_graph(knowledge, real_data):
+    with zipfile.ZipFile(real_data / "activityprograms-sample.zip") as archive:
+        name = min(name for name in archive.namelist() if "/init_and_final_graphs/" in name and name.endswith(".json"))
+        graph = from_release(orjson.loads(archive.read(name))["init_graph"])
+        text = archive.read(name.replace("init_and_final_graphs", "executable_programs")[:-5] + ".txt").decode()
+    home = Home.from_graph(graph, "own", knowledge)
+    assert home.ids[-1] >= FIRST_ADDED_ID
+    environment, execution = sample(read(text, knowledge).unbound(), home, 0)
+    assert execution.executable and environment.world.home.ids[-1] > home.ids[-1]
 
 
 def test_a_thing_that_belongs_nowhere_is_named(maple, tmp_path):

@@ -119,6 +119,13 @@ def test_movable_things_come_whether_other_new_nodes_are_in_order_or_not(last):
     assert new.rows == fresh.rows and new.classes == fresh.classes
 
 
+def test_an_id_that_is_there_twice_is_named():
+    """Also where it is below another of the new ones, which `extended` lays down without sorting."""
+    cup = node(5, "cup", properties=["GRABBABLE"])
+    with pytest.raises(HearthError, match="two nodes have the id 5"):
+        extended(kitchen(), movable=[Movable(cup, "ON", 3, 0, 8)])
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -84,6 +84,16 @@ def test_an_episode_from_a_file_is_the_recorded_one(episodes, file):
         assert other.verify() is None
 
 
+def test_what_the_second_agent_did_by_text_is_the_same_when_read(tmp_path):
+    env = Env(knowledge=default())
+    env.reset("maple", 2, seed=1)
+    tick = env.step({0: "[Walk] <fridge> (1)", 1: "[Walk] <sofa> (1)"})
+    assert [step.agent for step in tick.instructions.values()] == [0, 1]
+    write(tmp_path / "one.jsonl", [Episode.of(env)])
+    (back,) = read(tmp_path / "one.jsonl", default())
+    assert back == Episode.of(env) and back.verify() is None
+
+
 def test_what_is_written_is_the_same_in_every_process(file):
     """Another process with another hash seed finds each digest again, and writes the same bytes."""
     program = (
