@@ -82,14 +82,19 @@ class SelfCritical(Settings):
     batch: int = 32
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedTextModel:
-        """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS."""
+        """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS.
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if there is nothing for validation.
+        """
+        checked = corpus.checked()
         if self.start:
             model = TextModel.restored(load(Path(self.start)))
         else:
             first = replace(how, folder=how.folder / "first") if how.folder else how
             model = TextModel().fit(corpus, first, seen)
         rewarded = lcs_reward if self.reward == "lcs" else sim_reward(corpus)
-        task = rewarding(model, corpus.train, rewarded, self.batch, lambda: model.score(corpus.validation),
+        task = rewarding(model, corpus.train, rewarded, self.batch, lambda: model.score(checked),
                          [self.reward, self.batch, corpus.facts])  # fmt: skip
         go_on(model, task, how, seen)
         return model
