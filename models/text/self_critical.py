@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import torch
 
 from hearth.grounding.binding import nearest
-from hearth.models.checkpoint import Checkpoint, load
+from hearth.models.checkpoint import Checkpoint
 from hearth.models.data import requests
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.first_phase import first_phase
 from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.writer import Numbers, Writer, beam, sample
@@ -73,7 +73,7 @@ class SelfCritical(Settings):
 
     Attributes:
         reward: `lcs`, or `lcs+sim`.
-        start: folder of a checkpoint of the first phase; if empty, the first phase is trained here, too.
+        start: a checkpoint of the first phase, its folder or its name; if empty, the first phase is trained here, too.
         batch: examples in a batch.
     """
 
@@ -85,11 +85,11 @@ class SelfCritical(Settings):
         """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS.
 
         Raises:
-            HearthError: BAD_ARGUMENT, if there is nothing for validation.
+            HearthError: BAD_ARGUMENT, if there is nothing for validation; errors of `first_phase`.
         """
         checked = corpus.checked()
         if self.start:
-            model = TextModel.restored(load(Path(self.start)))
+            model = first_phase(self.start, corpus)
         else:
             first = replace(how, folder=how.folder / "first") if how.folder else how
             model = TextModel().fit(corpus, first, seen)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 import hearth
+from hearth.models.checkpoint import load, save
+from hearth.models.data import facts_of
 from hearth.models.fit_model import fit
+from hearth.models.model_registry import recorded
 from hearth.models.predicting import predict_part
 from hearth.models.sketches import sketch_tables
 from hearth.models.text import text_tables
@@ -65,3 +69,34 @@ def test_of_another_dataset_nothing_is_known(crossed, nearest, tmp_path):
     manifest = other / "manifest.json"
     manifest.write_bytes(manifest.read_bytes().replace(b'"bytes": ', b'"bytes": 1', 1))
     assert predict_part(str(nearest), other, tmp_path / "p.jsonl", OTHER, "test")
+
+
+@pytest.fixture(scope="module")
+def network(crossed, tmp_path_factory):
+    out = tmp_path_factory.mktemp("network")
+    fit("mle-composed", crossed.folder, out, "activities", ["hidden=16", "vector=16"], how=HOW)
+    return out
+
+
+@pytest.mark.parametrize("name", ["pg-lcs", "consensus"])
+def test_what_a_training_goes_on_from_is_checked(name, crossed, network, nearest, tmp_path):
+    with pytest.raises(HearthError, match="of these programs"):
+        fit(name, crossed.folder, tmp_path, OTHER, [f"start={network}"], how=HOW)
+    with pytest.raises(HearthError, match="no network that writes programs of texts"):
+        fit(name, crossed.folder, tmp_path, "activities", [f"start={nearest}"], how=HOW)
+
+
+def test_a_network_is_named_as_in_the_list_of_models(crossed, tmp_path):
+    facts = fit("consensus", crossed.folder, tmp_path, OTHER, ["start=mle-composed"], how=HOW)
+    assert facts["split"] == OTHER and facts["digest"] == facts_of(crossed)["digest"]
+
+
+def test_what_a_model_was_first_trained_on_counts(crossed, network, tmp_path):
+    """The second phase by another split does not hide the first one."""
+    fit("pg-lcs", crossed.folder, tmp_path, "activities", [f"start={network}"], how=HOW)
+    first = recorded(tmp_path)["first_phase"]
+    assert first["split"] == "activities" and first["digest"] == facts_of(crossed)["digest"]
+    made = load(tmp_path)
+    save(replace(made, trained={**made.trained, "split": OTHER}), tmp_path)
+    with pytest.raises(HearthError, match="by the split `activities`"):
+        predict_part(str(tmp_path), crossed.folder, tmp_path / "p.jsonl", OTHER, "test")
