@@ -21,7 +21,7 @@ from hearth.models.text.first_phase import first_phase
 from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.writer import Numbers, Writer, beam, sample
-from hearth.models.training import Task, train
+from hearth.models.training import Task, train, weights_digest
 from hearth.schemas.program import Program
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.simulation.engine import run
@@ -95,7 +95,7 @@ class SelfCritical(Settings):
             model = TextModel().fit(corpus, first, seen)
         rewarded = lcs_reward if self.reward == "lcs" else sim_reward(corpus)
         task = rewarding(model, corpus.train, rewarded, self.batch, lambda: model.score(checked),
-                         [self.reward, self.batch, corpus.facts])  # fmt: skip
+                         [self.reward, self.batch, corpus.facts, weights_digest(model.writer)])  # fmt: skip
         go_on(model, task, how, seen)
         return model
 
