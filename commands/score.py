@@ -106,7 +106,8 @@ def program(
     """All scores: LCS and parsability; for rows with an environment also executability, final-graph F1 and goal.
 
     Rows are those of `score lcs`. The environment is a row's `graph` (a scene graph's file, relative to FILE's folder)
-    or `home` (a name), or else --graph. The goal is what the reference achieves there. Steps may be natural language.
+    or `home` (a name), or else --graph. The goal is what the reference achieves there,
+    or a row's own (`goal`), which the signature counts. Steps may be natural language.
 
     \b
     Example:
@@ -134,13 +135,19 @@ def _show(scored: Sequence[Scored], how: Options, by: str | None, as_json: bool)
     if as_json:
         output.emit(_program_json(scored, how, summary, {"by": groups} if by else {}))
     else:
-        _print_program(how, summary, by, groups)
+        _print_program(_signatures(scored, how), summary, by, groups)
+
+
+def _signatures(scored: Sequence[Scored], how: Options) -> dict[str, str]:
+    from hearth.scoring.evaluate import given_goal, signatures
+
+    return signatures(how, sum(given_goal(each.pair) is not None for each in scored))
 
 
 def _program_json(
     scored: Sequence[Scored], how: Options, summary: Summary, groups: dict[str, dict[str, Summary]]
 ) -> dict[str, Any]:
-    from hearth.scoring.evaluate import METRICS, signatures
+    from hearth.scoring.evaluate import METRICS
 
     rows = [
         {
@@ -154,7 +161,7 @@ def _program_json(
         for each in scored
     ]
     parts = {key: {name: _summary_json(group) for name, group in found.items()} for key, found in groups.items()}
-    return {"signatures": signatures(how), **_summary_json(summary), **parts, "scores": rows}
+    return {"signatures": _signatures(scored, how), **_summary_json(summary), **parts, "scores": rows}
 
 
 def _summary_json(summary: Summary) -> dict[str, Any]:
@@ -162,9 +169,7 @@ def _summary_json(summary: Summary) -> dict[str, Any]:
     return {**counts, "mean": summary.means, "errors": summary.errors, "failed_at": summary.failed_at}
 
 
-def _print_program(how: Options, summary: Summary, by: str | None, groups: dict[str, Summary]) -> None:
-    from hearth.scoring.evaluate import signatures
-
+def _print_program(signed: dict[str, str], summary: Summary, by: str | None, groups: dict[str, Summary]) -> None:
     output.table(["score", "mean", "95% from", "to"], [[name, *found] for name, found in summary.means.items()])
     if by:
         print()
@@ -175,7 +180,7 @@ def _print_program(how: Options, summary: Summary, by: str | None, groups: dict[
         print()
         output.table(["first failure", "programs"], summary.errors.items())
     print(f"\n{_sentence(summary)}")
-    for signature in signatures(how).values():
+    for signature in signed.values():
         print(signature)
 
 

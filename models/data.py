@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 SHARE = 10
 """One of how many activities of `train` are for validation where the split has no part of that name."""
 
+FEWEST = 20
+"""Validation examples of a split by home: where its activities leave fewer, and fewer than one in `SHARE`, they are of
+`train`."""
+
 AT_ONCE = 250
 """Requests in memory at a time, with their worlds."""
 
@@ -74,6 +78,7 @@ class Corpus:
         train: to learn from.
         validation: to decide when to stop; their activities are not in `train`.
         shared: what of `train` is in the split's test parts, too; see `shared`.
+        instead: how many examples the split's own part `validation` has of other activities, where they were too few.
     """
 
     dataset: Dataset
@@ -81,6 +86,22 @@ class Corpus:
     train: tuple[Example, ...]
     validation: tuple[Example, ...]
     shared: Mapping[str, int] = field(default_factory=dict)
+    instead: int | None = None
+
+    def checked(self, *, sketches: bool = False) -> tuple[Example, ...]:
+        """The examples for validation, of which there are some.
+
+        Args:
+            sketches: some have a sketch, too.
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if there are none: nothing would tell which weights are the best.
+        """
+        if not any(any(each.keep) or not sketches for each in self.validation):
+            message = f"split `{self.split}` has no {'sketches' if sketches else 'examples'} for validation"
+            suggestion = "train on a dataset of more activities, or a model that needs no validation, such as `nearest`"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=suggestion)
+        return self.validation
 
     def of_sketches(self) -> Corpus:
         """The same with sketches in the place of programs; programs without one are left out."""
@@ -95,6 +116,8 @@ class Corpus:
         """What a checkpoint records of it."""
         counts = {"train": len(self.train), "validation": len(self.validation)}
         facts = {**facts_of(self.dataset), "split": self.split, **counts}
+        if self.instead is not None:
+            facts["validation_of_train_instead_of"] = self.instead
         return {**facts, **{f"{name}_of_test": count for name, count in self.shared.items()}}
 
 
@@ -155,7 +178,8 @@ def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 
     """The training and validation examples of a split.
 
     Where the split has no part `validation`, one in ten activities of `train` is taken out for it. Of a split by
-    activity or home, validation has no activities of `train`; one that came with its source is as it is.
+    activity or home, validation has no activities of `train`; where that leaves hardly any, those of `train` are taken
+    here, too. One that came with its source is as it is.
 
     Raises:
         HearthError: UNKNOWN_ID, if the split has no training examples.
@@ -163,11 +187,13 @@ def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 
     train = examples(dataset, split, "train", originals=originals, sketches=sketches)
     common = shared(train, _read(dataset, split, "test", originals, sketches))
     validation = _read(dataset, split, "validation", originals, sketches)
-    if validation:
-        activities = {each.activity for each in train} if split in RULES else set()
-        validation = tuple(each for each in validation if each.activity not in activities)
-        return Corpus(dataset, split, train, validation, common)
-    return Corpus(dataset, split, *carved(train, seed), common)
+    if not validation:
+        return Corpus(dataset, split, *carved(train, seed), common)
+    activities = {each.activity for each in train} if split in RULES else set()
+    others = tuple(each for each in validation if each.activity not in activities)
+    if len(others) < FEWEST and len(others) * SHARE < len(validation):
+        return Corpus(dataset, split, *carved(train, seed), common, len(others))
+    return Corpus(dataset, split, train, others, common)
 
 
 def shared(train: Sequence[Example], test: Sequence[Example]) -> dict[str, int]:
@@ -209,11 +235,17 @@ _SEEN: dict[str, Callable[[Example], Any]] = {
 
 
 def carved(train: Iterable[Example], seed: int) -> tuple[tuple[Example, ...], tuple[Example, ...]]:
-    """Training examples parted by activity: what stays, and what is for validation."""
-    parts: tuple[list[Example], list[Example]] = ([], [])
-    for each in train:
-        parts[derive(seed, "validation", each.activity) % SHARE == 0].append(each)
-    return tuple(parts[0]), tuple(parts[1])
+    """Training examples parted by activity: what stays, and what is for validation.
+
+    Of two activities or more, each of the two has at least one.
+    """
+    given = tuple(train)
+    drawn = {each.activity: derive(seed, "validation", each.activity) for each in given}
+    order = sorted(drawn, key=lambda name: (drawn[name] % SHARE, drawn[name], name))
+    count = sum(number % SHARE == 0 for number in drawn.values())
+    taken = {*order[: min(max(count, 1), len(order) - 1)]} if order else set()
+    stays = tuple(each for each in given if each.activity not in taken)
+    return stays, tuple(each for each in given if each.activity in taken)
 
 
 def requests(

@@ -62,7 +62,8 @@ def fit(
         found = corpus(dataset, split, originals=originals, seed=training.seed, sketches=sketches)
         found = found.of_sketches() if of_sketches and not of_films else found
         checkpoint = model.fit(found, training, seen).checkpoint()
-        facts = {**found.facts, "sketches": sketches, "seed": training.seed, **checkpoint.trained}
+        own = {**found.facts, "sketches": sketches, "seed": training.seed}
+        facts = {**own, **checkpoint.trained, **own}  # a model that reads a trained one has the facts of that, too
     save(replace(checkpoint, model=name, trained=facts), out)
     shutil.rmtree(out / STATE, ignore_errors=True)
     return facts

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -278,9 +279,9 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
     Raises:
         HearthError: there is none, it is broken or of another version, or the extra is not installed.
     """
-    if str(model) in MODELS and not MODELS[str(model)].learns and not Path(model).exists():
+    if _learns_nothing(model):
         return str(model), _class(MODELS[str(model)])()
-    folder = TRAINED / str(model) if str(model) in trained_names() else Path(model)
+    folder = _folder(model)
     if str(model) in MODELS and not folder.exists():
         message = f"`{model}` has not been trained"
         command = MODELS[str(model)].by or f"model train {model} DATASET"
@@ -295,3 +296,20 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
         return checkpoint.model, _class(entry).restored(checkpoint)
     except MISFITS as error:
         raise misfit(folder, error) from error
+
+
+def recorded(model: str | Path) -> Mapping[str, Any]:
+    """What the checkpoint of a model that can be restored records of its training; nothing of one without.
+
+    Raises:
+        HearthError: there is none, or it is broken.
+    """
+    return {} if _learns_nothing(model) else load(_folder(model)).trained
+
+
+def _learns_nothing(model: str | Path) -> bool:
+    return str(model) in MODELS and not MODELS[str(model)].learns and not Path(model).exists()
+
+
+def _folder(model: str | Path) -> Path:
+    return TRAINED / str(model) if str(model) in trained_names() else Path(model)

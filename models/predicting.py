@@ -21,6 +21,7 @@ from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.interface import Steps
 from hearth.models.model_registry import MODELS, restore
 from hearth.models.protocols import Decoded, Trained
+from hearth.models.seen_programs import refuse_seen
 from hearth.repair.completion import complete
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -149,11 +150,14 @@ def predict_part(
         seen: reports progress.
 
     Raises:
-        HearthError: no such checkpoint, dataset, split or part.
+        HearthError: no such checkpoint, dataset, split or part; BAD_ARGUMENT, if the model was trained by another split
+            on programs of the part, which is not of training.
     """
     dataset = Dataset.open(folder)
     name, trained = restore(model)
     names = _asked(dataset, split, part, originals)
+    if split and not part.startswith("train"):
+        refuse_seen(model, dataset, split, names)
     text = MODELS[name].input == "text"
     if is_constrained and text:  # models of sketches do so by themselves
         found = constrained(trained, dataset, names, beam, sketches, seen)

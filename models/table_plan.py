@@ -66,7 +66,7 @@ DRAWN_SETTINGS = ("dropout=0.2", "batch=64")
 
 
 RECIPE = "recipe.json"
-"""The file that says how a checkpoint of a table was trained."""
+"""The file that says how a checkpoint of a table is trained, or was."""
 
 
 class Needed(NamedTuple):
@@ -211,13 +211,15 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
     folder, rate, epochs = needed.folder(out), *needed.pace
     how = {"epochs": epochs, "minutes": minutes, "rate": rate, "seed": needed.seed}
     recipe = {"digest": needed.recipe(out, facts_of(Dataset.open(dataset))["digest"], how)}
-    if (folder / NAME).exists():
-        if (folder / RECIPE).exists() and json.loads(read_input(folder / RECIPE)) == recipe:
-            rmtree(folder / STATE, ignore_errors=True)  # of a training that was stopped at its very end
-            return False
-        rmtree(folder)  # of another dataset, other settings, or a model before it that was trained anew
+    same = (folder / RECIPE).exists() and json.loads(read_input(folder / RECIPE)) == recipe
+    if same and (folder / NAME).exists():
+        rmtree(folder / STATE, ignore_errors=True)  # of a training that was stopped at its very end
+        return False
+    if not same:  # of another dataset, other settings, or a model before it that was trained anew
+        rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_json(folder / RECIPE, recipe)  # first: a training that is stopped goes on only by the same recipe
     fit(needed.name, dataset, folder, needed.split, needed.settings(out), how=how, seen=seen)
-    write_json(folder / RECIPE, recipe)
     return True
 
 

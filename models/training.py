@@ -106,7 +106,7 @@ def train(task: Task[B], how: Training, seen: Seen = unseen) -> Outcome:
         seen: reports progress: epochs done, and their greatest number.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if the loss is not a number.
+        HearthError: BAD_ARGUMENT, if a loss or a score is not a number.
     """
     device()  # one thread: sums are the same on any number of cores, and small networks are faster
     optimiser = torch.optim.AdamW([each for each in task.module.parameters() if each.requires_grad], lr=how.rate)
@@ -121,7 +121,7 @@ def train(task: Task[B], how: Training, seen: Seen = unseen) -> Outcome:
         loss = _epoch(task, how, optimiser, number)
         task.module.eval()
         with torch.no_grad():
-            score = float(task.validate())
+            score = _finite(float(task.validate()), f"the validation score of epoch {number}")
         epochs.append(Epoch(number, round(loss, 6), round(score, 6), rate, round(time.monotonic() - began, 3)))
         best = best_of(epochs)
         if best == number:
@@ -140,15 +140,20 @@ def _epoch(task: Task[B], how: Training, optimiser: torch.optim.Optimizer, numbe
     total, count = 0.0, 0
     for batch in task.batches(rng(how.seed, "batches", number)):
         loss = task.loss(batch)
-        if not math.isfinite(value := float(loss.detach())):
-            message = f"the loss of epoch {number} is {value}"
-            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="train with a lower rate")
+        value = _finite(float(loss.detach()), f"the loss of epoch {number}")
         optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(task.module.parameters(), how.clip)
         optimiser.step()
         total, count = total + value, count + 1
     return total / max(count, 1)
+
+
+def _finite(value: float, what: str) -> float:
+    """A number that is one: a score that is none would be neither better nor worse than any other."""
+    if not math.isfinite(value):
+        raise HearthError.of(Code.BAD_ARGUMENT, f"{what} is {value}", suggestion="train with a lower rate")
+    return value
 
 
 def best_of(epochs: Sequence[Epoch]) -> int:

@@ -18,7 +18,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.evaluate import BothLcs, Options, Reference, Scored, lcs_of, scored
+from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, scored
 from hearth.scoring.lines import steps_of
 from hearth.scoring.prediction_rows import Named
 from hearth.scoring.predictions import Pair, read_pairs
@@ -130,9 +130,10 @@ def _scored(
 
 
 def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
-    """A pair with its reference, and the fields for grouping."""
+    """A pair with its reference, and the fields for grouping, without a goal that its row brings along."""
     steps = program_of(case, bindings_of(case["bindings"])).steps
-    return replace(pair, reference=steps, more={**pair.more, "activity": case["activity_id"], "home": case["home"]})
+    given = {name: value for name, value in pair.more.items() if name not in GOALS}
+    return replace(pair, reference=steps, more={**given, "activity": case["activity_id"], "home": case["home"]})
 
 
 def _named(dataset: Dataset) -> Named:

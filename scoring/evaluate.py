@@ -31,7 +31,7 @@ from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
 GOALS = ("goal", "tl_goal", "vh_goal")
-"""Columns of rows that have a goal of their own."""
+"""Columns of rows that have a goal of their own; where a dataset is the reference, its goals are."""
 
 NO_LCS = LcsScore(0.0, 0.0, 0.0)
 
@@ -165,15 +165,15 @@ class Summary:
     failed_at: Mapping[int, int]
 
 
-def signatures(options: Options) -> dict[str, str]:
-    """The signature of each family of scores."""
+def signatures(options: Options, own: int = 0) -> dict[str, str]:
+    """The signature of each family of scores, where `own` predictions had a goal of their own."""
     return {
         **{f"lcs_{level}": lcs_signature(level, options.instances) for level in LEVELS},
         **{f"lcs_{level}_instances": lcs_signature(level, True) for level in ("step", "object")},
         "parsable": PARSABLE,
         "executable": running.SIGNATURE,
         "f1": f1_signature(options.match, options.scope),
-        "goal": goals.SIGNATURE,
+        "goal": goals.signature_of(own),
     }
 
 

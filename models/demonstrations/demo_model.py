@@ -75,15 +75,15 @@ class DemoModel(Settings):
         """Train on the demonstrations of training programs; those of validation decide when to stop.
 
         Raises:
-            HearthError: UNKNOWN_ID, if no training program with a sketch has a demonstration.
+            HearthError: UNKNOWN_ID, if no program with a sketch has a demonstration, of training or of validation.
         """
         there = Demonstrations.of(corpus.dataset)
         learned, checked = (
             [(each, name) for each, name in shown(there, part) if each.sketch]
             for part in (corpus.train, corpus.validation)
         )
-        if not learned:
-            message = "no training program with a sketch has a demonstration"
+        if not learned or not checked:
+            message = f"no {'validation' if learned else 'training'} program with a sketch has a demonstration"
             raise HearthError.of(Code.UNKNOWN_ID, message, suggestion="`make demos` makes some")
         pairs = [(Request(each.program_id), each.steps) for each in corpus.train]
         vocabulary = StepVocabulary.of(pairs, corpus.dataset.knowledge)

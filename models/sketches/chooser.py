@@ -76,7 +76,12 @@ class Chooser(Settings):
     text: bool = False
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedChooser:
-        """Learn from the executions of the training part; those of the validation part decide when to stop."""
+        """Learn from the executions of the training part; those of the validation part decide when to stop.
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if there are no sketches for validation.
+        """
+        corpus.checked(sketches=True)
         own = {each.description: each.request for each in corpus.train}
         words = Words.of(corpus.dataset.knowledge, frequent(own.values()) if self.text else ())
         habits = Habits.of(

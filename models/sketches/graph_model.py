@@ -52,12 +52,16 @@ class GraphModel(Settings):
     constrained: bool = True
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedGraphModel:
-        """Learn from the executions of the training part; those of the validation part decide when to stop."""
-        knowledge = corpus.dataset.knowledge
+        """Learn from the executions of the training part; those of the validation part decide when to stop.
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if there are no sketches for validation.
+        """
+        checked, knowledge = corpus.checked(sketches=True), corpus.dataset.knowledge
         words = Words.of(knowledge)
         actions = tuple(sorted(name for name, action in knowledge.actions.items() if action.executed))
         learn = list(self._rows(corpus, corpus.train, self.programs, how.seed, words, actions))
-        check = list(self._rows(corpus, corpus.validation, self.programs // 8 + 1, how.seed, words, actions))
+        check = list(self._rows(corpus, checked, self.programs // 8 + 1, how.seed, words, actions))
         torch.manual_seed(how.seed)
         network = self.network(words, actions)
 

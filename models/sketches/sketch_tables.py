@@ -17,6 +17,7 @@ from hearth.models.interface import Request, Steps
 from hearth.models.model_registry import MODELS, restore
 from hearth.models.predicting import predict
 from hearth.models.scored_rows import Entrant, Row, scored_rows
+from hearth.models.seen_programs import refuse_seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
@@ -90,7 +91,8 @@ def table(
         seen: reports progress.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if the table is unknown, or no model of 5.4 or 5.5 writes its sketches.
+        HearthError: BAD_ARGUMENT, if the table is unknown, no model of 5.4 or 5.5 writes its sketches, or a model was
+            trained by another split on test programs.
     """
     if number not in TABLES:
         raise HearthError.of(Code.BAD_ARGUMENT, f"no table `{number}` of programs from sketches",
@@ -105,6 +107,8 @@ def table(
     if not test or not train:
         raise HearthError.of(Code.UNKNOWN_ID, f"no sketches in the parts of split `{split}`", file=str(dataset.folder))
     names = [each.execution_id for each in test]
+    for model in models:
+        refuse_seen(model, dataset, split, names)
     methods = [*_yardsticks(train, test, seed), *_trained(models, beam)]
     if number == "5.4":
         methods = _after(_texts(models, beam, dataset, names), methods)

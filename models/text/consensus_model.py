@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hearth.models.checkpoint import Checkpoint, load
+from hearth.models.checkpoint import Checkpoint
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.first_phase import first_phase
 from hearth.models.text.retrieve_edit import RetrieveEdit, TrainedRetrieveEdit, consensus
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.text_scorer import TextScorer
@@ -28,7 +28,8 @@ class Consensus(Settings):
     """How programs are weighed.
 
     Attributes:
-        start: folder of a trained `mle-composed`, or `desc2sketch` for sketches; if empty, one is trained here, too.
+        start: a trained `mle-composed`, or `desc2sketch` for sketches, its folder or its name; if empty, one is trained
+            here, too.
         draws: programs that the network draws for a text, beside its best one.
         share: of the weight that the neighbours' programs have; the network's have the rest.
     """
@@ -38,9 +39,13 @@ class Consensus(Settings):
     share: float = 0.5
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedConsensus:
-        """Train the network, unless it is trained, and remember the training texts and programs."""
+        """Train the network, unless it is trained, and remember the training texts and programs.
+
+        Raises:
+            HearthError: errors of `first_phase`, and of the network's training.
+        """
         if self.start:
-            writer = TextModel.restored(load(Path(self.start)))
+            writer = first_phase(self.start, corpus)
         else:
             writer = TextModel().fit(corpus, how, seen)
         return TrainedConsensus(replace(self, start=""), writer, RetrieveEdit().fit(corpus, how))

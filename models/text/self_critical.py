@@ -8,20 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import torch
 
 from hearth.grounding.binding import nearest
-from hearth.models.checkpoint import Checkpoint, load
+from hearth.models.checkpoint import Checkpoint
 from hearth.models.data import requests
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.first_phase import first_phase
 from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.writer import Numbers, Writer, beam, sample
-from hearth.models.training import Task, train
+from hearth.models.training import Task, train, weights_digest
 from hearth.schemas.program import Program
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.simulation.engine import run
@@ -73,7 +73,7 @@ class SelfCritical(Settings):
 
     Attributes:
         reward: `lcs`, or `lcs+sim`.
-        start: folder of a checkpoint of the first phase; if empty, the first phase is trained here, too.
+        start: a checkpoint of the first phase, its folder or its name; if empty, the first phase is trained here, too.
         batch: examples in a batch.
     """
 
@@ -82,15 +82,20 @@ class SelfCritical(Settings):
     batch: int = 32
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedTextModel:
-        """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS."""
+        """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS.
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if there is nothing for validation; errors of `first_phase`.
+        """
+        checked = corpus.checked()
         if self.start:
-            model = TextModel.restored(load(Path(self.start)))
+            model = first_phase(self.start, corpus)
         else:
             first = replace(how, folder=how.folder / "first") if how.folder else how
             model = TextModel().fit(corpus, first, seen)
         rewarded = lcs_reward if self.reward == "lcs" else sim_reward(corpus)
-        task = rewarding(model, corpus.train, rewarded, self.batch, lambda: model.score(corpus.validation),
-                         [self.reward, self.batch, corpus.facts])  # fmt: skip
+        task = rewarding(model, corpus.train, rewarded, self.batch, lambda: model.score(checked),
+                         [self.reward, self.batch, corpus.facts, weights_digest(model.writer)])  # fmt: skip
         go_on(model, task, how, seen)
         return model
 

@@ -60,7 +60,12 @@ class TextModel(Settings):
     longest: int = 40
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedTextModel:
-        """Train on the pairs of text and program by the likelihood of the true steps (thesis 4.3.1, first phase)."""
+        """Train on the pairs of text and program by the likelihood of the true steps (thesis 4.3.1, first phase).
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if there is nothing for validation.
+        """
+        checked = corpus.checked()
         pairs = [(each.request, each.steps) for each in corpus.train]
         vocabulary = StepVocabulary.of(pairs, corpus.dataset.knowledge)
         torch.manual_seed(derive(how.seed, "weights"))
@@ -69,7 +74,7 @@ class TextModel(Settings):
         model = TrainedTextModel(self, vocabulary, closed, writer, {})
         data = [(request, encoded(steps, vocabulary, self.longest)) for request, steps in pairs]
         task = likelihood(writer, data, model.read, self.batch, self.longest,
-                          lambda: model.score(corpus.validation), [asdict(self), corpus.facts])  # fmt: skip
+                          lambda: model.score(checked), [asdict(self), corpus.facts])  # fmt: skip
         model.trained.update(train(task, how, seen).record())
         return model
 

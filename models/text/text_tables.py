@@ -11,6 +11,7 @@ from hearth.models.interface import Steps
 from hearth.models.model_registry import restore
 from hearth.models.predicting import completed
 from hearth.models.scored_rows import Entrant, Row, scored_rows
+from hearth.models.seen_programs import refuse_seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring import baselines
@@ -47,12 +48,15 @@ def table(
         seed: of yardsticks and intervals.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if there is no such table; errors of `restore` and `examples`.
+        HearthError: BAD_ARGUMENT, if there is no such table, or a model was trained by another split on test programs;
+            errors of `restore` and `examples`.
     """
     if number not in TABLES:
         message = f"no table `{number}` of programs from texts"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"there are {', '.join(TABLES)}")
     test = sorted(examples(dataset, split, "test", originals=True), key=lambda each: each.executions[0])
+    for model in models:
+        refuse_seen(model, dataset, split, [each.executions[0] for each in test])
     entrants = [*_yardsticks(dataset, split, test, seed), *_trained(models, test, beam)]
     if repaired:
         entrants += [_completed(dataset, each, test) for each in entrants if each.of == "ours"]

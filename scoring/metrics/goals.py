@@ -15,6 +15,12 @@ from hearth.simulation.world.world import World
 
 SIGNATURE = signature("goal", level="program", empty=1)
 
+
+def signature_of(own: int) -> str:
+    """The signature where so many rows of predictions had a goal of their own, not the reference's."""
+    return signature("goal", level="program", empty=1, own=own) if own else SIGNATURE
+
+
 LASTING = ("ON", "INSIDE", *HANDS)
 """Relations of goals made from an execution; CLOSE and FACING describe only the character's position."""
 

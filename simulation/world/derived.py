@@ -164,10 +164,10 @@ def _twice(node_id: int) -> HearthError:
 def _append(home: Home, nodes: Sequence[Node]) -> None:
     """Append nodes that belong after all others; what is alike in several of them is entered once for all."""
     first = len(home.ids)
-    known = len(home.index)
+    before = len(home.index)
     home.ids += [node.id for node in nodes]
     home.index.update(zip(home.ids[first:], range(first, len(home.ids)), strict=True))
-    if len(home.index) < known + len(nodes):
+    if len(home.index) < before + len(nodes):
         raise _twice(_repeated(home, first))
     home.nodes += nodes
     home.classes += [node.class_name for node in nodes]

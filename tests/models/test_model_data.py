@@ -13,7 +13,7 @@ import hearth
 from hearth import cli
 from hearth.datasets.format.sketch_choice import sketches_query
 from hearth.datasets.format.stored_cases import stored_cases
-from hearth.models.data import carved, corpus, examples, of_new_titles, requests, shared
+from hearth.models.data import Corpus, carved, corpus, examples, of_new_titles, requests, shared
 from hearth.models.interface import Request
 from hearth.models.predicting import write
 from hearth.schemas.diagnostics import HearthError
@@ -89,6 +89,53 @@ def test_carving_by_activity(eight):
     assert len(train) + len(validation) == 24
     assert not {e.activity for e in train} & {e.activity for e in validation}
     assert validation
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3, 8])
+def test_each_part_of_two_activities_or_more_has_one(eight, count):
+    for seed in range(120):
+        train, validation = carved(eight[:count], seed)
+        assert len(train) + len(validation) == count
+        assert bool(train) == (count > 0) and bool(validation) == (count > 1)
+
+
+def test_a_split_by_home_whose_validation_is_of_trained_activities_takes_some_of_training(parted, monkeypatch):
+    """Of `homes_1_4` some 4 % of the validation programs were of other activities: too few to choose weights by."""
+    from hearth.models import data
+
+    read = data._read
+    given = examples(parted, "homes_1_4", "train", originals=True)
+    for known, instead in ((given * 10, 1), ((), None)):
+
+        def seen(dataset, split, part, originals, sketches, known=known):
+            other = read(dataset, split, "validation", originals, sketches)
+            return (*known, *other[:1]) if part == "validation" else read(dataset, split, part, originals, sketches)
+
+        monkeypatch.setattr(data, "_read", seen)
+        found = corpus(parted, "homes_1_4")
+        assert found.validation and not {e.activity for e in found.train} & {e.activity for e in found.validation}
+        assert found.facts.get("validation_of_train_instead_of") == instead
+        assert (len(found.train) < len(given)) == (instead is not None)
+
+
+def test_without_examples_for_validation_no_weights_are_chosen(dataset, eight):
+    assert Corpus(dataset, "activities", eight, eight).checked() == eight
+    for validation, sketches in (((), False), (eight, True)):
+        with pytest.raises(HearthError, match="for validation"):
+            Corpus(dataset, "activities", eight, validation).checked(sketches=sketches)
+
+
+@pytest.mark.parametrize("model", ["text", "critical", "graph", "chooser"])
+def test_models_that_choose_weights_need_validation(model, dataset, eight):
+    from hearth.models.interface import Training
+    from hearth.models.sketches.chooser import Chooser
+    from hearth.models.sketches.graph_model import GraphModel
+    from hearth.models.text.self_critical import SelfCritical
+    from hearth.models.text.text_models import TextModel
+
+    settings = {"text": TextModel, "critical": SelfCritical, "graph": GraphModel, "chooser": Chooser}[model]()
+    with pytest.raises(HearthError, match="for validation"):
+        settings.fit(Corpus(dataset, "activities", eight, ()), Training(epochs=1))
 
 
 def test_unknown_parts_are_named(dataset):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
+
 import pytest
 
 from hearth.models.interface import Training
@@ -91,3 +93,23 @@ def test_both_phases_run_and_are_recorded(dataset):
     corpus = Corpus(dataset, "activities", known, known)
     model = SelfCritical(reward="lcs+sim", batch=4).fit(corpus, Training(epochs=1))
     assert model.trained["epochs"] == 1 and model.trained["first_phase"]["epochs"] == 1
+
+
+def test_a_stopped_training_does_not_go_on_from_another_start(dataset, eight, tmp_path, monkeypatch):
+    """The kept state has the weights of the start before."""
+    from hearth.models.data import Corpus
+    from hearth.models.text import self_critical
+    from hearth.models.text.text_models import TextModel
+
+    corpus = Corpus(dataset, "activities", eight, eight[:2])
+    settings = TextModel(hidden=16, vector=16, longest=4)
+    starts = [settings.fit(corpus, Training(epochs=1, rate=1e-6, seed=seed)) for seed in (0, 1)]
+    given = iter([starts[0], starts[0], starts[1]])
+    monkeypatch.setattr(self_critical, "first_phase", lambda start, corpus: deepcopy(next(given)))
+    done = []
+    for epochs in (1, 2, 2):  # stopped after one, went on, began anew
+        found = []
+        how = Training(epochs=epochs, folder=tmp_path)
+        self_critical.SelfCritical(start="x").fit(corpus, how, lambda number, _, found=found: found.append(number))
+        done.append(found)
+    assert done == [[1], [2], [1, 2]]

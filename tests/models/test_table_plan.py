@@ -8,6 +8,8 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.cli import app
+from hearth.models import table_plan
+from hearth.models.fit_model import STATE
 from hearth.models.model_registry import MODELS
 from hearth.models.table_plan import ONCE, PLANS, Plan, chosen, rows, train, training
 from hearth.pipelines.build import build
@@ -69,3 +71,20 @@ def test_a_table_of_what_is_trained_for_it(tmp_path):
     assert train(needed, data, tmp_path, 1) and not train(needed, data, tmp_path, 1)  # another budget
     found = {row.method: row for row in rows(plan, data, tmp_path, 2, 10)}
     assert found["nearest"].of == "ours" and found["nearest"].seeds == 1
+
+
+def test_a_training_that_was_stopped_goes_on_only_by_the_same_recipe(made, tmp_path, monkeypatch):
+    (needed,) = Plan("4.5", "people", "activities", ("nearest",)).needed(1)
+    state = needed.folder(tmp_path) / STATE
+    found = []
+
+    def stopped(*given, **more):
+        found.append(state.exists())
+        state.mkdir(parents=True, exist_ok=True)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(table_plan, "fit", stopped)
+    for minutes in (0, 0, 1):
+        with pytest.raises(KeyboardInterrupt):
+            train(needed, made.out, tmp_path, minutes)
+    assert found == [False, True, False]

@@ -118,6 +118,14 @@ def test_a_loss_that_is_not_a_number_is_an_error_with_a_remedy():
         train(replace(task, loss=lambda rows: task.loss(rows) * float("nan")), HOW)
 
 
+def test_a_score_that_is_not_a_number_is_an_error():
+    """No epoch is better than one of such a score, and none is worse."""
+    from hearth.models.training import train
+
+    with pytest.raises(HearthError, match="score of epoch 2 is nan"):
+        train(line([1.0, float("nan"), 2.0]), HOW)
+
+
 def test_a_state_is_one_file_so_that_its_weights_are_of_the_epochs_that_it_says(tmp_path):
     from safetensors import safe_open
 

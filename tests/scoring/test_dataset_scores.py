@@ -52,6 +52,18 @@ def written(path, rows):
     return path
 
 
+@pytest.mark.parametrize("column", ["goal", "tl_goal", "vh_goal"])
+def test_predictions_do_not_bring_their_own_goal(ds, tmp_path, column):
+    """The empty program reaches what holds at the start, which is not what the dataset's programs do."""
+    name = min(programs(ds))
+    plain, easy = (
+        score_dataset(ds, written(tmp_path / "mine.jsonl", [{"id": name, "predicted": [], **more}]))
+        for more in ({}, {column: "CLOSED(fridge)"})
+    )
+    assert [each.goal for each in easy] == [each.goal for each in plain]
+    assert summarise(easy).means["goal"] == summarise(plain).means["goal"]
+
+
 def test_the_dataset_s_own_programs_are_perfect(ds, tmp_path):
     rows = [{"id": name, "predicted": list(print_lines(program))} for name, program in programs(ds).items()]
     found = summarise(score_dataset(ds, written(tmp_path / "mine.jsonl", rows)))

@@ -125,8 +125,9 @@ def test_a_row_may_have_a_goal_of_its_own(score, tmp_path):
     goals = [{"goal": "GRAB(cup) then HOLDS(agent, cup)"}, {"goal": "OPEN(fridge) or WALK: 2"}, {"vh_goal": record}]
     lines = (json.dumps({"id": number, **row, **goal}) for number, goal in enumerate([*goals, {}]))
     (tmp_path / "rows.jsonl").write_text("\n".join(lines))
-    found = json.loads(score("program", "rows.jsonl", "--graph", "flat.json", "--json").stdout)["scores"]
-    assert [each["goal"] for each in found] == [1, 0, 1, 1]
+    found = json.loads(score("program", "rows.jsonl", "--graph", "flat.json", "--json").stdout)
+    assert [each["goal"] for each in found["scores"]] == [1, 0, 1, 1]
+    assert found["signatures"]["goal"] == "goal|level:program|empty:1|own:3|v1"
     (tmp_path / "rows.jsonl").write_text(json.dumps({"id": "a", **row, "goal": "GRAB(cup) then SHINY(cup)"}))
     refused = score("program", "rows.jsonl", "--graph", "flat.json").output
     assert "SHINY is not a known state" in refused and "goal of `a`, row 1:1:16" in refused
