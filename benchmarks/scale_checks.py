@@ -16,10 +16,10 @@ from scale import Watch, augmented, growth, run
 
 QUERIES = (
     "SELECT split, count(*) FROM programs GROUP BY 1 ORDER BY 1",
-    "SELECT title, count(*) FROM programs JOIN activities USING (activity_id) GROUP BY 1 ORDER BY 2 DESC, 1 LIMIT 3",
+    "SELECT a.title, count(*) FROM programs JOIN activities a USING (activity_id) GROUP BY 1 ORDER BY 2, 1 LIMIT 3",
     "SELECT home, avg(executable::int) FROM executions GROUP BY 1 ORDER BY 1",
     "SELECT part, count(DISTINCT program_id) FROM splits WHERE split = 'homes_1_4' GROUP BY 1 ORDER BY 1",
-    "SELECT action, count(*) FROM steps GROUP BY 1 ORDER BY 2 DESC, 1 LIMIT 3",
+    "SELECT action, count(*) FROM steps GROUP BY 1 ORDER BY 2 DESC, 1 LIMIT 9",
 )
 """Over programs, activities, executions, splits and steps."""
 

@@ -28,7 +28,7 @@ def first_phase(start: str, corpus: Corpus) -> TrainedTextModel:
     """
     model = restore(start)[1]
     if not isinstance(model, TrainedTextModel):
-        message = f"`{Path(start).name}` is no network that writes programs of texts"
+        message = f"`{Path(start).name}` does not write programs of texts"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="--set start=FOLDER of `mle-composed`")
     refuse_seen_tests(start, corpus.dataset, corpus.split)
     return model

@@ -1,6 +1,6 @@
 """Videos of executions, with start and end time of each step (thesis 2.4.1)."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from math import cos, radians, sin
@@ -303,8 +303,7 @@ def record(
             the scene graph after the tick.
 
     Raises:
-        HearthError: the camera does not exist, a modality or quality is unknown, width or height is odd, or a file
-            can't be written; complete files stay.
+        HearthError: no such camera, modality or quality, an odd size, or an unwritable file; complete files stay.
 
     Examples:
         >>> trajectory = hearth.trajectory_of(execution, graph, known)
@@ -336,10 +335,15 @@ def record(
     for writer in writers:
         writer.close()
     for step, tick in zip(steps, known, strict=True):
-        step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else None
+        step["visible"] = _share(seen[tick], wanted[tick])
     keyframes = [(picture, known[tick]) for tick, picture in last.items()]
     videos = tuple(writer.path for writer in writers)
     return Recorded(videos, len(track), steps, track, keyframes, files.close(fps, steps))
+
+
+def _share(seen: Collection[int], wanted: Collection[int]) -> float | None:
+    """The share of some things that were seen; None where there are none."""
+    return round(len(seen) / len(wanted), 4) if wanted else None
 
 
 def _graphs(trajectory: Trajectory) -> dict[int, Any]:

@@ -17,7 +17,7 @@ SIGNATURE = signature("goal", level="program", empty=1)
 
 
 def signature_of(own: int) -> str:
-    """The signature where so many rows of predictions had a goal of their own, not the reference's."""
+    """The signature, with the number of rows of predictions that had a goal of their own instead of the reference's."""
     return signature("goal", level="program", empty=1, own=own) if own else SIGNATURE
 
 

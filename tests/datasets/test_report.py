@@ -181,8 +181,8 @@ def test_rows_name_a_late_picture_that_is_not_from_above(pictured):
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
 def test_a_films_player_shows_the_step_that_the_film_shows(pictured):
     report, (_, other) = pictured
-    told = [each for path in report.glob("data/stories-*.js") for each in data(path) if each["id"] == other]
-    (film,) = (run["film"] for run in told[0]["runs"] if run["film"])
+    shown = [each for path in report.glob("data/stories-*.js") for each in data(path) if each["id"] == other]
+    (film,) = (run["film"] for run in shown[0]["runs"] if run["film"])
     moments = [0, 0.5, 1, 0.9999999, 4.4, 7.8457, 9, 30]
     asked = f"[{moments}.map((at) => HEARTH.filming.tickAt({json.dumps(film)}, at)),"
     asked += f" [0, 1, 2].map((tick) => HEARTH.filming.startOf({json.dumps(film)}, tick))]"
