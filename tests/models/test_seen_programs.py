@@ -82,7 +82,7 @@ def network(crossed, tmp_path_factory):
 def test_what_a_training_goes_on_from_is_checked(name, crossed, network, nearest, tmp_path):
     with pytest.raises(HearthError, match="of these programs"):
         fit(name, crossed.folder, tmp_path, OTHER, [f"start={network}"], how=HOW)
-    with pytest.raises(HearthError, match="no network that writes programs of texts"):
+    with pytest.raises(HearthError, match="does not write programs of texts"):
         fit(name, crossed.folder, tmp_path, "activities", [f"start={nearest}"], how=HOW)
 
 
