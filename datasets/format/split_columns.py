@@ -158,7 +158,7 @@ class SplitPrograms:
         """The place of a program.
 
         Raises:
-            KeyError: there is no such program.
+            KeyError: the program is unknown.
         """
         found = bisect_left(self.ids, program_id)
         if found == len(self.ids) or self.ids[found] != program_id:

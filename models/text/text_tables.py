@@ -48,7 +48,7 @@ def table(
         seed: of yardsticks and intervals.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if there is no such table, or a model was trained by another split on test programs;
+        HearthError: BAD_ARGUMENT, if the table is unknown, or a model was trained by another split on test programs;
             errors of `restore` and `examples`.
     """
     if number not in TABLES:

@@ -276,13 +276,13 @@ class Gait:
         own = self.actor.body.proportions
         start = Place(*self.actor.spot, self.actor.yaw)
         rest = feet_of(replace(self.actor.body_pose, posture="standing", stride=0.0, feet=None), own)
-        found = tuple([Print(-1.0, _in_world(start, foot))] for foot in feet_of(self.actor.body_pose, own))
+        found = tuple([Print(-1.0, in_world(start, foot))] for foot in feet_of(self.actor.body_pose, own))
         first = 0 if self._first_turn() > 0 else 1
         for number in range(self.count + 1):
             side = (number + first) % 2
             # A foot lands where the body is in the middle of the time for which it stands there.
             middle = self.place(min((number + 1.5) * self.step, self.moving))
-            found[side].append(Print(number * self.step, _in_world(middle, rest[side])))
+            found[side].append(Print(number * self.step, in_world(middle, rest[side])))
         return found[0], found[1]
 
     def _first_turn(self) -> float:
@@ -313,13 +313,13 @@ class Gait:
             heel = vigour * (HEEL * max(1 - 2.2 * swing, 0.0) + TOE * raised)
             if share < low:
                 heel = HEEL * vigour
-            return _local(place, Place(x, z, turn), lift, heel)
+            return local(place, Place(x, z, turn), lift, heel)
         pitch = 0.0
         later = prints[number + 1] if number + 1 < len(prints) else None
         if later is not None and time > later.start - 0.45 * self.step:
             ahead = hypot(later.place.x - here.place.x, later.place.z - here.place.z)
             pitch = HEEL * min(ahead / (0.35 * length), 1.0) * eased(1 - (later.start - time) / (0.45 * self.step))
-        return _local(place, here.place, 0.0, pitch)
+        return local(place, here.place, 0.0, pitch)
 
     def _sinks(self) -> Floats:
         """How low the hips are every `BOBBING` seconds: as low as feet that are far apart need, without haste."""
@@ -366,46 +366,14 @@ class Gait:
         return replace(self.actor, spot=(place.x, place.z), yaw=place.yaw, body_pose=pose)
 
 
-def _in_world(place: Place, foot: Foot) -> Place:
+def in_world(place: Place, foot: Foot) -> Place:
+    """Where a foot of a body at a place is."""
     c, s = cos(place.yaw * pi / 180), sin(place.yaw * pi / 180)
     return Place(place.x + foot.x * c + foot.z * s, place.z - foot.x * s + foot.z * c, place.yaw + foot.yaw)
 
 
-def _local(place: Place, foot: Place, lift: float, pitch: float) -> Foot:
+def local(place: Place, foot: Place, lift: float, pitch: float) -> Foot:
+    """A foot that is somewhere, in the frame of a body at a place."""
     c, s = cos(place.yaw * pi / 180), sin(place.yaw * pi / 180)
     dx, dz = foot.x - place.x, foot.z - place.z
     return Foot(dx * c - dz * s, dx * s + dz * c, lift, angle(place.yaw, foot.yaw), pitch)
-
-
-def planted(actor: Actor, feet: Actor) -> Actor:
-    """An actor whose feet are where another's are."""
-    pair = feet_of(feet.body_pose, feet.body.proportions)
-    places = [_in_world(Place(*feet.spot, feet.yaw), foot) for foot in pair]
-    here = Place(*actor.spot, actor.yaw)
-    right, left = (_local(here, at, foot.lift, foot.pitch) for at, foot in zip(places, pair, strict=True))
-    return replace(actor, body_pose=replace(actor.body_pose, feet=(right, left)))
-
-
-def stepping(one: Actor, other: Actor, share: float) -> tuple[Foot, Foot]:
-    """The feet, in the frame of `one` at present, of a body whose feet step to where another's are, one by one.
-
-    Args:
-        one: the actor now, anywhere between the start and `other`; its feet are those at the start.
-        other: the actor at the end.
-        share: of the whole motion.
-    """
-    here = Place(*one.spot, one.yaw)
-    starts = feet_of(one.body_pose, one.body.proportions)
-    ends = feet_of(other.body_pose, other.body.proportions)
-    there = Place(*other.spot, other.yaw)
-    found = []
-    for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        a, b = _in_world(here, start), _in_world(there, end)
-        lifted = min(max((share - 0.06 - 0.44 * number) / 0.42, 0.0), 1.0)
-        part = min(max((lifted - 0.15) / 0.7, 0.0), 1.0)
-        x, z = between((a.x, a.z), (b.x, b.z), eased(part))
-        far = hypot(b.x - a.x, b.z - a.z) + abs(angle(a.yaw, b.yaw)) / 300
-        raised = min(0.06, 0.3 * far + 0.004) * sin(pi * lifted) ** 0.7
-        lift = raised + start.lift + (end.lift - start.lift) * eased(part)
-        found.append(_local(here, Place(x, z, a.yaw + angle(a.yaw, b.yaw) * eased(part)), lift, 0.0))
-    return found[0], found[1]
