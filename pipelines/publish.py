@@ -63,9 +63,9 @@ def partitions(job: Job) -> Iterator[Partition]:
     """The parts of the stages before, each with the parts of its programs."""
     part_of = job.context.assignment.part_of
     for partition in input_partitions(job):
-        mine = [part_of(name) for name in _programs(partition.payload)]
-        named = dict(zip(_programs(partition.payload), mine, strict=True))
-        yield replace(partition, digest=value_digest([partition.digest, named]), payload=(partition.payload, mine))
+        mine = {name: part_of(name) for name in _programs(partition.payload)}
+        payload = partition.payload, [*mine.values()]
+        yield replace(partition, digest=value_digest([partition.digest, mine]), payload=payload)
 
 
 def _programs(paths: Iterable[str]) -> list[str]:

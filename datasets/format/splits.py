@@ -63,12 +63,11 @@ def groups(programs: SplitPrograms) -> NDArray[np.int32]:
     return np.array([find(root) for root in programs.root.tolist()], np.int32)
 
 
-def by_activity(programs: SplitPrograms) -> NDArray[np.int8]:
+def by_activity(programs: SplitPrograms, group: NDArray[np.int32]) -> NDArray[np.int8]:
     """(ids,) position in `PARTS` of each program's part in `activities`; `NOTHING` if it has none.
 
-    That is the part of its activity, unless a near duplicate is in a later part.
+    That is the part of its activity, unless a near duplicate, by its `groups`, is in a later part.
     """
-    group = groups(programs)
     last = np.full(len(programs.ids), NOTHING, np.int8)
     np.maximum.at(last, group, programs.part)
     return np.where(programs.part == last[group], programs.part, np.int8(NOTHING))
@@ -102,8 +101,8 @@ class SplitRows(Iterable[SplitRow]):
         own: Mapping[str, Mapping[str, str | None]] = _NONE,
     ) -> None:
         self._programs, self._runs, self._own = programs, runs, own
-        self._part = by_activity(programs)
         group = groups(programs)
+        self._part = by_activity(programs, group)
         self._decile = {split: _deciles(programs, group, seed, split) for split in _BY_HOME}
         self._held_out = held_out(runs, seed)
         self._number = {home: place for place, home in enumerate(runs.homes, 1)}

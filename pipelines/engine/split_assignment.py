@@ -37,7 +37,7 @@ def assignment(files: list[Path], seed: int) -> Assignment:
         seed: of the build.
     """
     programs = SplitPrograms.of(_programs(files, seed))
-    return Assignment(programs, splits.by_activity(programs))
+    return Assignment(programs, splits.by_activity(programs, splits.groups(programs)))
 
 
 def _programs(files: list[Path], seed: int) -> Iterator[SplitProgram]:

@@ -155,7 +155,7 @@ def test_of_near_duplicates_those_in_the_latest_part_stay():
         program("p5", "t u v", part="validation"),
     ]
     known = SplitPrograms.of(programs)
-    found = dict(zip(known.ids, map(part_name, by_activity(known)), strict=True))
+    found = dict(zip(known.ids, map(part_name, by_activity(known, groups(known))), strict=True))
     assert found == {"p1": None, "p1+1": None, "p2": None, "p3": "test", "p4": "train", "p5": "validation"}
 
 
