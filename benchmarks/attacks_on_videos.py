@@ -18,7 +18,7 @@ from hearth.models.films import film_files, film_input
 @cache
 def video() -> bytes:
     """A true film of two seconds, WebM."""
-    from hearth.rendering.film.video import Writer
+    from hearth.rendering.film.video_file import Writer
 
     with TemporaryDirectory() as folder:
         path = Path(folder) / "film.webm"

@@ -148,8 +148,8 @@ class Stayed:
 
 
 def filmed(camera: Camera) -> Picture:
-    """Pictures written as VP80."""
-    from hearth.rendering.film.video import Writer
+    """Pictures written as VP80, by a thread of its own."""
+    from hearth.rendering.film.video_file import Writer
 
     writer = Writer(Path(tempfile.mkdtemp()) / "bench.webm", camera.width, camera.height, 30)
     stayed = Stayed(camera, ())

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Image
-from hearth.rendering.film.video import Writer
+from hearth.rendering.film.video_file import Writer
 from hearth.schemas.rng import derive
 
 LARGER = 4

@@ -14,9 +14,9 @@ from hearth.rendering.arrays import Image
 from hearth.rendering.cameras.camera import Camera, follow, look_at, top_view
 from hearth.rendering.cameras.viewpoints import home_box, kept_inside, room_views
 from hearth.rendering.film.frame_files import FrameFiles, FrameTime
-from hearth.rendering.film.quiet import quiet
 from hearth.rendering.film.shots import Planner, Shots, room_at
 from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory
+from hearth.rendering.film.video_file import Writer
 from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.motion import Frame, Span, frames, spans
@@ -25,7 +25,6 @@ from hearth.rendering.rays.shot import Shot, shoot
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
-from hearth.schemas.libraries import library
 from hearth.schemas.program import Step
 from hearth.schemas.row_types import FilmedStepRow
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -42,69 +41,6 @@ def agent_of(view: str) -> tuple[str, int | None]:
     """A view's name and its agent: (`first`, 1) for `first.1`; None without an agent."""
     name, _, number = view.partition(".")
     return (name, int(number)) if name in (AUTO, FIRST, THIRD) and number.isdecimal() else (view, None)
-
-
-CODECS = {".webm": "VP80", ".mp4": "mp4v"}
-"""OpenCV's codec by file suffix; browsers play VP80."""
-
-
-class Writer:
-    """Writes a video file, which gets its name only when it is complete.
-
-    Raises:
-        HearthError: an odd width or height, of which codecs would cut a pixel; or the file can't be written.
-    """
-
-    def __init__(self, path: Path, width: int, height: int, fps: float) -> None:
-        cv2 = library("cv2")
-
-        if width % 2 or height % 2:
-            even = f"{width // 2 * 2} by {height // 2 * 2}"
-            raise HearthError.of(Code.NOT_RENDERED, f"a video can't have {width} by {height} pixels", suggestion=even)
-        codec = CODECS.get(path.suffix)
-        self.path, self.part = path, path.with_name(f".part{path.suffix}")
-        self.file: Any = None
-        if codec:
-            with quiet():
-                self.file = cv2.VideoWriter(str(self.part), cv2.VideoWriter.fourcc(*codec), fps, (width, height))
-        if self.file is None or not self.file.isOpened():
-            known = ", ".join(f"*{suffix}" for suffix in CODECS)
-            raise HearthError.of(Code.NOT_RENDERED, f"OpenCV can't write {path}", suggestion=f"a file {known}")
-
-    def add(self, picture: Image) -> None:
-        """Add a picture, (H, W, 3) in the order red, green, blue."""
-        self.file.write(np.ascontiguousarray(picture[..., ::-1]))
-
-    def close(self) -> None:
-        """Finish the file.
-
-        Raises:
-            HearthError: nothing was written, for example because the disk is full.
-        """
-        self.file.release()
-        if not self.part.exists() or not self.part.stat().st_size:
-            raise HearthError.of(Code.NOT_RENDERED, f"nothing could be written to {self.path}", file=str(self.path))
-        if self.path.suffix == ".webm":
-            _renumber(self.part)
-        self.part.replace(self.path)
-
-
-TRACK_IDS = (b"\x73\xc5\x88", b"\x63\xc5\x88")
-"""First bytes of Matroska's eight-byte TrackUID and TagTrackUID."""
-
-HEAD = 4096
-"""Bytes at the start of a file that contain them."""
-
-
-def _renumber(path: Path) -> None:
-    """Replace the random track number of a webm by 1, so that equal films are equal bytes."""
-    with path.open("r+b") as file:
-        head = file.read(HEAD)
-        for mark in TRACK_IDS:
-            at = head.find(mark)
-            if at >= 0:
-                file.seek(at + len(mark))
-                file.write((1).to_bytes(8, "big"))
 
 
 class FilmFrame(NamedTuple):

@@ -8,7 +8,7 @@ import pytest
 from hearth.models.films.film_files import film_file, is_film
 from hearth.models.films.film_input import read_masks, read_pictures
 from hearth.rendering.film.clips import RATE, SIZE
-from hearth.rendering.film.video import Writer
+from hearth.rendering.film.video_file import Writer
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

@@ -10,7 +10,7 @@ pytest.importorskip("open3d", exc_type=ImportError)
 
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at
-from hearth.rendering.film.video import Writer
+from hearth.rendering.film.video_file import Writer
 from hearth.rendering.scene.variation import PLAIN, drawn, scattered
 from hearth.rendering.scene.with_geometry import with_geometry
 from hearth.schemas.diagnostics import HearthError

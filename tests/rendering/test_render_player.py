@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hearth.rendering.film.player import page
-from hearth.rendering.film.video import Writer
+from hearth.rendering.film.video_file import Writer
 
 STEPS = [
     {"tick": 0, "steps": [], "start": 0.0, "end": 1.0},

@@ -53,7 +53,7 @@ def agree(page, server):
 
 def films(folder):
     pytest.importorskip("cv2")
-    from hearth.rendering.film.video import Writer
+    from hearth.rendering.film.video_file import Writer
 
     (folder / "films").mkdir(parents=True)
     made = [
