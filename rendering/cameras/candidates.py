@@ -36,6 +36,9 @@ CLOSEST, HANDS = 0.6, 0.4
 TINY = 0.28
 """Metres of height that the closest pictures show."""
 
+UPPER = 0.35
+"""Metres of height above the upper body that its pictures show."""
+
 AT_HAND = 0.2
 """Metres from a person's joints to what it holds or touches, at most."""
 
@@ -115,10 +118,13 @@ def _smallest(who: Target, objects: Sequence[Target], aspect: float) -> Target |
 
 
 def _closer(who: Target, objects: Sequence[Target], aspect: float) -> list[tuple[NDArray[np.float64], float]]:
-    """Closer views of the smallest of some objects near a person: middles, and metres that pictures are high there."""
+    """Closer views of the smallest of some objects near a person, or of the upper body: middles, and metres that
+    pictures are high there.
+    """
     target = _smallest(who, objects, aspect)
     if target is None:
-        return []
+        head, middle = who.points[who.points[:, 1].argmax()], who.points.mean(axis=0)
+        return [((head + middle) / 2, 2.0 * float(np.linalg.norm(head - middle)) + UPPER)]
     point, small = _point(target, who), _needed(target, aspect)
     head, hand = who.points[who.points[:, 1].argmax()], who.points[_nearest(who, point)]
     upper = max(float(np.linalg.norm(point - head)) + 0.35, small)

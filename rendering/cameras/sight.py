@@ -6,7 +6,7 @@ A picture's pixels decide in the end (`recognition`); this finds the cameras wor
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import radians, tan
 from typing import NamedTuple
 
@@ -37,6 +37,9 @@ BROAD, SHOULDERS = 0.17, 0.85
 HEAD, HEAD_FROM_TO = 0.2, (-0.1, 0.14)
 """What the head adds to a camera's worth, and metres of it below and above the highest joint."""
 
+AT_WORK, SKIN = 0.15, 0.06
+"""What hands at work add to a camera's worth, and metres of them before the middle of a palm."""
+
 GRID = (12, 9)
 """Rays by which a camera finds what is close in front of it."""
 
@@ -56,6 +59,7 @@ class Target:
         low, high: corners of the box around them.
         area: square metres that a camera sees of a person; 0 takes an object's box.
         least: the share of the picture that it has to cover.
+        hands: (k, 3) palms of a person that are at work.
     """
 
     node: int
@@ -64,13 +68,16 @@ class Target:
     high: Coordinates
     area: float
     least: float
+    hands: Coordinates = field(default_factory=lambda: np.zeros((0, 3)))
 
 
 def person(actor: Actor) -> Target:
     """An actor as a target."""
-    joints = actor.figure().joints().values()
-    points = np.array([actor.world((float(x), float(y), float(z))) for x, y, z in joints])
-    return Target(actor.node.id, points, points.min(axis=0) - 0.1, points.max(axis=0) + 0.1, SILHOUETTE, PERSON)
+    joints = {name: actor.world((float(x), float(y), float(z))) for name, (x, y, z) in actor.figure().joints().items()}
+    points = np.array(list(joints.values()))
+    low, high = points.min(axis=0) - 0.1, points.max(axis=0) + 0.1
+    hands = [joints[f"palm_{side}"] for side in "rl" if actor.body_pose.target(side) is not None]
+    return Target(actor.node.id, points, low, high, SILHOUETTE, PERSON, np.array(hands).reshape(-1, 3))
 
 
 def thing(scene: Scene, node: int) -> Target | None:
@@ -150,8 +157,23 @@ class Sight(NamedTuple):
 
 def sight(cameras: Sequence[Camera], target: Target, obstacles: Obstacles) -> Sight:
     """Estimate what cameras show of a target."""
+    inside, free, depth = _in_sight(cameras, target.points, obstacles, target.node)
+    seen = inside & free
+    count = np.maximum(inside.sum(axis=1), 1)
+    half = np.array([tan(radians(camera.fov) / 2) for camera in cameras])
+    picture = 4 * half * half * cameras[0].width / cameras[0].height * np.maximum(np.median(depth, axis=1), 0.3) ** 2
+    area = _areas(np.array([camera.eye for camera in cameras]), target) if target.area == 0 else target.area
+    return Sight(area * seen.mean(axis=1) / picture, seen.sum(axis=1) / count)
+
+
+def _in_sight(
+    cameras: Sequence[Camera], points: Coordinates, obstacles: Obstacles, node: int, skin: float = 0.0
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Coordinates]:
+    """(cameras, points) each: whether points on a node are in the picture, whether nothing else hides them, and how
+    many metres deep they are; what is `skin` metres before a point does not hide it.
+    """
     eyes = np.array([camera.eye for camera in cameras])
-    ways = target.points[None] - eyes[:, None]
+    ways = points[None] - eyes[:, None]
     local = np.einsum("cnk,ckj->cnj", ways, np.array([camera.pose[:3, :3] for camera in cameras]))
     half = np.array([tan(radians(camera.fov) / 2) for camera in cameras])[:, None]
     wide = half * cameras[0].width / cameras[0].height
@@ -159,12 +181,10 @@ def sight(cameras: Sequence[Camera], target: Target, obstacles: Obstacles) -> Si
     inside = (local[..., 2] > 0.1) & (np.abs(local[..., 1]) < half * depth) & (np.abs(local[..., 0]) < wide * depth)
     rays = np.concatenate((np.broadcast_to(eyes[:, None], ways.shape), ways), axis=2).reshape(-1, 6).astype(np.float32)
     far, ids = obstacles.cast(rays)
-    free = ((far > 0.985) | (ids == target.node)) & ~obstacles.behind_people(rays, target.node)
-    seen = inside & free.reshape(inside.shape)
-    count = np.maximum(inside.sum(axis=1), 1)
-    picture = 4 * (half * wide)[:, 0] * np.maximum(np.median(depth, axis=1), 0.3) ** 2
-    area = _areas(eyes, target) if target.area == 0 else target.area
-    return Sight(area * seen.mean(axis=1) / picture, seen.sum(axis=1) / count)
+    reached = far > 1 - np.maximum(skin / np.maximum(np.linalg.norm(rays[:, 3:], axis=1), 1e-6), 0.015)
+    whole = (ids == node) if not skin else np.False_
+    free = (reached | whole) & ~obstacles.behind_people(rays, node)
+    return inside, free.reshape(inside.shape), depth
 
 
 def _areas(eyes: Coordinates, target: Target) -> Coordinates:
@@ -217,7 +237,16 @@ def values(cameras: Sequence[Camera], who: Target, objects: Sequence[Target], ob
     total = 0.4 * np.mean(parts, axis=0) + 0.6 * enough
     # A person that fills some of the picture is seen better than one far away, and better with the head.
     total += 0.15 * np.minimum(found[0].share / 0.08, 1.0) * (found[0].unhidden > 0.6)
+    total += AT_WORK * _with_hands(cameras, who, obstacles)
     return Worth(total + HEAD * _with_head(cameras, who), enough)
+
+
+def _with_hands(cameras: Sequence[Camera], who: Target, obstacles: Obstacles) -> Coordinates:
+    """(cameras,) the share of a person's hands at work that is seen; 0 where none is at work."""
+    if not len(who.hands):
+        return np.zeros(len(cameras))
+    inside, free, _ = _in_sight(cameras, who.hands, obstacles, who.node, SKIN)
+    return np.asarray((inside & free).mean(axis=1))
 
 
 def _with_head(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:

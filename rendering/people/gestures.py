@@ -1,5 +1,6 @@
 """Gestures of actions: targets of hands and gaze, and stride."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hearth.schemas.program import Step
@@ -11,23 +12,22 @@ class Gesture:
     """The gesture of an action.
 
     Attributes:
-        hand: what the hands do (reaching.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`, `push`, `chest`,
+        hand: what the hands do (reaching.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`, `push`, `wear`,
             `wave`, or "" (nothing but carrying).
         grip: form of the hand that touches an object, of `GRIPS`.
         motion: of the hands while they act: `rub`, `keys`, or "" (none).
         seconds: for which they act.
-        both: whether both hands go to the target.
         gaze: `object`, `second`, or "" (ahead).
         stride: above 0 if the actor walks there.
         near: whether the actor must be within arm's reach of the object.
         about: index of the object that hands or gaze go to.
         rests: whether the object is a seat or bed to sit or lie on.
         asleep: whether the eyes stay closed until the next action.
+        tools: classes and kinds of what acts if a hand holds it.
         moves: metres by which the object slides away from the actor; below 0 towards it.
     """
 
     hand: str = ""
-    both: bool = False
     gaze: str = "object"
     stride: float = 0.0
     near: bool = False
@@ -37,6 +37,7 @@ class Gesture:
     grip: str = ""
     motion: str = ""
     seconds: float = 0.0
+    tools: Sequence[str] = ()
     moves: float = 0.0
 
 

@@ -21,6 +21,7 @@ from hearth.rendering.people.aims import (
     raised,
     thing_aim,
 )  # fmt: skip
+from hearth.rendering.people.body_places import PLACE_OF, at_body
 from hearth.rendering.people.body_pose import Hand, Held
 from hearth.rendering.people.gestures import Gesture
 from hearth.rendering.people.holding import hold_of_node
@@ -35,6 +36,9 @@ ABOVE = 0.12
 ACROSS = 0.1
 """Metres beyond the middle of the body from which on a hand reaches across it."""
 
+TEETH = "teeth"
+"""The part of the body that is washed at the mouth."""
+
 TILTED, DRINKING = 80.0, 38.0
 """Degrees by which a pouring vessel, and one at the mouth, are tilted."""
 
@@ -45,7 +49,7 @@ def gesturing(
     """The aims of the hands that act."""
     if step is None or not gesture.hand:
         return {}
-    acting = acting_side(step, graph, actor.node.id, held)
+    acting = _acting(gesture, actor, held, graph, places, step)
     named = [ref.node or 0 for ref in step.objects]
     about = named[min(gesture.about, len(named) - 1)] if named else 0
     makers = {
@@ -54,27 +58,27 @@ def gesturing(
         "mouth": lambda: _to_mouth(actor, held, acting, graph, places),
         "type": lambda: _typing(actor, about, places),
         "read": lambda: _reading(actor, held, acting, graph, places),
+        "wear": lambda: at_body(actor, node_of(graph, about).class_name if about else "", acting, held, "sheet"),
+        "wave": lambda: _waving(actor, acting),
         "rub": lambda: _rubbing(actor, held, acting, about, graph, places),
         "push": lambda: _pushing(actor, held, about, places),
         "object": lambda: _by_nearer_hand(
             lambda side: _touching(gesture, actor, side, about, graph, places), acting, held, bool(value(step, "hand"))
         ),
     }
-    if gesture.hand in makers:
-        return makers[gesture.hand]()
-    h, lower, sign = actor.body.height, raised(actor), SIDES[acting]
-    fixed: dict[str, Aim] = {
-        "chest": Aim((0.09 * sign, 0.7 * h + lower, 0.2), Hand("sheet", (-sign, 0.0, -0.4))),
-        "wave": Aim((sign * 0.3, 0.94 * h + lower, 0.2), Hand("flat", (0.0, 0.0, 1.0))),
-    }
-    if gesture.hand not in fixed:
-        return {}
-    aim = fixed[gesture.hand]
-    found = {acting: aim}
-    if gesture.both:
-        (x, y, z), (px, py, pz) = aim.palm, aim.hand.palm or (0.0, 0.0, 0.0)
-        found[OTHER[acting]] = Aim((-x, y, z), aim.hand._replace(palm=(-px, py, pz)))
-    return found
+    return makers[gesture.hand]()
+
+
+def _acting(
+    gesture: Gesture, actor: Actor, held: Mapping[str, int], graph: EnvironmentGraph, places: Places, step: Step
+) -> str:
+    """The acting hand: the one that holds a tool of the gesture, unless a hand is asked for."""
+    if gesture.tools and not value(step, "hand"):
+        for side, number in sorted(held.items(), reverse=True):
+            name = node_of(graph, number).class_name
+            if {*gesture.tools} & {name, *places.knowledge.ancestors(name)}:
+                return side
+    return acting_side(step, graph, actor.node.id, held)
 
 
 def _putting(actor: Actor, thing: int, side: str, graph: EnvironmentGraph, places: Places) -> dict[str, Aim]:
@@ -129,6 +133,12 @@ def _to_mouth(
     return {side: Aim(palm, Hand(hold.grip, (-sign, 0.0, -0.2), 20.0, Held(pitch=DRINKING)))}
 
 
+def _waving(actor: Actor, side: str) -> dict[str, Aim]:
+    """A hand raised beside the head."""
+    sign = SIDES[side]
+    return {side: Aim((sign * 0.3, 0.94 * actor.body.height + raised(actor), 0.2), Hand("flat", (0.0, 0.0, 1.0)))}
+
+
 def _typing(actor: Actor, target: int, places: Places) -> dict[str, Aim]:
     """Both hands above the keys."""
     pose = places.poses.get(target) or reachable(target, places)[0]
@@ -176,7 +186,7 @@ def _rubbing(
         return found
     pose = places.poses.get(target) or reachable(target, places)[0]
     if pose is None:
-        return {}
+        return _on_body(actor, held, side, target, graph, places)
     x, y, z = actor.local(nearest_point(actor, pose))
     center = actor.local(pose.box.center)
     way = unit(np.array(center) - (x, y, z) + np.array((0.0, -1e-3, 0.0)))
@@ -188,6 +198,19 @@ def _rubbing(
     tall = size[1] > 0.6
     above = hold.point[1] if tall else 0.5 * size[1] + 0.01
     return {side: Aim((x, y + above, z), Hand(hold.grip, hold.palm if tall else facing))}
+
+
+def _on_body(
+    actor: Actor, held: Mapping[str, int], side: str, target: int, graph: EnvironmentGraph, places: Places
+) -> dict[str, Aim]:
+    """A hand, or what it holds, on a part of one's own body; nothing if the target is none."""
+    name = node_of(graph, target).class_name if target else ""
+    if name == TEETH:
+        return _to_mouth(actor, held, side, graph, places)
+    if name not in PLACE_OF:
+        return {}
+    tool = hold_of_node(node_of(graph, held[side]), places, side).grip if side in held else "flat"
+    return at_body(actor, name, side, held, tool)
 
 
 def _pushing(actor: Actor, held: Mapping[str, int], target: int, places: Places) -> dict[str, Aim]:
@@ -219,7 +242,7 @@ def _touching(
     """A hand on an object: at its handle if the gesture opens it, else at the nearest point."""
     pose = places.poses.get(target) or reachable(target, places)[0]
     if pose is None:
-        return {}
+        return _on_body(actor, {}, side, target, graph, places)
     handle = front_point(places, node_of(graph, target), actor) if gesture.grip == "handle" else None
     point = np.array(actor.local(handle or nearest_point(actor, pose)))
     middle = np.array(actor.local(pose.box.center))

@@ -33,6 +33,9 @@ WALKING, RUNNING = 1.1, 1.8
 RELAX, RISE, REACH, BACK, HOLD = 0.3, 1.2, 0.6, 0.4, 0.5
 """Seconds, at least."""
 
+RUBBED = 0.06
+"""Metres to each side by which a hand rubs."""
+
 CARRIED = 1.2
 """Least height of the hands of who has got up, as a share of that of the hips."""
 
@@ -111,19 +114,22 @@ def acted(actor: Actor, gesture: Gesture) -> Segment:
         if not gesture.motion or not soft:
             return actor
         effort = effort_of(pose, actor.body.proportions)
-        right, left = (_at_work(pose.target(side), gesture.motion, time, soft, side) for side in "rl")
+        wide = RUBBED / 2 if pose.right and pose.left else RUBBED
+        right, left = (_at_work(pose.target(side), gesture.motion, time, soft, side, wide) for side in "rl")
         return replace(actor, body_pose=replace(pose, right=right, left=left, effort=effort))
 
     return Segment(gesture.seconds, at)
 
 
-def _at_work(at: Point | None, motion: str, time: float, soft: float, side: str) -> Point | None:
+def _at_work(at: Point | None, motion: str, time: float, soft: float, side: str, wide: float) -> Point | None:
     if at is None:
         return None
     x, y, z = at
     if motion == "keys":
         return x, y + 0.016 * soft * sin(2 * pi * (2.2 * time + (0.5 if side == "l" else 0.0))), z
-    return x + 0.06 * soft * sin(2 * pi * 0.9 * time), y, z + 0.025 * soft * sin(4 * pi * 0.9 * time)
+    # Two hands move against each other.
+    across = wide if side == "r" else -wide
+    return x + across * soft * sin(2 * pi * 0.9 * time), y, z + 0.025 * soft * sin(4 * pi * 0.9 * time)
 
 
 def motionless(actor: Actor, seconds: float) -> Segment:

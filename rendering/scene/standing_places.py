@@ -18,6 +18,9 @@ from hearth.schemas.graph import Box, Node, Spot
 NEAR, FAR = 0.32, 1.1
 """Preferred distance from an object, and distance from which it is hard to use, metres."""
 
+HIGH, NEAR_HIGH = 1.0, 0.46
+"""Metres above the floor of things such as switches, which arms reach straight ahead, and the distance from them."""
+
 SIDE = 0.26
 """Metres from a character's middle within which a door touches it."""
 
@@ -131,7 +134,7 @@ class FreeFloor:
         mine = self.centers[self.rooms == room] if (self.rooms == room).any() else self.centers
         if not len(mine):
             return
-        cost = _distances(mine, box, yaw) + _crowding(mine, taken) + self._hit(mine, opens)
+        cost = _distances(mine, box, yaw, self.level) + _crowding(mine, taken) + self._hit(mine, opens)
         if now is not None:
             cost += np.linalg.norm(mine - np.array(now), axis=1) * 0.08
         while np.isfinite(cost).any():
@@ -164,12 +167,13 @@ class FreeFloor:
         return np.where(near, 2.0, 0.0)
 
 
-def _distances(centers: NDArray[np.float64], box: Box, yaw: float | None) -> NDArray[np.float64]:
+def _distances(centers: NDArray[np.float64], box: Box, yaw: float | None, level: float) -> NDArray[np.float64]:
     """A cost for standing far from an object, or not in front of it."""
+    near = NEAR_HIGH if box.center[1] - level > HIGH else NEAR
     middle, half = np.array((box.center[0], box.center[2])), np.array((box.size[0], box.size[2])) / 2
     offset = centers - middle
     gap = np.linalg.norm(np.maximum(np.abs(offset) - half, 0), axis=1)
-    cost: NDArray[np.float64] = np.where(gap < NEAR, (NEAR - gap) * 1.5, (gap - NEAR) * 2.0)
+    cost: NDArray[np.float64] = np.where(gap < near, (near - gap) * 1.5, (gap - near) * 2.0)
     cost += np.where(gap > FAR, 4.0, 0.0)
     if yaw is not None:
         front = np.array((sin(radians(yaw)), cos(radians(yaw))))

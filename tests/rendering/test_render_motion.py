@@ -357,6 +357,15 @@ def test_who_reads_looks_to_the_room_and_not_at_a_shelf():
     assert FreeFloor.of([ROOM], [shelf]).outlook((0.0, 0.9), 0.0) == 0.0, "nothing is known of the floor"
 
 
+def test_one_stands_farther_from_a_switch_on_the_wall_than_from_a_low_thing():
+    def far(height):
+        spot = FreeFloor.of([ROOM], []).spot_for(Box((0, height, -1.9), (0.1, 0.1, 0.03)), 0.0, ROOM.id, None)
+        return spot[1] + 1.9 - 0.015
+
+    assert far(1.3) == pytest.approx(0.46, abs=0.06)
+    assert far(0.5) == pytest.approx(0.32, abs=0.06)
+
+
 def test_open_leaves_are_walked_around_and_closed_ones_are_not():
     opened = standing(2, "door", (0, 1, -0.4), (0.05, 2, 3.2), "OPEN")
     closed = standing(2, "door", (0, 1, -0.4), (0.05, 2, 3.2), "CLOSED")
