@@ -24,7 +24,7 @@ ME = Node(1, "character", "Characters", (), (), None)
 
 
 def worth(turn, aims):
-    """The worth of a camera that stands so many degrees beside the direction in which somebody looks."""
+    """The worth of a camera that stands `turn` degrees beside the direction in which somebody looks."""
     actor = Actor(ME, body_of(3), (0.0, 0.0), 0.0, 0.0, with_aims(BodyPose(), aims), 9)
     empty = scene_of(EnvironmentGraph((ROOM,), ()), default())
     drawn = Thing(1, "character", actor.figure(), actor.position, actor.yaw)
