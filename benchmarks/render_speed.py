@@ -32,7 +32,7 @@ from hearth.rendering.people.figure import Figure as Person
 from hearth.rendering.people.figure import figure_mesh
 from hearth.rendering.rays import threads
 from hearth.rendering.rays.incremental import incremental_frame
-from hearth.rendering.scene.instances import Thing, placed
+from hearth.rendering.scene.instances import Thing, forget
 from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.triangles import StaticThings
@@ -75,7 +75,7 @@ def measured(
 
     Every pass starts without a previous picture, as a film does.
     """
-    placed.cache_clear()
+    forget()
     figure_mesh.cache_clear()
     each: list[float] = []
     for _ in range(PASSES):

@@ -28,7 +28,7 @@ def _joints(figure: Figure) -> Joints:
     return joints(figure.body_pose, figure.body.proportions)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=16)
 def figure_mesh(figure: Figure) -> Mesh:
     """The mesh of a figure, in its own frame."""
     if figure.body.shape is None:

@@ -52,12 +52,27 @@ def own_mesh(thing: Thing) -> Mesh:
     return transform(mesh, tilted(thing.tilt)) if any(thing.tilt) else mesh
 
 
-@lru_cache(maxsize=1024)
 def placed(thing: Thing) -> Mesh:
     """A thing's mesh in world coordinates."""
+    return (_figures if isinstance(thing.model, Figure) else _things)(thing)
+
+
+def forget() -> None:
+    """Forget what `placed` keeps, to measure what it takes."""
+    _figures.cache_clear()
+    _things.cache_clear()
+
+
+def _in_world(thing: Thing) -> Mesh:
     mesh = own_mesh(thing)
     mesh = transform(mesh, rotation("y", thing.yaw), thing.position)
     return replace(mesh, uvs=_world_uvs(mesh, thing)) if thing.structural else mesh
+
+
+_things = lru_cache(maxsize=1024)(_in_world)
+
+_figures = lru_cache(maxsize=64)(_in_world)
+"""Of people, whose poses are seldom seen again: a film has hundreds, each of two megabytes."""
 
 
 def _world_uvs(mesh: Mesh, thing: Thing) -> Floats:
