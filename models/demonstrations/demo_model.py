@@ -20,6 +20,7 @@ from hearth.models.devices import device
 from hearth.models.filled import filled
 from hearth.models.films.clip_data import no_programs
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.seq2seq import WAYS
 from hearth.models.text.step_heads import ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import StepBatch, encoded, step_batch
@@ -70,6 +71,12 @@ class DemoModel(Settings):
     dropout: float = 0.3
     batch: int = 16
     longest: int = 12
+
+    def fitting(self) -> None:
+        """The encoder has two directions, and something to read."""
+        self.multiple("hidden", *WAYS)
+        if not (self.colours or self.masks or self.facts):
+            raise ValueError("the settings `colours`, `masks` and `facts` are false: one of them is true")
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedDemoModel:
         """Train on the demonstrations of training programs; those of validation decide when to stop.

@@ -35,6 +35,9 @@ class Memory(NamedTuple):
         return Memory(*(part[chosen] for part in self))
 
 
+WAYS = 2, "two directions share it"
+"""What the hidden state is a multiple of, and why."""
+
 State = tuple[torch.Tensor, ...]
 """What a decoder knows of programs so far; the rows of each tensor are the programs."""
 
