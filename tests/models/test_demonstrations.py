@@ -263,6 +263,8 @@ def test_5_5_has_sketches_of_demonstrations(pictured, models):
     assert rows["demo2sketch, planner"].of == "ours" and rows["nearest masks, planner"].of == "yardstick"
     assert "empty program" in rows and "sketch" not in rows["planner, given sketches"].scores
     with pytest.raises(HearthError, match=r"5\.5 needs a model"):
+        table("5.5", pictured, "activities", ["planner"], most=4)
+    with pytest.raises(HearthError, match=r"it takes planner, .*demo2sketch"):
         table("5.5", pictured, "activities", [models / "retrieve-sketch"], most=4)
 
 
