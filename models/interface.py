@@ -55,7 +55,8 @@ class Training:
     Attributes:
         seed: of all random choices.
         epochs: the most passes over the examples.
-        minutes: a budget: training ends after the epoch with which it is about used up; 0 for none.
+        minutes: a budget: training ends after the epoch with which it is about used up; 0 for none. A model that trains
+            several networks, or one in two phases, gives it to each.
         rate: of learning, at first; halved whenever `halve_after` epochs in a row were not the best.
         clip: the longest gradient.
         patience: the epochs in a row without a better validation score after which training ends; 0 for never.

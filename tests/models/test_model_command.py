@@ -109,6 +109,12 @@ def test_models_that_come_with_hearth_write_programs_at_once(name):
     assert "[SwitchOn] <television>" in program and "[Sit]" in program
 
 
+def test_the_budget_is_that_of_each_network():
+    """`test_self_critical` sees that both phases have it, `test_chooser` that both networks do."""
+    said = " ".join(call("train", "--help").output.replace("│", " ").split())
+    assert "each network that is trained" in said
+
+
 def test_unknown_settings(made, tmp_path):
     result = call("train", "nearest", made.out, "--out", tmp_path, "--set", "size=4")
     assert result.exit_code == 1 and "singular=0" in result.output
