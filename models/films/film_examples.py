@@ -12,7 +12,7 @@ from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
 from hearth.models.films.film_executions import shown_films
 from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.models.interface import Steps
-from hearth.models.trials import Trial
+from hearth.models.tried_programs import Trial
 from hearth.storage.files import value_digest
 
 if TYPE_CHECKING:

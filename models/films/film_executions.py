@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from hearth.models.interface import Steps
-from hearth.models.trials import Trial, trials
+from hearth.models.tried_programs import Trial, trials
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef

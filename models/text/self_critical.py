@@ -20,7 +20,7 @@ from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.writer import Numbers, Writer, beam, sample
 from hearth.models.training import Task, train, weights_digest
-from hearth.models.trials import trials
+from hearth.models.tried_programs import trials
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.storage.parallel import Seen, unseen
 

@@ -12,7 +12,7 @@ from hearth.models.films.film_readings import Reading
 from hearth.models.films.film_tables import COLUMNS, THESIS, WAYS
 from hearth.models.films.film_writer import TrainedFilmWriter
 from hearth.models.films.step_order import StepOrder
-from hearth.models.trials import Trial
+from hearth.models.tried_programs import Trial
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import DEFAULT
 

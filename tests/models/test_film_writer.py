@@ -33,7 +33,7 @@ from hearth.models.text.text_batches import encoded, step_batch
 from hearth.models.text.text_models import listed
 from hearth.models.text.writer import sample
 from hearth.models.training import train
-from hearth.models.trials import Trial
+from hearth.models.tried_programs import Trial
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.scoring.metrics.executability import executability

@@ -6,7 +6,7 @@ import pytest
 
 import hearth
 from hearth.models.data import examples
-from hearth.models.trials import Trial, trials
+from hearth.models.tried_programs import Trial, trials
 from hearth.schemas.program import Program
 from hearth.scoring.dataset_scores import score_steps
 from hearth.simulation.rules import DEFAULT, REPLAY
