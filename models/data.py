@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.codecs import program_of
@@ -79,6 +79,7 @@ class Corpus:
         validation: to decide when to stop; their activities are not in `train`.
         shared: what of `train` is in the split's test parts, too; see `shared`.
         instead: how many examples the split's own part `validation` has of other activities, where they were too few.
+        writes: what models learn to write from it.
     """
 
     dataset: Dataset
@@ -87,6 +88,7 @@ class Corpus:
     validation: tuple[Example, ...]
     shared: Mapping[str, int] = field(default_factory=dict)
     instead: int | None = None
+    writes: Literal["program", "sketch"] = "program"
 
     def checked(self, *, sketches: bool = False) -> tuple[Example, ...]:
         """The examples for validation, of which there are some.
@@ -109,7 +111,7 @@ class Corpus:
             tuple(replace(each, steps=each.sketch, keep=()) for each in part if each.sketch)
             for part in (self.train, self.validation)
         )
-        return replace(self, train=train, validation=validation)
+        return replace(self, train=train, validation=validation, writes="sketch")
 
     @property
     def facts(self) -> dict[str, Any]:

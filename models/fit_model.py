@@ -76,7 +76,9 @@ BOOLEANS = {"true": True, "yes": True, "1": True, "false": False, "no": False, "
 def _changed(name: str, changed: Sequence[str]) -> dict[str, Any]:
     """Settings as `NAME=VALUE`, the values of the types of their defaults."""
     defaults = settings_of(name)
-    kinds = {each.name: type(getattr(defaults, each.name)) for each in fields(defaults)}  # type: ignore[arg-type]
+    own = {each.name: getattr(defaults, each.name) for each in fields(defaults)}  # type: ignore[arg-type]
+    kinds = {key: type(value) for key, value in own.items()}
+    usual = f"it has {', '.join(f'{key}={value}' for key, value in own.items()) or 'no settings'}"
     found: dict[str, Any] = {}
     for text in changed:
         key, _, value = text.partition("=")
@@ -86,12 +88,11 @@ def _changed(name: str, changed: Sequence[str]) -> dict[str, Any]:
                 raise ValueError
             found[key] = BOOLEANS[value.lower()] if kind is bool else kind(value)
         except (ValueError, KeyError):
-            known = ", ".join(f"{key}={getattr(defaults, key)}" for key in kinds) or "no settings"
             message = f"`{text}` is not a setting of `{name}`"
-            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"it has {known}") from None
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=usual) from None
     if isinstance(defaults, Settings):
         try:
-            type(defaults).of(found)
+            type(defaults).of({**own, **found})
         except ValueError as error:
-            raise HearthError.of(Code.BAD_ARGUMENT, f"{error}", suggestion=f"other settings of `{name}`") from None
+            raise HearthError.of(Code.BAD_ARGUMENT, f"{error}", suggestion=usual) from None
     return found

@@ -18,8 +18,13 @@ Steps = tuple[Step, ...]
 LARGEST_SETTING = 10_000_000
 """The largest number that a checkpoint's settings may have."""
 
-MOST = {"layers": 64, "rounds": 64, "heads": 1024, "longest": 10_000}
-"""The largest numbers of settings that count what is done in turn."""
+MOST = {
+    **{"layers": 64, "rounds": 64, "heads": 1024, "longest": 10_000, "draws": 1_000, "sharpness": 100},
+    **dict.fromkeys(("d", "h", "hidden", "size", "vector", "width"), 10_000),
+    **dict.fromkeys(("dropout", "joined", "light", "share", "unnamed"), 1),
+}
+"""The largest numbers of some settings: what is done in turn, sizes whose squares are in memory, and shares. A greater
+`sharpness` makes weights 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +55,8 @@ class Training:
     Attributes:
         seed: of all random choices.
         epochs: the most passes over the examples.
-        minutes: a budget: training ends after the epoch with which it is about used up; 0 for none.
+        minutes: a budget: training ends after the epoch with which it is about used up; 0 for none. A model that trains
+            several networks, or one in two phases, gives it to each.
         rate: of learning, at first; halved whenever `halve_after` epochs in a row were not the best.
         clip: the longest gradient.
         patience: the epochs in a row without a better validation score after which training ends; 0 for never.
@@ -68,7 +74,10 @@ class Training:
     folder: Path | None = None
 
 
-POSITIVE = ("batch", "every", "passes", "width")
+POSITIVE = {
+    *("batch", "counts", "d", "draws", "every", "h", "heads", "hidden", "layers", "longest", "neighbours", "passes"),
+    *("size", "vector", "width"),
+}
 """Settings that are at least 1."""
 
 
@@ -87,7 +96,7 @@ class Settings:
 
         Raises:
             TypeError: a value is unknown or missing.
-            ValueError: a value is not of the kind of the default, or too large to build a network with.
+            ValueError: a value is not of the kind of the default, out of its bounds, or fits no other.
         """
         defaults = {each.name: each.default for each in fields(cls)}  # type: ignore[arg-type]
         for name, value in values.items():
@@ -95,11 +104,28 @@ class Settings:
                 raise ValueError(f"the setting `{name}` is {str(value)[:40]}")
             if isinstance(value, str) and value not in (allowed := _choices(cls, name) or (value,)):
                 raise ValueError(f"the setting `{name}` is {value[:40]}, not one of {', '.join(allowed)}")
-            if name in POSITIVE and not value:
-                raise ValueError(f"the setting `{name}` is 0")
-            if type(value) in (int, float) and not 0 <= value <= MOST.get(name, LARGEST_SETTING):
-                raise ValueError(f"the setting `{name}` is {value:g}, not 0 to {MOST.get(name, LARGEST_SETTING):,}")
-        return cls(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})
+            least, most = int(name in POSITIVE), MOST.get(name, LARGEST_SETTING)
+            if type(value) in (int, float) and not least <= value <= most:
+                raise ValueError(f"the setting `{name}` is {value:g}, not {least} to {most:,}")
+        made = cls(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})
+        made.fitting()
+        return made
+
+    def fitting(self) -> None:
+        """Look at settings that depend on each other, or on the form of a network; most have none.
+
+        Raises:
+            ValueError: with them no network can be made.
+        """
+
+    def multiple(self, name: str, of: int, reason: str) -> None:
+        """Look whether a setting is a multiple of a number, for `fitting`.
+
+        Raises:
+            ValueError: it is not.
+        """
+        if (value := getattr(self, name)) % of:
+            raise ValueError(f"the setting `{name}` is {value}, not a multiple of {of} ({reason})")
 
 
 def texts(values: Any) -> tuple[str, ...]:

@@ -298,6 +298,15 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
         raise misfit(folder, error) from error
 
 
+def named(model: str | Path) -> str:
+    """The name in the registry of a model that can be restored; of a newer version's the one that it has there.
+
+    Raises:
+        HearthError: there is none, or it is broken.
+    """
+    return str(model) if _learns_nothing(model) else load(_folder(model)).model
+
+
 def recorded(model: str | Path) -> Mapping[str, Any]:
     """What the checkpoint of a model that can be restored records of its training; nothing of one without.
 

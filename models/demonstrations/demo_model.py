@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
+from itertools import compress
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ from hearth.models.devices import device
 from hearth.models.filled import filled
 from hearth.models.films.clip_data import no_programs
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.seq2seq import WAYS
 from hearth.models.text.step_heads import ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import StepBatch, encoded, step_batch
@@ -71,11 +73,18 @@ class DemoModel(Settings):
     batch: int = 16
     longest: int = 12
 
+    def fitting(self) -> None:
+        """The encoder has two directions, and something to read."""
+        self.multiple("hidden", *WAYS)
+        if not (self.colours or self.masks or self.facts):
+            raise ValueError("the settings `colours`, `masks` and `facts` are false: one of them is true")
+
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedDemoModel:
         """Train on the demonstrations of training programs; those of validation decide when to stop.
 
         Raises:
-            HearthError: UNKNOWN_ID, if no program with a sketch has a demonstration, of training or of validation.
+            HearthError: UNKNOWN_ID, if no program with a sketch has a demonstration, of training or of validation;
+                DAMAGED_FILE, a demonstration does not fit its program.
         """
         there = Demonstrations.of(corpus.dataset)
         learned, checked = (
@@ -91,8 +100,8 @@ class DemoModel(Settings):
         torch.manual_seed(derive(how.seed, "weights"))
         model = TrainedDemoModel(self, vocabulary, known, self.network(vocabulary, known).to(device()))
         task = model.task(
-            [(model.see(there.pictures(name)), each) for each, name in learned],
-            [(model.see(there.pictures(name)), each) for each, name in checked],
+            [(model.see(there.pictures_of(each, name)), each) for each, name in learned],
+            [(model.see(there.pictures_of(each, name)), each) for each, name in checked],
             [asdict(self), corpus.facts, len(learned)],
         )
         counts = {"demonstrations": len(learned), "validated": len(checked)}
@@ -194,9 +203,10 @@ class TrainedDemoModel:
         )
 
     def done(self, example: Example) -> Done:
-        """What is done before each picture of an example's demonstration."""
-        steps = [self.vocabulary.numbers(step) or (0, 0, 0) for step in example.steps]
-        return Done((None, *example.keep), ((0, 0, 0), *steps))
+        """What is done before each picture of an example's demonstration: of several steps in a tick the first."""
+        first = [not place or not step.joins for place, step in enumerate(example.steps)]
+        steps = [self.vocabulary.numbers(step) or (0, 0, 0) for step in compress(example.steps, first)]
+        return Done((None, *compress(example.keep, first)), ((0, 0, 0), *steps))
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
         """It has no programs for requests.

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from hearth.models.films.film_arrays import CHANGES, LARGEST, MASKS, damaged, film_array
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.program import Program
 from hearth.storage.input_files import read_input
 from hearth.storage.names import inside
 
@@ -85,6 +86,18 @@ class Demonstrations:
         """
         file = self.files[execution]
         return arrays(read_input(inside(self.dataset.folder, file), LARGEST), file)
+
+    def pictures_of(self, example: Example, execution: str) -> Pictures:
+        """The pictures of an example's execution, to learn what is done between them.
+
+        Raises:
+            HearthError: DAMAGED_FILE, as of `pictures`, or if they are not one more than the ticks of the program.
+        """
+        found, ticks = self.pictures(execution), len([*Program(steps=example.steps).ticks()])
+        if (count := len(found.masks)) != ticks + 1:
+            message = f"it has {count:,} pictures of {ticks:,} ticks, not one at the start and one after each tick"
+            raise damaged(self.files[execution], message)
+        return found
 
 
 def read_pictures(path: Path) -> Pictures:

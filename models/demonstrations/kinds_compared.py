@@ -11,6 +11,7 @@ from hearth.models.data import Example, examples
 from hearth.models.demonstrations.demonstration_data import Demonstrations, shown
 from hearth.models.interface import Request, Steps
 from hearth.models.model_registry import MODELS, restore
+from hearth.models.table_models import refuse_others
 from hearth.models.text.text_words import words
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -68,8 +69,10 @@ def compared(
     """Compare the sketches of the test's programs that have a demonstration and a description.
 
     Raises:
-        HearthError: BAD_ARGUMENT, unless the models are of both kinds; UNKNOWN_ID, if no program has both.
+        HearthError: BAD_ARGUMENT, unless the models are of these two kinds, and of both; UNKNOWN_ID, if no program has
+            a sketch, a description and a demonstration.
     """
+    refuse_others("A.4", models)
     there = Demonstrations.of(dataset)
     found = examples(dataset, split, "test", originals=True, sketches=sketches)
     test = [(each, name) for each, name in shown(there, found) if each.sketch and each.description]

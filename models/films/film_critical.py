@@ -12,7 +12,7 @@ from hearth.models.films.film_examples import FilmExample, film_examples
 from hearth.models.films.film_writer import FilmWriter, TrainedFilmWriter
 from hearth.models.interface import Settings, Steps, Training
 from hearth.models.model_registry import restore
-from hearth.models.text.self_critical import SIM, Reward, go_on, lcs_reward, rewarding, runs
+from hearth.models.text.self_critical import SIM, Reward, go_on, lcs_reward, rewarding
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
@@ -64,6 +64,6 @@ class FilmCritical(Settings):
 
 
 def sim_reward(examples: Sequence[FilmExample], programs: Sequence[Steps]) -> list[float]:
-    """The LCS, and `SIM` for programs that run in the world in which their film begins."""
+    """The LCS, and `SIM` for programs that run in the environment of their film."""
     pairs = zip(lcs_reward(examples, programs), examples, programs, strict=True)
-    return [value + SIM * runs(steps, example.world) for value, example, steps in pairs]
+    return [value + SIM * example.trial.runs(steps) for value, example, steps in pairs]

@@ -12,7 +12,7 @@ from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
 from hearth.models.films.film_executions import shown_films
 from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.models.interface import Steps
-from hearth.simulation.world.world import World
+from hearth.models.tried_programs import Trial
 from hearth.storage.files import value_digest
 
 if TYPE_CHECKING:
@@ -26,13 +26,13 @@ class FilmExample(NamedTuple):
         execution: its id.
         clips: what a classifier says of its clips: all that a writer reads.
         steps: what is done, by the classes of its objects.
-        world: at its start.
+        trial: its execution, in which other programs may be tried.
     """
 
     execution: str
     clips: ClipProbabilities
     steps: Steps
-    world: World
+    trial: Trial
 
 
 def film_examples(dataset: Dataset, part: str, reader: TrainedSeenModel, most: int = 0) -> list[FilmExample]:
@@ -50,7 +50,7 @@ def film_examples(dataset: Dataset, part: str, reader: TrainedSeenModel, most: i
     clips = Clips.of(dataset, part, most)
     shown, read = shown_films(dataset, clips.executions), film_probabilities(dataset, clips, part, most, reader)
     return [
-        FilmExample(name, found, each.steps, each.world)
+        FilmExample(name, found, each.steps, each.trial)
         for name, found, each in zip(clips.executions, read, shown, strict=True)
     ]
 

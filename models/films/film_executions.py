@@ -6,12 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from hearth.datasets.format.cases import start_of
-from hearth.datasets.format.codecs import bindings_of, program_of
-from hearth.datasets.format.stored_cases import stored_cases
-from hearth.datasets.verify import opened
-from hearth.models.data import AT_ONCE
 from hearth.models.interface import Steps
+from hearth.models.tried_programs import Trial, trials
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef
@@ -22,24 +18,23 @@ if TYPE_CHECKING:
 
 
 class Shown(NamedTuple):
-    """A film's execution: its world at the start, its steps by the classes of their nodes, and its activity."""
+    """A film's execution, and its steps by the classes of their nodes."""
 
-    world: World
+    trial: Trial
     steps: Steps
-    activity: str
+
+    @property
+    def world(self) -> World:
+        """The world at the start."""
+        return self.trial.world
 
 
 def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
     """What the films of some executions show, in their order."""
-    homes, found = opened(str(dataset.folder))[1], {}
-    for first in range(0, len(executions), AT_ONCE):
-        for case in stored_cases(dataset, executions[first : first + AT_ONCE]):
-            world = start_of(case["environment"], case["home"], homes)
-            steps = program_of(case, bindings_of(case["bindings"])).steps
-            found[case["execution_id"]] = Shown(world, by_class(steps, world), case["activity_id"])
+    found = trials(dataset, executions)
     if missing := [name for name in executions if name not in found]:
         raise HearthError.of(Code.UNKNOWN_ID, f"a clip is of an unknown execution, `{missing[0][:80]}`")
-    return [found[name] for name in executions]
+    return [Shown(found[name], by_class(found[name].reference.steps, found[name].world)) for name in executions]
 
 
 def by_class(steps: Steps, world: World) -> Steps:

@@ -174,7 +174,7 @@ def _rows(
     for homes, wanted in HOMES.items():
         which = [number for number in range(len(films)) if kinds[number] in wanted]
         values = {name: [_mean([found[number][name] for found in scores]) for number in which] for name in COLUMNS}
-        found = by_group(values, [films[number].activity for number in which], seed)
+        found = by_group(values, [films[number].trial.activity for number in which], seed)
         means = [mean for each in scores if (mean := _mean([each[number]["mean"] for number in which])) is not None]
         yield FilmRow(method, of, homes, found, len(which), len(answers) if of == "ours" else 0, standard_error(means))
 

@@ -29,7 +29,7 @@ from hearth.models.films.film_examples import FilmExample, film_examples
 from hearth.models.films.seen_model import SeenModel, TrainedSeenModel
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.text.likelihood import likelihood, written
-from hearth.models.text.seq2seq import Seq2SeqBody
+from hearth.models.text.seq2seq import WAYS, Seq2SeqBody
 from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import InputBatch, encoded
@@ -83,6 +83,10 @@ class FilmWriter(Settings):
     longest: int = 40
     films: int = 0
     passes: int = 4
+
+    def fitting(self) -> None:
+        """The encoder has two directions."""
+        self.multiple("hidden", *WAYS)
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedFilmWriter:
         """Train on the films of `train` by the likelihood of the true steps; those of `validation` decide when to stop.

@@ -84,14 +84,9 @@ class MaskModel(Settings):
     light: float = 0.3
     films: int = 0
 
-    def __post_init__(self) -> None:
-        """A width that the norms divide.
-
-        Raises:
-            ValueError: it is another.
-        """
-        if self.width % GROUPS:
-            raise ValueError(f"the setting `width` is {self.width}, not a multiple of {GROUPS}")
+    def fitting(self) -> None:
+        """The norms divide the width."""
+        self.multiple("width", GROUPS, "the groups of its norms")
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedMaskModel:
         """Train on coloured films of `train`; the mean IoU of those of `validation` decides when to stop."""

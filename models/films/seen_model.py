@@ -22,7 +22,7 @@ from hearth.models.films.clip_data import Clips, Instruction, no_programs
 from hearth.models.films.film_readings import Reading, reading
 from hearth.models.films.predicted_masks import mask_predictor, predicted
 from hearth.models.films.seen_clips import SeenClips, joined, offsets, seen_clips
-from hearth.models.films.seen_network import FRAMES, SeenBatch, SeenNetwork, loss_of
+from hearth.models.films.seen_network import FRAMES, HEADS, SeenBatch, SeenNetwork, loss_of
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train, weights_digest
@@ -77,6 +77,10 @@ class SeenModel(Settings):
     films: int = 0
     context: bool = False
     masks: str = ""
+
+    def fitting(self) -> None:
+        """The heads divide the width."""
+        self.multiple("width", HEADS, "the heads of the transformer share it")
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedSeenModel:
         """Train on the clips of `train`; those of `validation` decide when to stop.

@@ -19,6 +19,9 @@ FRAMES = 9
 LOOKED_AT = slice(0, FRAMES, 2)
 """Frames in which the network looks at what is around the person: all would take twice as long."""
 
+HEADS = 4
+"""Of the attention among classes."""
+
 CHANNELS = (10, 24, 32)
 """Of a class and of the convolutions around the person."""
 
@@ -111,7 +114,7 @@ class SeenNetwork(nn.Module):
         nn.init.normal_(self.vector.weight, std=0.1)
         self.token = nn.Linear(times * NUMBERS + traits.shape[1] + vector, width)
         self.person = PersonNetwork(traits.shape[1], times, width, dropout)
-        layer = nn.TransformerEncoderLayer(width, 4, 2 * width, dropout, batch_first=True, norm_first=True)
+        layer = nn.TransformerEncoderLayer(width, HEADS, 2 * width, dropout, batch_first=True, norm_first=True)
         self.body = nn.TransformerEncoder(layer, layers, nn.LayerNorm(width), enable_nested_tensor=False)
         self.action = nn.Linear(width, actions)
         nn.init.zeros_(self.action.weight)

@@ -37,6 +37,10 @@ class HelpingPolicy(Settings):
     width: int = 128
     heads: int = 4
 
+    def fitting(self) -> None:
+        """The heads divide the width."""
+        self.multiple("width", self.heads, "its `heads` share it")
+
     def network(self, words: Words) -> nn.Module:
         """A network that has learnt nothing."""
         from hearth.models.helping import policy_networks

@@ -18,7 +18,7 @@ from hearth.models.devices import device
 from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training, texts
 from hearth.models.sketches.graph_inputs import NO_NODE, Batch, GraphInput, batched, graph_input, targets
-from hearth.models.sketches.graph_network import GraphNetwork, Memory, loss_of
+from hearth.models.sketches.graph_network import Change, GraphNetwork, Memory, loss_of
 from hearth.models.sketches.grounded import grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.training import Task, train
@@ -43,7 +43,7 @@ class GraphModel(Settings):
         constrained: whether only what can be done is written; the thesis's models are free.
     """
 
-    change: str = "residual"
+    change: Change = "residual"
     rounds: int = 2
     size: int = 32
     hidden: int = 128
@@ -85,8 +85,7 @@ class GraphModel(Settings):
 
     def network(self, words: Words, actions: Sequence[str]) -> GraphNetwork:
         """The network, with random weights."""
-        change: Any = self.change
-        return GraphNetwork(words.size, len(actions), self.size, self.hidden, self.rounds, change)
+        return GraphNetwork(words.size, len(actions), self.size, self.hidden, self.rounds, self.change)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGraphModel:

@@ -18,6 +18,7 @@ from hearth.models.model_registry import MODELS, restore
 from hearth.models.predicting import predict
 from hearth.models.scored_rows import Entrant, Row, scored_rows
 from hearth.models.seen_programs import refuse_seen
+from hearth.models.table_models import refuse_others
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
@@ -91,14 +92,14 @@ def table(
         seen: reports progress.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if the table is unknown, no model of 5.4 or 5.5 writes its sketches, or a model was
-            trained by another split on test programs.
+        HearthError: BAD_ARGUMENT, if the table is unknown, a model is of another kind or was trained by another split
+            on test programs, or none of 5.4 or 5.5 writes its sketches.
     """
     if number not in TABLES:
-        raise HearthError.of(Code.BAD_ARGUMENT, f"no table `{number}` of programs from sketches",
-                             suggestion=f"there are {', '.join(TABLES)}")  # fmt: skip
-    test = baselines.examples(dataset, split, "test", number == "5.4", sketches)
-    every = [each for each in test if each.sketch]
+        message = f"no table `{number}` of programs from sketches"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"there are {', '.join(TABLES)}")
+    refuse_others(number, models)
+    every = [each for each in baselines.examples(dataset, split, "test", number == "5.4", sketches) if each.sketch]
     if number == "5.5":
         there = Demonstrations.of(dataset)
         every = [each for each in every if each.execution_id in there.files]

@@ -58,8 +58,6 @@ class Consensus(Settings):
             for part in (checkpoint.content["writer"], checkpoint.content["neighbours"])
         )
         settings = cls.of(checkpoint.settings)
-        if not 0 <= settings.share <= 1 or not 1 <= settings.draws <= 1_000:
-            raise ValueError(f"a share of {settings.share:g}, or {settings.draws:,} draws")
         return TrainedConsensus(settings, TextModel.restored(writer), RetrieveEdit.restored(neighbours))
 
 

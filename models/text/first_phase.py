@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hearth.models.model_registry import restore
+from hearth.models.model_registry import MODELS, restore
 from hearth.models.seen_programs import refuse_seen_tests
 from hearth.models.text.text_models import TrainedTextModel
 from hearth.schemas.diagnostics import HearthError
@@ -13,6 +13,9 @@ from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
     from hearth.models.data import Corpus
+
+STARTS = {"program": ("programs", "mle-composed"), "sketch": ("sketches", "desc2sketch")}
+"""What is learned to be written, and the usual model to go on from."""
 
 
 def first_phase(start: str, corpus: Corpus) -> TrainedTextModel:
@@ -23,12 +26,13 @@ def first_phase(start: str, corpus: Corpus) -> TrainedTextModel:
         corpus: on which it is trained on.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if it is another model, or was trained by another split on test programs of the
-            corpus's; errors of `restore`.
+        HearthError: BAD_ARGUMENT, if it is another model, writes sketches and the corpus teaches programs or the
+            reverse, or was trained by another split on test programs of the corpus's; errors of `restore`.
     """
-    model = restore(start)[1]
-    if not isinstance(model, TrainedTextModel):
-        message = f"`{Path(start).name}` does not write programs of texts"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="--set start=FOLDER of `mle-composed`")
+    name, model = restore(start)
+    if not isinstance(model, TrainedTextModel) or MODELS[name].output != corpus.writes:
+        what, usual = STARTS[corpus.writes]
+        message = f"`{Path(start).name}` does not write {what} of texts"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"--set start=FOLDER of `{usual}`")
     refuse_seen_tests(start, corpus.dataset, corpus.split)
     return model

@@ -77,7 +77,7 @@ def text_of(title: str, description: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class RandomRetrieval(Settings):
-    """Answers with the program of a random training example, drawn from the seed and the request's id."""
+    """Answers with the program of a random training example, drawn from the seed and the text that is asked."""
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedRandomRetrieval:
         """Remember the training programs."""
@@ -99,8 +99,9 @@ class TrainedRandomRetrieval:
     seed: int
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """A program for each request, drawn from its id."""
-        return [rng(self.seed, "random retrieval", each.id).choice(self.memory.programs) for each in requests]
+        """A program for each request, drawn from its text: the same whatever else is asked."""
+        drawn = (rng(self.seed, "random retrieval", each.title, each.description) for each in requests)
+        return [each.choice(self.memory.programs) for each in drawn]
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""

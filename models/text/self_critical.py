@@ -1,7 +1,7 @@
 """The second phase of training: policy gradient with the greedy program as its baseline (thesis 4.3.1, eq. 4.6 to 4.8).
 
 The reward is the LCS of a program with the true one (eq. 4.1), or that and a tenth if the program runs in the
-environment of its example, its objects bound to the nearest of their classes.
+environment of its example, as scores tell it.
 """
 
 from __future__ import annotations
@@ -13,23 +13,19 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import torch
 
-from hearth.grounding.binding import nearest
 from hearth.models.checkpoint import Checkpoint
-from hearth.models.data import requests
-from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.interface import Settings, Steps, Training
 from hearth.models.text.first_phase import first_phase
 from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.writer import Numbers, Writer, beam, sample
 from hearth.models.training import Task, train, weights_digest
-from hearth.schemas.program import Program
+from hearth.models.tried_programs import trials
 from hearth.scoring.metrics.lcs import score_pairs
-from hearth.simulation.engine import run
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.data import Corpus
-    from hearth.simulation.world.world import World
 
 SIM = 0.1
 """The weight of running in the reward."""
@@ -166,17 +162,8 @@ def sim_reward(corpus: Corpus) -> Reward:
 
     def rewards(examples: Sequence[Any], programs: Sequence[Steps]) -> list[float]:
         names = [example.executions[0] for example in examples]
-        found: dict[str, Request] = {}
-        for share in requests(corpus.dataset, sorted(set(names)), worlds=True):
-            found |= {request.id: request for request in share}
+        found = trials(corpus.dataset, sorted(set(names)))
         pairs = zip(lcs_reward(examples, programs), names, programs, strict=True)
-        return [value + SIM * runs(steps, found[name].world) for value, name, steps in pairs]
+        return [value + SIM * found[name].runs(steps) for value, name, steps in pairs]
 
     return rewards
-
-
-def runs(steps: Steps, world: World | None) -> bool:
-    """Whether a program, bound to the nearest nodes, runs in a world; the empty program does not."""
-    assert world is not None
-    program = Program(steps=steps)
-    return bool(steps) and run(world, nearest(program, world).apply(program)).executable

@@ -35,6 +35,9 @@ class Memory(NamedTuple):
         return Memory(*(part[chosen] for part in self))
 
 
+WAYS = 2, "two directions share it"
+"""What the hidden state is a multiple of, and why."""
+
 State = tuple[torch.Tensor, ...]
 """What a decoder knows of programs so far; the rows of each tensor are the programs."""
 
@@ -62,16 +65,21 @@ def both_ways(lstm: nn.LSTM, inputs: torch.Tensor, lengths: torch.Tensor) -> tor
     real = place < lengths[:, None]
     turned = torch.where(real, lengths[:, None] - 1 - place, place)[..., None]
     weights, of_turned = lstm.all_weights
-    forward = _one_way(inputs, weights, lstm.training)
-    backward = _one_way(inputs.take_along_dim(turned, 1), of_turned, lstm.training).take_along_dim(turned, 1)
+    forward = _one_way(inputs, weights)
+    backward = _one_way(inputs.take_along_dim(turned, 1), of_turned).take_along_dim(turned, 1)
     states = torch.cat((forward, backward), -1)
     return states * real[..., None]
 
 
-def _one_way(inputs: torch.Tensor, weights: list[torch.Tensor], training: bool) -> torch.Tensor:
-    """(B, L, H / 2) the states of one direction, from the first place on; a GPU has gradients in training alone."""
+def _one_way(inputs: torch.Tensor, weights: list[torch.Tensor]) -> torch.Tensor:
+    """(B, L, H / 2) the states of one direction, from the first place on.
+
+    It has no dropout, so that training says nothing but whether there will be gradients: a GPU refuses those of
+    `training=False`, and policy gradient has them with the network in `eval` mode.
+    """
     begin = inputs.new_zeros(1, len(inputs), weights[1].shape[1])
-    states: torch.Tensor = torch.lstm(inputs, (begin, begin), weights, True, 1, 0.0, training, False, True)[0]
+    train = torch.is_grad_enabled()
+    states: torch.Tensor = torch.lstm(inputs, (begin, begin), weights, True, 1, 0.0, train, False, True)[0]
     return states
 
 

@@ -15,13 +15,13 @@ from hearth.models.devices import device
 from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.text.likelihood import likelihood, written
-from hearth.models.text.seq2seq import Seq2SeqBody, word_embedding
+from hearth.models.text.seq2seq import WAYS, Seq2SeqBody, word_embedding
 from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import UNKNOWN, StepVocabulary
 from hearth.models.text.text_batches import InputBatch, encoded, text_batch
 from hearth.models.text.text_scorer import TextScorer
 from hearth.models.text.text_words import words, words_of
-from hearth.models.text.transformer import TransformerBody
+from hearth.models.text.transformer import HEADS, TransformerBody
 from hearth.models.text.word_vectors import word_vectors
 from hearth.models.text.writer import Numbers, Writer, sample
 from hearth.models.training import train
@@ -58,6 +58,13 @@ class TextModel(Settings):
     dropout: float = 0.4
     batch: int = 32
     longest: int = 40
+
+    def fitting(self) -> None:
+        """The encoder has two directions, or the transformer its heads, which share the hidden state."""
+        if self.body == "lstm":
+            self.multiple("hidden", *WAYS)
+        else:
+            self.multiple("hidden", HEADS, "the heads of the transformer share it")
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedTextModel:
         """Train on the pairs of text and program by the likelihood of the true steps (thesis 4.3.1, first phase).

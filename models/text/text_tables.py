@@ -12,6 +12,7 @@ from hearth.models.model_registry import restore
 from hearth.models.predicting import completed
 from hearth.models.scored_rows import Entrant, Row, scored_rows
 from hearth.models.seen_programs import refuse_seen
+from hearth.models.table_models import refuse_others
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring import baselines
@@ -48,12 +49,13 @@ def table(
         seed: of yardsticks and intervals.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if the table is unknown, or a model was trained by another split on test programs;
-            errors of `restore` and `examples`.
+        HearthError: BAD_ARGUMENT, if the table is unknown, a model is of another kind, or was trained by another split
+            on test programs; errors of `restore` and `examples`.
     """
     if number not in TABLES:
         message = f"no table `{number}` of programs from texts"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"there are {', '.join(TABLES)}")
+    refuse_others(number, models)
     test = sorted(examples(dataset, split, "test", originals=True), key=lambda each: each.executions[0])
     for model in models:
         refuse_seen(model, dataset, split, [each.executions[0] for each in test])

@@ -14,6 +14,9 @@ from torch.nn import functional
 from hearth.models.text.seq2seq import Memory, State
 from hearth.models.text.text_batches import InputBatch
 
+HEADS = 4
+"""Of its attention."""
+
 
 class TransformerBody(nn.Module):
     """Layers of attention over words, and over steps and words; `features` is the size of what goes to the head."""
@@ -21,7 +24,7 @@ class TransformerBody(nn.Module):
     def __init__(self, words: nn.Module, width: int, hidden: int, size: int, dropout: float, layers: int) -> None:
         """`words` makes of a batch's inputs (B, L, width) vectors."""
         super().__init__()
-        heads, inner = 4, 2 * hidden
+        heads, inner = HEADS, 2 * hidden
         self.words = words
         self.of_words, self.of_steps = nn.Linear(width, hidden), nn.Linear(size, hidden)
         encoder = nn.TransformerEncoderLayer(hidden, heads, inner, dropout, batch_first=True, norm_first=True)

@@ -51,6 +51,10 @@ class GoalInference(Settings):
     joined: float = 0.6
     shape: str = "things"
 
+    def fitting(self) -> None:
+        """The heads divide the width."""
+        self.multiple("width", self.heads, "its `heads` share it")
+
     def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:
         """A network that has learnt nothing."""
         from hearth.models.watching.moment_network import MomentNetwork

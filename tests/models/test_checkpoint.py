@@ -135,15 +135,23 @@ def test_a_vocabulary_whose_parts_do_not_fit(name, value):
         StepVocabulary.read({**known, name: value})
 
 
-def test_heads_that_do_not_divide_the_width(tmp_path):
-    """Libraries assert some settings: that is a damaged checkpoint, not a fault of ours."""
-    folder = shutil.copytree(TRAINED / "goal-inference", tmp_path / "copy")
-    document = json.loads((folder / "model.json").read_text("utf-8"))
-    document["settings"]["heads"] = document["settings"]["width"] - 1
-    (folder / "model.json").write_text(json.dumps(document), "utf-8")
+@pytest.mark.parametrize(
+    ("name", "setting", "value", "said"),
+    [
+        ("goal-inference", "heads", 127, "`width` is 128, not a multiple of 127"),
+        ("retrieve-edit", "neighbours", 0, "`neighbours` is 0, not 1 to"),
+        ("mle-composed", "dropout", 2, "`dropout` is 2, not 0 to 1"),
+    ],
+)
+def test_settings_of_a_stranger_that_make_no_model(tmp_path, name, setting, value, said):
+    """That is a damaged checkpoint, not a fault of ours."""
+    folder = shutil.copytree(TRAINED / name, tmp_path / "copy")
+    document = json.loads((folder / NAME).read_text("utf-8"))
+    document["settings"][setting] = value
+    (folder / NAME).write_text(json.dumps(document), "utf-8")
     with pytest.raises(HearthError) as caught:
         restore_any(folder)
-    assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE and "num_heads" in str(caught.value)
+    assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE and said in str(caught.value)
 
 
 def rewritten(folder, change):

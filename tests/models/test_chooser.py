@@ -185,16 +185,20 @@ def test_it_learns_eight_programs_by_heart(knowledge, dataset):
     assert right.mean() > 0.97
 
 
-def test_training_and_a_round_trip(dataset, tmp_path, asked):
+def test_training_and_a_round_trip(dataset, tmp_path, asked, monkeypatch):
     found = corpus(dataset, "activities", originals=False)
     assert any(any(each.keep) for each in found.train)
     some = tuple(each for each in found.train if any(each.keep))[:12]
     found = dataclasses.replace(found, train=some, validation=some)
-    trained = Chooser(hidden=16, batch=32, programs=4).fit(found, Training(epochs=2))
+    budgets = []
+    train = chooser.train
+    monkeypatch.setattr(chooser, "train", lambda task, how, seen: budgets.append(how.minutes) or train(task, how))
+    trained = Chooser(hidden=16, batch=32, programs=4).fit(found, Training(epochs=2, minutes=9))
+    assert budgets == [9, 9], "as `model train --help` says"
     save(trained.checkpoint(), tmp_path)
     restored = Chooser.restored(load(tmp_path))
     assert restored.predict(asked[:2]) == trained.predict(asked[:2])
-    again = Chooser(hidden=16, batch=32, programs=4).fit(found, Training(epochs=2))
+    again = Chooser(hidden=16, batch=32, programs=4).fit(found, Training(epochs=2, minutes=9))
     for name, value in trained.checkpoint().weights.items():
         assert np.array_equal(value, again.checkpoint().weights[name])
 

@@ -19,6 +19,7 @@ from typer.testing import CliRunner
 import hearth
 from hearth import cli
 from hearth.models.checkpoint import load, save
+from hearth.models.data import corpus
 from hearth.models.demonstrations.above_facts import above
 from hearth.models.demonstrations.demo_batches import done_batch, frame_batch, turn
 from hearth.models.demonstrations.demo_model import DemoModel, TrainedDemoModel
@@ -33,6 +34,7 @@ from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import encoded, step_batch
 from hearth.models.training import train
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES
 
 HOW = {"epochs": 1, "minutes": 0.0, "rate": 1e-3, "seed": 0}
@@ -255,6 +257,24 @@ def test_training_records_how_many_demonstrations_there_were(models):
     assert trained["demonstrations"] > 0 and trained["split"] == "activities"
 
 
+def test_a_demonstration_that_does_not_fit_its_program_is_refused(pictured, tmp_path):
+    """Programs of more steps than pictures have a step that nothing shows."""
+    copy = hearth.load(shutil.copytree(pictured.folder, tmp_path / "copy"))
+    for path in (copy.folder / "frames").glob("*/above.npz"):
+        given = read_pictures(path)
+        path.write_bytes(_stored(given._replace(masks=given.masks[:-1], colours=given.colours[:-1])))
+    with pytest.raises(HearthError, match=r"it has \d+ pictures of \d+ ticks") as caught:
+        DemoModel(hidden=16, vector=16).fit(corpus(copy, "activities"), Training(epochs=1))
+    assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE and caught.value.diagnostics[0].file
+
+
+def test_what_is_done_in_one_tick_is_before_one_picture(dataset, kept):
+    steps = (kept[0].steps[0], replace(kept[0].steps[1], agent=1, joins=True), *kept[0].steps[2:])
+    example = replace(kept[0], steps=steps, keep=(True, False, *kept[0].keep[2:]))
+    found = made(DemoModel(hidden=16, vector=16), dataset, kept).done(example)
+    assert len(found.kept) == len(found.steps) == len(steps) and found.kept[:2] == (None, True)
+
+
 def test_5_5_has_sketches_of_demonstrations(pictured, models):
     rows = {row.method: row for row in table("5.5", pictured, "activities", [models / "demo2sketch"], most=4)}
     assert rows["ResActGraph"].scores["f1"] == 0.318 and rows["ResActGraph"].scores["lcs_instances"] == 0.327
@@ -263,6 +283,8 @@ def test_5_5_has_sketches_of_demonstrations(pictured, models):
     assert rows["demo2sketch, planner"].of == "ours" and rows["nearest masks, planner"].of == "yardstick"
     assert "empty program" in rows and "sketch" not in rows["planner, given sketches"].scores
     with pytest.raises(HearthError, match=r"5\.5 needs a model"):
+        table("5.5", pictured, "activities", ["planner"], most=4)
+    with pytest.raises(HearthError, match=r"it takes planner, .*demo2sketch"):
         table("5.5", pictured, "activities", [models / "retrieve-sketch"], most=4)
 
 

@@ -12,7 +12,9 @@ from hearth.models.films.film_readings import Reading
 from hearth.models.films.film_tables import COLUMNS, THESIS, WAYS
 from hearth.models.films.film_writer import TrainedFilmWriter
 from hearth.models.films.step_order import StepOrder
+from hearth.models.tried_programs import Trial
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.simulation.rules import DEFAULT
 
 DONE = (Instruction("Sit", ("sofa",)), Instruction("StandUp", ()), Instruction("Walk", ("sofa",)))
 
@@ -64,7 +66,8 @@ def test_writers_stand_beside_classifiers_and_seeds_are_one_row(monkeypatch):
     test = Clips(("one", "two"), [np.zeros((9, 2, 2), np.uint16)] * 2, clips, 9)
     monkeypatch.setattr(film_tables.Clips, "of", lambda *_, **__: test)
     monkeypatch.setattr(film_tables, "restore", models.__getitem__)
-    monkeypatch.setattr(film_tables, "shown_films", lambda *_: [Shown(world, steps, name) for name in "xy"])
+    shown = [Shown(Trial(world, Program(steps=steps), DEFAULT, name), steps) for name in "xy"]
+    monkeypatch.setattr(film_tables, "shown_films", lambda *_: shown)
     monkeypatch.setattr(film_tables, "film_probabilities", lambda *_: (None, None))
     monkeypatch.setattr(film_tables, "score_steps", lambda dataset, pairs: [None for _ in pairs])
     monkeypatch.setattr(film_tables, "METRICS", dict.fromkeys(("executable", "goal"), lambda _: 1.0))

@@ -33,10 +33,12 @@ from hearth.models.text.text_batches import encoded, step_batch
 from hearth.models.text.text_models import listed
 from hearth.models.text.writer import sample
 from hearth.models.training import train
+from hearth.models.tried_programs import Trial
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.scoring.metrics.executability import executability
 from hearth.scoring.metrics.parsability import parsability
+from hearth.simulation.rules import DEFAULT
 from tests.models.conftest import TEXTS, steps_of
 
 PROGRAMS = [
@@ -70,8 +72,8 @@ def seen(steps, table, sure=0.9, clips=3):
 
 @pytest.fixture(scope="module")
 def films(reader):
-    world = hearth.World.start(hearth.home("maple"))
-    return [FilmExample(str(n), seen(steps, reader.table), steps, world) for n, steps in enumerate(PROGRAMS)]
+    trial = Trial(hearth.World.start(hearth.home("maple")), Program(), DEFAULT)
+    return [FilmExample(str(n), seen(steps, reader.table), steps, trial) for n, steps in enumerate(PROGRAMS)]
 
 
 def untrained(reader, **changed):
@@ -151,17 +153,17 @@ def test_with_random_weights_each_program_parses_and_runs(reader, films, environ
 def test_a_closed_list_cannot_be_followed_by_the_engine(reader, films):
     model = untrained(reader, steps="closed")
     with pytest.raises(HearthError, match="closed list"):
-        model.followed([films[0].clips], [films[0].world])
-    assert by_writer(model, films[0].clips, films[0].world).keys() == {"free", "free, repaired"}
+        model.followed([films[0].clips], [films[0].trial.world])
+    assert by_writer(model, films[0].clips, films[0].trial.world).keys() == {"free", "free, repaired"}
 
 
 def test_what_is_written_runs_where_the_engine_is_asked(reader, films):
     model = untrained(reader)
     by_heart(model, films)
-    found = by_writer(model, films[0].clips, films[0].world)
+    found = by_writer(model, films[0].clips, films[0].trial.world)
     assert found["free"] == films[0].steps
     for way in ("free, repaired", "engine"):
-        assert executability(found[way], films[0].world).executable
+        assert executability(found[way], films[0].trial.world).executable
     assert found["engine"] and found["engine"][0].objects[0].node is not None
 
 

@@ -109,6 +109,12 @@ def test_models_that_come_with_hearth_write_programs_at_once(name):
     assert "[SwitchOn] <television>" in program and "[Sit]" in program
 
 
+def test_the_budget_is_that_of_each_network():
+    """`test_self_critical` sees that both phases have it, `test_chooser` that both networks do."""
+    said = " ".join(call("train", "--help").output.replace("│", " ").split())
+    assert "each network that is trained" in said
+
+
 def test_unknown_settings(made, tmp_path):
     result = call("train", "nearest", made.out, "--out", tmp_path, "--set", "size=4")
     assert result.exit_code == 1 and "singular=0" in result.output
@@ -129,7 +135,17 @@ def test_without_the_extra_it_says_how_to_install_it(checkpoint, monkeypatch):
         ("clips-seen", "context=maybe", "not a setting"),
         ("films-pg-lcs", "reward=LCS", "not one of lcs"),
         ("masks", "width=60", "multiple of 8"),
-        ("masks", "batch=0", "is 0"),
+        ("masks", "batch=0", "is 0, not 1 to"),
+        ("mle", "hidden=75", "`hidden` is 75, not a multiple of 2"),
+        ("mle", "hidden=0", "`hidden` is 0, not 1 to 10,000"),
+        ("mle", "dropout=2", "`dropout` is 2, not 0 to 1"),
+        ("transformer", "hidden=30", "`hidden` is 30, not a multiple of 4"),
+        ("transformer", "layers=0", "`layers` is 0, not 1 to 64"),
+        ("films-mle", "hidden=75", "not a multiple of 2"),
+        ("clips-seen", "width=90", "not a multiple of 4"),
+        ("fcactgraph", "change=both", "not one of none, residual"),
+        ("consensus", "draws=0", "`draws` is 0, not 1 to 1,000"),
+        ("retrieve-edit", "neighbours=0", "`neighbours` is 0, not 1 to"),
     ],
 )
 def test_values_of_settings_that_cannot_be(made, tmp_path, name, setting, said):

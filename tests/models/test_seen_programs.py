@@ -18,6 +18,7 @@ from hearth.models.predicting import predict_part
 from hearth.models.sketches import sketch_tables
 from hearth.models.text import text_tables
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 HOW = {"epochs": 1, "minutes": 0.0, "rate": 1e-3, "seed": 0}
 OTHER = "homes_1_4"
@@ -84,6 +85,20 @@ def test_what_a_training_goes_on_from_is_checked(name, crossed, network, nearest
         fit(name, crossed.folder, tmp_path, OTHER, [f"start={network}"], how=HOW)
     with pytest.raises(HearthError, match="does not write programs of texts"):
         fit(name, crossed.folder, tmp_path, "activities", [f"start={nearest}"], how=HOW)
+
+
+def test_sketches_go_on_from_what_writes_sketches(crossed, network, tmp_path):
+    """And programs from what writes programs."""
+    with pytest.raises(HearthError, match="does not write sketches of texts") as caught:
+        fit("consensus-sketch", crossed.folder, tmp_path / "c", "activities", [f"start={network}"], how=HOW)
+    (fault,) = caught.value.diagnostics
+    assert fault.code == Code.BAD_ARGUMENT and "desc2sketch" in fault.suggestion
+    sketches = tmp_path / "sketches"
+    fit("desc2sketch", crossed.folder, sketches, "activities", ["hidden=16", "vector=16"], how=HOW)
+    assert fit("consensus-sketch", crossed.folder, tmp_path / "c", "activities", [f"start={sketches}"], how=HOW)
+    for name in ("consensus", "pg-lcs"):
+        with pytest.raises(HearthError, match="does not write programs of texts"):
+            fit(name, crossed.folder, tmp_path / "p", "activities", [f"start={sketches}"], how=HOW)
 
 
 def test_a_network_is_named_as_in_the_list_of_models(crossed, tmp_path):

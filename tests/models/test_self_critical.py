@@ -85,13 +85,20 @@ def test_rewards(dataset, eight):
     assert rewarded(known, [()] * len(known)) == [0.0] * len(known), "the empty program runs, and is not rewarded"
 
 
-def test_both_phases_run_and_are_recorded(dataset):
+def test_both_phases_run_and_are_recorded(dataset, monkeypatch):
     from hearth.models.data import Corpus, examples
+    from hearth.models.text import self_critical, text_models
     from hearth.models.text.self_critical import SelfCritical
 
     known = examples(dataset, "activities", "train", originals=True)[:4]
     corpus = Corpus(dataset, "activities", known, known)
-    model = SelfCritical(reward="lcs+sim", batch=4).fit(corpus, Training(epochs=1))
+    budgets = []
+    for module in (self_critical, text_models):
+        monkeypatch.setattr(
+            module, "train", lambda task, how, seen, plain=module.train: budgets.append(how.minutes) or plain(task, how)
+        )
+    model = SelfCritical(reward="lcs+sim", batch=4).fit(corpus, Training(epochs=1, minutes=7))
+    assert budgets == [7, 7], "as `--help` says"
     assert model.trained["epochs"] == 1 and model.trained["first_phase"]["epochs"] == 1
 
 

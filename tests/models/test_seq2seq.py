@@ -61,6 +61,19 @@ def test_what_stands_in_the_padding_changes_nothing(lstm, inputs):
     assert torch.equal(found, wider[:, :7]) and not wider[:, 7:].any()
 
 
+@pytest.mark.parametrize("training", [True, False])
+@pytest.mark.parametrize("gradients", [True, False])
+def test_it_is_called_for_training_wherever_there_are_gradients(lstm, inputs, monkeypatch, training, gradients):
+    """Policy gradient has them in `eval` mode, and a GPU refuses those of a call that is not for training."""
+    import torch
+
+    asked, plain = [], torch.lstm
+    monkeypatch.setattr(torch, "lstm", lambda *given: asked.append(given[6]) or plain(*given))
+    with torch.set_grad_enabled(gradients):
+        encoded(lstm.train(training), inputs)
+    assert asked == [gradients] * 2
+
+
 @pytest.mark.parametrize(("count", "batch"), [(0, 4), (3, 4), (4, 4), (1_003, 8)])
 def test_batches_have_every_example_once_and_are_of_about_the_same_length(count, batch):
     from hearth.models.text.likelihood import alike
