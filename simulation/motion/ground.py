@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -253,15 +252,13 @@ def _touched(moved: Moved) -> int:
     return moved.on | moved.inside | mask_of({key >> 3 for key in moved.extra if key & 7 in (ON, INSIDE)})
 
 
-_KNOWN: WeakKeyDictionary[Home, Here | None] = WeakKeyDictionary()
-
-
 def ground_of(home: Home) -> Here | None:
     """The ground of a home; None where its rooms have no boxes. A home derived from another shares its ground, unless
     something that stood on the floor is gone.
     """
+    known: dict[str, Here | None] = home.worked_out
     try:
-        return _KNOWN[home]
+        return known["ground"]
     except KeyError:
         pass
     base = None if home.base is None else ground_of(home.base[0])
@@ -270,7 +267,7 @@ def ground_of(home: Home) -> Here | None:
     else:
         rooms = [home.node(i) for i in indices(home.rooms & home.everything)]
         found = Here(Ground(home), home) if rooms and all(room.box is not None for room in rooms) else None
-    _KNOWN[home] = found
+    known["ground"] = found
     return found
 
 

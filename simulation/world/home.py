@@ -216,6 +216,13 @@ class Home:
         return {}
 
     @cached_property
+    def worked_out(self) -> dict[str, Any]:
+        """What other modules work out once for a home, by their names. It goes with the home, of which it may be in a
+        circle: a table of theirs by home would hold every home for ever, as its values know their homes.
+        """
+        return {}
+
+    @cached_property
     def everything(self) -> int:
         """All nodes."""
         return (1 << len(self.ids)) - 1 & ~self.absent
