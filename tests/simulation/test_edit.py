@@ -253,7 +253,23 @@ def test_placing_takes_a_thing_out_of_hands_and_away_from_where_it_was():
     assert mine == {(5, "ON", 4), (5, "CLOSE", 4), (4, "CLOSE", 5), (5, "INSIDE", 1), (5, "MADE_BY", 6)}
     moved = edit(world, place={3: ("INSIDE", 2)})
     assert moved.holding() == {0: (5,)}
-    assert {tuple(e) for e in moved.edges() if e.source == 3} == {(3, "INSIDE", 2), (3, "HOLDS_RH", 5)}
+    assert {tuple(e) for e in moved.edges() if e.source == 3} == {
+        (3, "INSIDE", 2), (3, "HOLDS_RH", 5), (3, "CLOSE", 5),
+    }  # fmt: skip
+    assert {tuple(e) for e in moved.edges() if e.source == 5} == {(5, "INSIDE", 2), (5, "CLOSE", 3), (5, "MADE_BY", 6)}
+
+
+def test_what_a_placed_character_holds_comes_along_as_when_it_walks():
+    home = kitchen()
+    world = act(act(World.start(home), bound_step("Walk", [home.node(4)])), bound_step("Grab", [home.node(4)]))
+    world = edit(world, add=[node(1000, "character", "Characters")], link=[Edge(1000, "CLOSE", 5)], check=False)
+    walked = act(world, bound_step("Walk", [home.node(1)]))
+    about = {tuple(e) for e in walked.edges() if 5 in (e.source, e.target)}
+    for place in ((3, "INSIDE", 2), (3, "ON", 6)):  # the lamp is in the bedroom, too
+        placed = edit(world, place={3: place[1:]}, check=False)
+        assert {tuple(e) for e in placed.edges() if 5 in (e.source, e.target)} == about
+    nowhere = edit(world, add=[node(1001, "rug")], place={3: ("ON", 1001)}, check=False)
+    assert {tuple(e) for e in nowhere.edges() if e.source == 5} == {(5, "CLOSE", 3), (5, "MADE_BY", 6)}
 
 
 @pytest.mark.parametrize(
