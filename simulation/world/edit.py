@@ -121,15 +121,13 @@ def _moved_over(world: World, home: Home) -> World:
     before = World.start(world.home)
     there = apply(start, world.changes(before))
     old, new = world.home.ids, home.index
-    agents = tuple(
-        there_agent._replace(
-            origins=tuple((new[old[o]], new[old[p]], kind) for o, p, kind in agent.origins),
-            pose=agent.pose,
-            stride=agent.stride,
-        )
-        for agent, there_agent in zip(world.agents, there.agents, strict=False)
-    )
-    return World(home, there.states, (*agents, *there.agents[len(agents) :]), there.moved)
+    agents = list(there.agents)
+    numbers = {agent.index: number for number, agent in enumerate(agents)}  # new ones may stand before the others
+    for agent in world.agents:
+        number = numbers[new[old[agent.index]]]
+        origins = tuple((new[old[o]], new[old[p]], kind) for o, p, kind in agent.origins)
+        agents[number] = agents[number]._replace(origins=origins, pose=agent.pose, stride=agent.stride)
+    return World(home, there.states, tuple(agents), there.moved)
 
 
 def _without_node(world: World, i: int) -> World:

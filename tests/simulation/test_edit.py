@@ -17,6 +17,7 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.derived import Movable
 from hearth.simulation.world.edit import added_nodes, apply, edit, extended, free_id
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
 
@@ -255,6 +256,20 @@ def test_memories_and_hands_survive_an_edit():
     assert in_between.home.ids[0] == 0
     back = act(in_between, bound_step("PutObjBack", [home.node(4)]))
     assert Edge(5, "ON", 4) in back.edges()
+
+
+def test_a_new_character_of_a_lower_id_takes_nobodys_pose_or_memory():
+    world = act(
+        act(World.start(kitchen()), bound_step("Walk", [kitchen().node(4)])), bound_step("Grab", [kitchen().node(4)])
+    )
+    (me,) = world.agents
+    me = me._replace(pose=Pose(1.0, 2.0, 90), stride=0.5)
+    world = edit(World(world.home, world.states, (me,), world.moved), add=[node(0, "character", "Characters")])
+    new, old = world.agents
+    assert [world.home.ids[agent.index] for agent in (new, old)] == [0, 3]
+    assert (new.pose, new.origins, new.held) == (None, (), 0)
+    assert (old.pose, old.stride) == (me.pose, me.stride)
+    assert [tuple(world.home.ids[i] for i in entry[:2]) for entry in old.origins] == [(5, 4)]
 
 
 def test_placing_takes_a_thing_out_of_hands_and_away_from_where_it_was():
