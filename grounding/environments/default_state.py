@@ -103,7 +103,7 @@ class Base:
         if knowledge.is_room(name):
             if self.instances(name):
                 return None
-            rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)}))
+            rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)})) or "none"
             return Code.NO_ROOM, f"a home with a {name}, or a room that serves as one", f"{home.name} has {rooms}"
         known = knowledge.object_class(name)
         if known is None or known.category in WITHOUT_PLACE or known.rooms or self.instances(name):

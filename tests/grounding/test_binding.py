@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.grounding.binding import Binding, bind
+from hearth.grounding.binding import Binding, bind, nearest
 from hearth.grounding.trial import Trial, attempt
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
@@ -111,3 +111,19 @@ def test_where_some_objects_have_nodes_the_failure_is_that_of_the_search(knowled
     assert isinstance(found, Failure) and (found.code, found.tick) == (Code.IS_OFF, 2)
     whole = attempt(Program("Work", "", steps[1:]), home)
     assert isinstance(whole, Trial) and whole.execution.failure.code is Code.IS_OFF
+
+
+def test_without_characters_nobody_acts(knowledge):
+    nobody = world(knowledge, [node for node in OFFICE if node.id != 3], [e for e in EDGES if e.source != 3])
+    work = program("[Walk] <computer> (1)")
+    found = bind(work, nobody)
+    assert isinstance(found, Failure) and (found.code, found.tick) == (Code.UNKNOWN_AGENT, 0)
+    assert nearest(work, nobody).nodes == {("computer", 1): 11}
+
+
+def test_more_objects_than_an_action_takes_are_a_failure_of_their_step(knowledge):
+    computer, keyboard = ObjectRef("computer", 1), ObjectRef("keyboard", 1)
+    work = Program("Work", "", (Step("Walk", (computer,)), Step("Walk", (computer, keyboard))))
+    found = bind(work, world(knowledge))
+    assert isinstance(found, Failure) and (found.code, found.tick) == (Code.WRONG_ARITY, 1)
+    assert nearest(work, world(knowledge)).nodes.keys() == {("computer", 1), ("keyboard", 1)}
