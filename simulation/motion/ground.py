@@ -261,14 +261,21 @@ def ground_of(home: Home) -> Here | None:
         return known["ground"]
     except KeyError:
         pass
-    base = None if home.base is None else ground_of(home.base[0])
+    line = [home]
+    while (derived := line[-1].base) is not None and "ground" not in derived[0].worked_out:
+        line.append(derived[0])
+    for each in reversed(line):  # thousands of homes may be derived in a row: no recursion
+        each.worked_out["ground"] = _found(each)
+    return known["ground"]
+
+
+def _found(home: Home) -> Here | None:
+    """The ground of a home; that of the home it was derived from is known."""
+    base: Here | None = None if home.base is None else home.base[0].worked_out["ground"]
     if base is not None and not _gone(home, base.ground):
-        found: Here | None = Here(base.ground, home)
-    else:
-        rooms = [home.node(i) for i in indices(home.rooms & home.everything)]
-        found = Here(Ground(home), home) if rooms and all(room.box is not None for room in rooms) else None
-    known["ground"] = found
-    return found
+        return Here(base.ground, home)
+    rooms = [home.node(i) for i in indices(home.rooms & home.everything)]
+    return Here(Ground(home), home) if rooms and all(room.box is not None for room in rooms) else None
 
 
 def _gone(home: Home, ground: Ground) -> bool:

@@ -11,6 +11,7 @@ from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import OPPOSITE, STATES
 from hearth.simulation.engine import act
+from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.observation import reach
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world import rows
@@ -343,3 +344,12 @@ def test_removing_a_character_frees_what_it_held():
     assert world.holding() == {0: ()}
     assert 2000 not in {i for e in world.edges() for i in (e.source, e.target)}
     assert World.start(world.home).graph() == world.graph()
+
+
+def test_homes_may_be_derived_in_a_row_a_thousand_times(maple):
+    home = maple
+    for _ in range(1200):
+        home = extended(home, states={home.ids[-1]: ["CLEAN"]})
+    more = extended(home, [node(9000, "table", "Furniture")])
+    assert more.furniture == maple.furniture | 1 << more.index[9000]
+    assert ground_of(home).ground is ground_of(maple).ground
