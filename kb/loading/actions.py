@@ -18,8 +18,8 @@ from hearth.kb.formula import (
     predicates,
 )
 from hearth.kb.groups import DECLARED
+from hearth.kb.loading.entry_shapes import LIST, NAMES, REASONS, TEXT, fits, parts
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed, yaml_entries
-from hearth.kb.loading.shapes import LIST, NAMES, REASONS, TEXT, fits, parts
 from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
 from hearth.kb.records import Action, Condition, Repair, Requirement
 from hearth.schemas.failures import Code

@@ -16,8 +16,8 @@ from hearth.kb.loading.objects import (
     load_placements,
     load_stand_ins,
 )
+from hearth.kb.loading.small_tables import load_limits, load_rooms, load_tables
 from hearth.kb.loading.source_files import Faults, check_extent
-from hearth.kb.loading.tables import load_limits, load_rooms, load_tables
 from hearth.kb.records import Action, ObjectClass, Placement
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from hearth.kb.loading.entry_shapes import LIMITS, NAME_LIST, NAMES_BY_NAME, TEXT, fits, parts
 from hearth.kb.loading.layers import Layers, yaml_entries
-from hearth.kb.loading.shapes import LIMITS, NAME_LIST, NAMES_BY_NAME, TEXT, fits, parts
 from hearth.kb.loading.source_files import Entry, Faults
 
 _DEFAULTS = ("always", "classes", "properties")
