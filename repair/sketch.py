@@ -68,6 +68,7 @@ def sketch(
         >>> hearth.sketch(program, [home], known)
         (False, False, True)
     """
+    program = program.numbered()
     conditions = infer(program, knowledge) if original is None else original[0]
     if isinstance(conditions, Failure):
         return _with_asked(program, _smallest(program, [], (), (), knowledge), asked(program, knowledge))

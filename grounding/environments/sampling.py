@@ -140,7 +140,7 @@ def sample(
         >>> execution.executable, len(environment.world.graph().nodes)
         (True, 371)
     """
-    base = size.base(home)
+    program, base = program.numbered(), size.base(home)
     rules = suited(program, base.knowledge, rules)
     found = infer(program, base.knowledge, rules) if conditions is None else conditions
     if isinstance(found, Failure):

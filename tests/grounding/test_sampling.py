@@ -281,3 +281,14 @@ def test_a_home_without_rooms_is_a_failure(draw):
     found = draw(walk, home, seed=0)
     assert isinstance(found, Failure)
     assert (found.code, found.actual) == (Code.NO_ROOM, "bare has none")
+
+
+def test_what_nodes_alone_name_stays_apart_in_another_home(maple):
+    refs = [ObjectRef("cup", 0, node) for node in (1, 2)]
+    take = Program("Take", "", tuple(Step(name, (ref,)) for ref in refs for name in ("Walk", "Grab")))
+    found = infer(take, default())
+    assert isinstance(found, Preconditions)
+    for conditions in (None, found):
+        environment, execution = sample(take, maple, 0, "apart", conditions)
+        assert execution.executable
+        assert len({ref.node for ref in environment.program.objects()}) == 2
