@@ -13,7 +13,7 @@ from operator import and_
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
-from hearth.simulation.engine import act, ready, together
+from hearth.simulation.engine import act, ready, together, unfit
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
@@ -111,6 +111,9 @@ class _Search:
     def options(self, number: int, world: World, nodes: dict[Key, int]) -> Iterator[tuple[dict[Key, int], World]]:
         """Every way to do tick `number` from a world: the binding with its new objects, and the world after."""
         steps = self.ticks[number]
+        if (failure := next(filter(None, (unfit(world, step) for step in steps)), None)) is not None:
+            self._fail(number, failure)
+            return
         new: dict[Key, Step] = {}
         for step in steps:
             for ref in step.objects:
@@ -147,11 +150,13 @@ class _Search:
         mask = self.candidates.get(key)
         if mask is None:
             mask = self.candidates[key] = self._candidates(key, world)
-        agent = world.agents[min(agent_number, len(world.agents) - 1)]
         room_name = _room(key, world)
         every = {*self.own, *((other[0], node) for other, node in nodes.items())}
         others = (node for name, node in every if not room_name or name == room_name)
         taken = {home.index[node] for node in others if node in home.index}
+        if not world.agents:
+            return [home.ids[i] for i in indices(mask) if i not in taken]
+        agent = world.agents[min(agent_number, len(world.agents) - 1)]
         room = rows.agent_room(world, agent)
         rank = {
             i: (not rows.is_close(world, agent, i), rows.room_of(world, i) != room, i)
@@ -182,7 +187,7 @@ class _Search:
 
 def _able(world: World, action: str, position: int) -> int:
     known = world.home.knowledge.actions.get(action)
-    if known is None or not known.executed:
+    if known is None or not known.executed or position >= known.arity:
         return world.home.everything
     return world.home.able(action, position)
 

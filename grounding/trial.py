@@ -54,11 +54,11 @@ def attempt(
     found = bind(program, world, rules)
     if isinstance(found, Binding):
         return Trial(run(world, found.apply(program), rules))
-    fixed = any(ref.node is not None for ref in program.objects())
-    if fixed:
+    named = [ref.node is not None for ref in program.objects()]
+    if named and all(named):
         return Trial(run(world, program, rules))
-    if not add:
-        return found
+    if any(named) or not add:
+        return found  # where some objects have no node, a run would end at the first of them, whatever is amiss
     sampled = (
         sample(program, home, seed, program.title, rules=rules)
         if wanted == 1

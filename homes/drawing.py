@@ -91,7 +91,7 @@ def _shell(things: tuple[Thing, ...]) -> Iterator[Shape]:
         elif thing.class_name == "wall" and bottom(thing.box) == 0:
             yield Shape("rect", footprint(thing.box), "#8d8d8d")
         elif thing.mount == "window":
-            yield Shape("rect", footprint(thing.box), COLOURS[thing.class_name])
+            yield Shape("rect", footprint(thing.box), COLOURS.get(thing.class_name, COLOURS["curtain"]))
         elif thing.class_name in ("door", "maindoor"):
             yield Shape("rect", footprint(thing.box), COLOURS["door"])
 

@@ -48,12 +48,26 @@ class View:
     def targets(self) -> dict[str, dict[int, list[int]]]:
         """Relation -> source -> targets, each once, edges to missing nodes left out."""
         found: dict[str, dict[int, list[int]]] = defaultdict(dict)
-        for edge in self.graph.edges:
+        for edge in dict.fromkeys(self.graph.edges):
             if edge.source in self.nodes and edge.target in self.nodes:
-                known = found[edge.relation].setdefault(edge.source, [])
-                if edge.target not in known:
-                    known.append(edge.target)
+                found[edge.relation].setdefault(edge.source, []).append(edge.target)
         return found
+
+    @cached_property
+    def housed(self) -> frozenset[int]:
+        """The nodes from which following INSIDE and ON leads to a room, and the rooms."""
+        held: dict[int, list[int]] = defaultdict(list)
+        for relation in ("INSIDE", "ON"):
+            for source, targets in self.targets[relation].items():
+                for target in targets:
+                    held[target].append(source)
+        waiting = list(filter(self.is_room, self.nodes))
+        found = set(waiting)
+        while waiting:
+            new = [node_id for node_id in held.get(waiting.pop(), ()) if node_id not in found]
+            found.update(new)
+            waiting += new
+        return frozenset(found)
 
     def label(self, node_id: int) -> str:
         """A node as people call it: `fridge (41)`."""
@@ -151,29 +165,16 @@ def _rooms(view: View) -> Iterator[Diagnostic]:
                 (node_id, *rooms),
                 "keep one",
             )
-        if not rooms and not view.is_room(node_id) and node_id not in held and not _nested_room(view, node_id):
+        if node_id not in held and node_id not in view.housed:
             yield _fault(Code.NO_ROOM, f"{view.label(node_id)} is INSIDE no room", (node_id,), "add its room")
-
-
-def _nested_room(view: View, node_id: int) -> bool:
-    """Whether following INSIDE and ON leads to a room."""
-    seen, waiting = {node_id}, [node_id]
-    while waiting:
-        current = waiting.pop()
-        for parent in (*view.parents(current), *view.targets["ON"].get(current, [])):
-            if view.is_room(parent):
-                return True
-            if parent not in seen:
-                seen.add(parent)
-                waiting.append(parent)
-    return False
 
 
 def _containers(view: View) -> Iterator[Diagnostic]:
     """A thing may be INSIDE a box INSIDE a closet, and say both; two that are not in each other cannot both hold it."""
     for node_id in view.nodes:
         holders = [parent for parent in view.parents(node_id) if not view.is_room(parent)]
-        innermost = [h for h in holders if not any(h in view.parents(other) for other in holders)]
+        outer = {parent for other in holders for parent in view.parents(other)}
+        innermost = [h for h in holders if h not in outer]
         if len(innermost) > 1:
             where = " and ".join(map(view.label, innermost))
             yield _fault(Code.BAD_GRAPH, f"{view.label(node_id)} is INSIDE {where}", (node_id, *innermost), "keep one")
@@ -194,16 +195,17 @@ def _circles(view: View) -> Iterator[Diagnostic]:
 
 def _circle(targets: dict[int, list[int]], start: int, done: set[int]) -> tuple[int, ...]:
     """A circle reached from `start` through nodes not yet done, or (); marks what it visits as done."""
-    path: list[int] = []
+    path: dict[int, int] = {}  # node -> its place on the way, in that order
     stack: list[tuple[int, int]] = [(start, 0)]
     while stack:
         node, depth = stack.pop()
-        del path[depth:]
+        while len(path) > depth:
+            path.popitem()
         if node in path:
-            return tuple(path[path.index(node) :])
+            return tuple(path)[path[node] :]
         if node not in done:
             done.add(node)
-            path.append(node)
+            path[node] = depth
             stack.extend((target, depth + 1) for target in targets.get(node, ()))
     return ()
 
@@ -243,9 +245,10 @@ def _hands(view: View) -> Iterator[Diagnostic]:
 
 def _close(view: View) -> Iterator[Diagnostic]:
     near = view.targets["CLOSE"]
+    pairs = {(one, other) for one, others in near.items() for other in others}
     for one, others in near.items():
         for other in others:
-            if one != other and one not in near.get(other, ()):
+            if one != other and (other, one) not in pairs:
                 message = f"{view.label(one)} is CLOSE to {view.label(other)}, but not the other way round"
                 yield _fault(Code.BAD_GRAPH, message, (one, other), f"add {other} CLOSE {one}")
 

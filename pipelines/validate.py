@@ -14,7 +14,7 @@ from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import plans
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.program import ObjectRef, Program
+from hearth.schemas.program import Program
 from hearth.schemas.stage_rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
@@ -67,7 +67,7 @@ def checked(
     expanded = special.expand(text, before)
     source = expanded.text.split("\n")
     written, faults = parse_program(expanded.text, place)
-    program, wrong = grammar.check(_numbered(written), known, place, source)
+    program, wrong = grammar.check(written.numbered(), known, place, source)
     faults = (*faults, *wrong)
     if not faults:
         faults = grammar.affordances(program, known, place, source)
@@ -106,26 +106,6 @@ def _warnings(program: Program, known: Knowledge, lines: tuple[int, ...], place:
         if not known.actions[step.action].executed:
             message = f"[{step.action}] is valid to write, but never executed"
             yield Diagnostic(Code.NOT_SIMULATED, message, place, lines[number], found=step.action)
-
-
-def _numbered(program: Program) -> Program:
-    """An instance number for each object identified by its node alone, so that (name, instance) identifies it."""
-    if all(ref.instance for step in program.steps for ref in step.objects):
-        return program
-    taken = {ref.key for step in program.steps for ref in step.objects if ref.instance}
-    given: dict[tuple[str, int | None], int] = {}
-
-    def numbered(ref: ObjectRef) -> ObjectRef:
-        if ref.instance:
-            return ref
-        key = (ref.name, ref.node)
-        if key not in given:
-            given[key] = next(n for n in range(1, len(taken) + 2) if (ref.name, n) not in taken)
-            taken.add((ref.name, given[key]))
-        return replace(ref, instance=given[key])
-
-    steps = tuple(replace(step, objects=tuple(map(numbered, step.objects))) for step in program.steps)
-    return replace(program, steps=steps)
 
 
 def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge, check: Check) -> GroundingRow | Reject:

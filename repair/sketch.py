@@ -17,6 +17,7 @@ from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution
 from hearth.simulation.holds import holds
+from hearth.simulation.rules import Rules, suited
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -28,10 +29,11 @@ _BARE = Size(0, 0, 0)
 
 
 class _Place(NamedTuple):
-    """A program bound in an environment in which it runs."""
+    """A program bound in an environment in which it runs, and the rules by which it does."""
 
     program: Program
     world: World
+    rules: Rules
 
 
 _EXPANDING: Mapping[Code, Handler] = {code: one for code, one in HANDLERS.items() if code is not Code.GOAL_LOST}
@@ -66,6 +68,7 @@ def sketch(
         >>> hearth.sketch(program, [home], known)
         (False, False, True)
     """
+    program = program.numbered()
     conditions = infer(program, knowledge) if original is None else original[0]
     if isinstance(conditions, Failure):
         return _with_asked(program, _smallest(program, [], (), (), knowledge), asked(program, knowledge))
@@ -79,7 +82,8 @@ def sketch(
     if runs:
         goal = meant(achieved(runs[0][1]), program, runs[0][0], knowledge)
         passed = tuple(fact for fact in milestones(runs[0][1]) if fact not in goal)
-    places = [_Place(execution.program, execution.worlds[0]) for _, execution in runs]
+    rules = suited(program, knowledge)  # those of the runs; what is left of a program may look as if others suited it
+    places = [_Place(execution.program, execution.worlds[0], rules) for _, execution in runs]
     keep = _smallest(program, places, goal, passed, knowledge)
     return _with_asked(program, keep, asked(program, knowledge))
 
@@ -113,9 +117,9 @@ def _smallest(
 def _suffices(
     keep: Sequence[bool], places: Sequence[_Place], goal: Postconditions, passed: Postconditions, knowledge: Knowledge
 ) -> bool:
-    for program, world in places:
+    for program, world, rules in places:
         rest = program.with_steps(step for step, kept in zip(program.steps, keep, strict=True) if kept)
-        done = repair(rest, world, goal, knowledge, handlers=_EXPANDING, canonical_only=False)
+        done = repair(rest, world, goal, knowledge, rules, handlers=_EXPANDING, canonical_only=False)
         if done.failure is not None or not _passes(nodes_of(program, world), done.execution, passed):
             return False
     return True

@@ -114,7 +114,7 @@ def augment(
         >>> [attempt.handler for attempt in first.attempts], first.failure
         (['not_close', 'inside_closed'], None)
     """
-    base = prepared(home)
+    program, base = program.numbered(), prepared(home)
     options = replace(options, rules=suited(program, base.knowledge, options.rules))
     if original is None:
         sampled = sample(program, home, seed, record_id, rules=options.rules)

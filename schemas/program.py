@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 MOST_OBJECTS = 2
 """Objects that an action takes at most."""
@@ -25,8 +25,8 @@ class ObjectRef:
 
     @property
     def key(self) -> tuple[str, int]:
-        """Identity within its program, whatever it is bound to."""
-        return (self.name, self.instance)
+        """Identity within its program, whatever it is bound to; of what only a node names, that node, below 0."""
+        return (self.name, self.instance or -(self.node or 0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ class Program:
         seen: dict[tuple[str, int], ObjectRef] = {}
         for step in self.steps:
             for ref in step.objects:
-                seen.setdefault(ref.key if ref.instance else (ref.name, -(ref.node or 0)), ref)
+                seen.setdefault(ref.key, ref)
         return tuple(seen.values())
 
     def agents(self) -> int:
@@ -96,8 +96,22 @@ class Program:
         return Program(self.title, self.description, tuple(steps))
 
     def unbound(self) -> Program:
-        """The program as collected: node ids left out."""
-        return self.bound({})
+        """The program as collected: node ids left out, and instances for what they alone named."""
+        return self.numbered().bound({})
+
+    def numbered(self) -> Program:
+        """The program with an instance for each object that only a node names, so that it may get other nodes."""
+        if all(ref.instance for step in self.steps for ref in step.objects):
+            return self
+        taken = {ref.key for ref in self.objects() if ref.instance}
+        given: dict[ObjectRef, ObjectRef] = {}
+        for ref in self.objects():
+            if not ref.instance:
+                free = next(n for n in range(1, len(taken) + 2) if (ref.name, n) not in taken)
+                given[ref] = ObjectRef(ref.name, free, ref.node)
+                taken.add((ref.name, free))
+        steps = (replace(step, objects=tuple(given.get(ref, ref) for ref in step.objects)) for step in self.steps)
+        return replace(self, steps=tuple(steps))
 
     def bound(self, nodes: dict[tuple[str, int], int]) -> Program:
         """The program with each object bound to the node given for its (name, instance), or to none."""

@@ -204,6 +204,16 @@ def _twice(instruction: Step) -> Failure:
     return Failure(Code.CONFLICT, 0, instruction.agent, instruction.action, (), names, expected, found)
 
 
+def unfit(world: World, instruction: Step) -> Failure | None:
+    """Why an instruction fails whatever its objects are bound to, or None: nobody has its number (UNKNOWN_AGENT), or it
+    has fewer or more objects than its action takes (WRONG_ARITY).
+    """
+    if not 0 <= instruction.agent < len(world.agents):
+        return _refused(world, instruction)
+    arity = world.home.knowledge.arity.get(instruction.action)
+    return None if arity in (None, len(instruction.objects)) else _miscounted(instruction, arity)
+
+
 def _refused(world: World, instruction: Step) -> Failure:
     names = tuple(ref.name for ref in instruction.objects)
     if not 0 <= instruction.agent < len(world.agents):

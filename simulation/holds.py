@@ -139,7 +139,13 @@ def _named(name: str, home: Home) -> int:
     first, _, number = name.partition(":")
     if first != AGENT:
         return home.instances(name)
-    return 1 << home.agents[int(number)] if number.isdecimal() and int(number) < len(home.agents) else 0
+    if len(number) > _DIGITS or not number.isdecimal() or int(number) >= len(home.agents):
+        return 0
+    return 1 << home.agents[int(number)]
+
+
+_DIGITS = 9
+"""Of a character's number at most; Python refuses to read numbers of thousands of digits."""
 
 
 def unary(name: str) -> Unary:

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from functools import cache, cached_property
 from itertools import accumulate
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 from hearth.grounding.environments.thinning import superfluous, without
 from hearth.kb.knowledge import Knowledge
@@ -104,7 +103,7 @@ class Base:
         if knowledge.is_room(name):
             if self.instances(name):
                 return None
-            rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)}))
+            rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)})) or "none"
             return Code.NO_ROOM, f"a home with a {name}, or a room that serves as one", f"{home.name} has {rooms}"
         known = knowledge.object_class(name)
         if known is None or known.category in WITHOUT_PLACE or known.rooms or self.instances(name):
@@ -133,14 +132,12 @@ class Base:
                     yield (name, i, placement.edge), placement.weight
 
 
-_BASES: WeakKeyDictionary[Home, Base] = WeakKeyDictionary()
-
-
 def prepared(home: Home) -> Base:
     """The home prepared for sampling, once for each home."""
-    base = _BASES.get(home)
+    known: dict[str, Base] = home.worked_out
+    base = known.get("prepared")
     if base is None:
-        base = _BASES[home] = Base(home)
+        base = known["prepared"] = Base(home)
     return base
 
 

@@ -14,7 +14,7 @@ from hearth.grounding.preconditions.abduction import StartContext, conditions_fo
 from hearth.grounding.preconditions.checking import unmet, unmet_failure
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.infer import infer
-from hearth.schemas.failures import Failure
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import CHARACTER, HANDS, Key
 from hearth.schemas.program import Program
@@ -140,7 +140,7 @@ def sample(
         >>> execution.executable, len(environment.world.graph().nodes)
         (True, 371)
     """
-    base = size.base(home)
+    program, base = program.numbered(), size.base(home)
     rules = suited(program, base.knowledge, rules)
     found = infer(program, base.knowledge, rules) if conditions is None else conditions
     if isinstance(found, Failure):
@@ -163,7 +163,7 @@ def sample(
 
 
 def unplaceable(program: Program, base: Base) -> Failure | None:
-    """The failure of any sampling where the home lacks a room, or an object has no placement; else None."""
+    """The failure of any sampling where the home lacks a room, or all, or an object has no placement; else None."""
     for tick, steps in enumerate(program.ticks()):
         for step in steps:
             for ref in step.objects:
@@ -171,6 +171,8 @@ def unplaceable(program: Program, base: Base) -> Failure | None:
                 if found is not None:
                     code, expected, actual = found
                     return Failure(code, tick, step.agent, step.action, (), (ref.name,), expected, actual)
+    if not base.home.rooms:
+        return Failure(Code.NO_ROOM, expected="a home with a room", actual=f"{base.home.name} has none")
     return None
 
 

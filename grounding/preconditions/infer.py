@@ -38,12 +38,14 @@ def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Pre
         >>> list(map(str, hearth.infer(program, known)))
         ['inside(milk (1), fridge (1))', 'closed(fridge (1))']
     """
+    program = program.numbered()
     conditions, execution, step = _inferred(program, knowledge, rules)
     return conditions if execution.failure is None else _contradiction(program, conditions, execution, step, knowledge)
 
 
 def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> tuple[int, ...]:
     """The steps of a contradiction: one, or the one that violates another's condition and that other."""
+    program = program.numbered()
     conditions, execution, step = _inferred(program, knowledge, rules)
     if execution.failure is None:
         return ()

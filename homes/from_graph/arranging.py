@@ -91,8 +91,10 @@ def furnish(crowd: Crowd, room_id: int, room: Room) -> bool:
 def _squeeze_in(crowd: Crowd, node: int) -> None:
     """Give what found no room on or in a thing a place in its middle all the same, as small as it must be."""
     parts = crowd.parts
-    holder = crowd.things[node]
-    for child in parts.children.get(node, ()):
+    waiting = parts.children.get(node, [])[::-1]
+    while waiting:
+        child = waiting.pop()
+        holder = crowd.things[parts.parent[child][0]]
         class_name = parts.nodes[child].class_name
         shaped = form(class_name, parts.knowledge)
         if shaped is None:
@@ -107,7 +109,7 @@ def _squeeze_in(crowd: Crowd, node: int) -> None:
             on, inside = (holder.name, "") if word == "on" else ("", holder.name)
             crowd.things[child] = Thing(str(child), class_name, holder.room, box, holder.yaw, "item", on=on,
                                         inside=inside, line=child)  # fmt: skip
-        _squeeze_in(crowd, child)
+        waiting += parts.children.get(child, [])[::-1]
 
 
 def _front(class_name: str, shaped: Form) -> float:

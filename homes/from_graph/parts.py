@@ -132,16 +132,28 @@ class Parts:
 
     def piece(self, node: int) -> Piece:
         """A thing with what stands on and in it, as a plan's entry that is called by the node's id."""
-        under: dict[str, list[Piece]] = {"on": [], "inside": []}
-        for child in sorted(self.children.get(node, ())):
-            if form(self.nodes[child].class_name, self.knowledge) is not None:
-                under[self.parent[child][1]].append(self.piece(child))
-        on, inside = tuple(under["on"]), tuple(under["inside"])
-        return Piece(self.nodes[node].class_name, str(node), on=on, inside=inside, line=node)
+        shaped = self._shaped_family(node)
+        pieces: dict[int, Piece] = {}
+        for each in reversed(shaped):  # what is on and in a thing comes before it
+            under: dict[str, list[Piece]] = {"on": [], "inside": []}
+            for child in sorted(self.children.get(each, ())):
+                if child in pieces:
+                    under[self.parent[child][1]].append(pieces[child])
+            on, inside = tuple(under["on"]), tuple(under["inside"])
+            pieces[each] = Piece(self.nodes[each].class_name, str(each), on=on, inside=inside, line=each)
+        return pieces[node]
+
+    def _shaped_family(self, node: int) -> list[int]:
+        """A thing and what has a form of all on and in it, each after what it is on or in."""
+        found = [node]
+        for each in found:  # it grows meanwhile: containers may be in each other a thousand deep
+            children = self.children.get(each, ())
+            found += [child for child in children if form(self.nodes[child].class_name, self.knowledge) is not None]
+        return found
 
     def family(self, node: int) -> set[int]:
         """A thing and everything on and in it."""
-        found = {node}
-        for child in self.children.get(node, ()):
-            found |= self.family(child)
-        return found
+        found = [node]
+        for each in found:
+            found += self.children.get(each, ())
+        return set(found)

@@ -84,10 +84,25 @@ class Support:
 def contents(
     thing: Thing, piece: Piece, knowledge: Knowledge, faults: Faults, seats: Sequence[Thing] = ()
 ) -> Iterator[Thing]:
-    """All things on and in a thing, recursively, by the plan's entry; `seats` are those of its room.
+    """All things on and in a thing, and on and in those, by the plan's entry; `seats` are those of its room.
 
     What finds no room is noted as NO_PLACE and left out.
     """
+    opened = [_direct(thing, piece, knowledge, faults, seats)]
+    while opened:
+        found = next(opened[-1], None)
+        if found is None:
+            opened.pop()
+        else:
+            entry, stood = found
+            yield stood
+            opened.append(_direct(stood, entry, knowledge, faults))
+
+
+def _direct(
+    thing: Thing, piece: Piece, knowledge: Knowledge, faults: Faults, seats: Sequence[Thing] = ()
+) -> Iterator[tuple[Piece, Thing]]:
+    """What stands on and in a thing itself, with its entry."""
     numbers: dict[str, int] = {}
     shaped = shape(piece, knowledge)
     settings = list(_settings(thing, piece.lay, seats, numbers, knowledge))
@@ -100,9 +115,7 @@ def contents(
         fixed = settings if level == "on" else []
         if here or fixed:
             standing, missed = _arranged(thing, shaped, level, (here, fixed), knowledge)
-            for entry, stood in standing:
-                yield stood
-                yield from contents(stood, entry, knowledge, faults)
+            yield from standing
             for entry, why in missed:
                 where = f"{'on' if level == 'on' else 'in'} `{thing.name}`"
                 faults.add(Code.NO_PLACE, f"`{entry.class_name}` {where}: {why}", entry.line,

@@ -18,8 +18,9 @@ from hearth.kb.formula import (
     predicates,
 )
 from hearth.kb.groups import DECLARED
+from hearth.kb.loading.entry_shapes import LIST, NAMES, REASONS, TEXT, fits, parts
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed, yaml_entries
-from hearth.kb.loading.source_files import Entry, Faults, strings
+from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
 from hearth.kb.records import Action, Condition, Repair, Requirement
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
@@ -27,6 +28,10 @@ from hearth.schemas.vocabulary import RELATIONS
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
 _ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source"})
+_ACTION_SHAPES = {"needs": LIST, "before": LIST, "effects": LIST, "roles": NAMES, "words": NAMES, "aliases": NAMES,
+                  "groups": NAMES, "say": TEXT, "source": TEXT}  # fmt: skip
+_REQUIREMENT_SHAPES = dict.fromkeys(("any", "all", "classes", "contains"), NAMES) | {"also": REASONS, "never": REASONS}
+_REPAIR_SHAPES = {"on": TEXT, "actions": NAMES, "when": TEXT, "say": TEXT, "source": TEXT}
 _REPAIR_KEYS = frozenset({"on", "actions", "when", "say", "source"})
 
 
@@ -55,19 +60,22 @@ def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict
 
 
 def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str, Entry], faults: Faults) -> Action:
-    fields = entry.value
+    fields = parts(entry.value, _ACTION_SHAPES, name, entry, faults)
     for key in sorted(fields.keys() - _ACTION_KEYS):
         faults.at(entry, f"`{key}` is not part of an action", f"parts are {', '.join(sorted(_ACTION_KEYS))}")
     roles = strings(fields.get("roles"))
     needs = tuple(_requirement(value, entry, faults) for value in fields.get("needs") or ())
-    accepts = tuple(_requirement(value, grammar, faults) for value in grammar.value) if grammar else needs
+    asked = grammar is not None and fits(grammar.value, LIST, name, grammar, faults)
+    accepts = (
+        tuple(_requirement(value, grammar, faults) for value in grammar.value or ()) if grammar and asked else needs
+    )
     if len(needs) != len(roles):
         faults.at(entry, f"{name} has {len(roles)} roles but needs for {len(needs)}", "one need for each role")
     if len(accepts) != len(roles):
         faults.at(grammar or entry, f"{name} takes {len(roles)} objects, not {len(accepts)}", code=Code.WRONG_ARITY)
     return Action(
         name=name,
-        id=fields["id"] if isinstance(fields.get("id"), int) else -1,
+        id=whole_number(str(fields["id"])) if type(fields.get("id")) is int else -1,
         executed=False,
         roles=roles,
         needs=needs,
@@ -96,6 +104,7 @@ def _requirement(value: Any, at: Entry, faults: Faults) -> Requirement:
     if not isinstance(value, dict):
         faults.at(at, f"`{value}` is not a requirement", "anything, object, or a mapping")
         return Requirement()
+    value = parts(value, _REQUIREMENT_SHAPES, "a requirement", at, faults)
     for key in sorted(value.keys() - _REQUIREMENT_KEYS):
         faults.at(at, f"`{key}` is not part of a requirement", f"parts are {', '.join(sorted(_REQUIREMENT_KEYS))}")
     return Requirement(
@@ -103,9 +112,13 @@ def _requirement(value: Any, at: Entry, faults: Faults) -> Requirement:
         all_of=check_properties(strings(value.get("all")), at, faults),
         classes=frozenset(strings(value.get("classes"))),
         contains=strings(value.get("contains")),
-        also=frozenset(value.get("also") or ()),
-        never=frozenset(value.get("never") or ()),
+        also=_classes(value.get("also")),
+        never=_classes(value.get("never")),
     )
+
+
+def _classes(value: Any) -> frozenset[str]:
+    return frozenset(value if isinstance(value, dict) else strings(value))
 
 
 def _conditions(rows: Iterable[Any], at: Entry, faults: Faults) -> Iterator[Condition]:
@@ -116,19 +129,27 @@ def _conditions(rows: Iterable[Any], at: Entry, faults: Faults) -> Iterator[Cond
             continue
         code, text = checks[0]
         formula = parsed(parse_formula, text, at, faults)
-        if formula is not None:
-            yield Condition(formula, Code[code], row.get("option", ""))
+        if formula is not None and fits(row.get("option"), TEXT, "option", at, faults):
+            yield Condition(formula, Code[code], str(row.get("option") or ""))
 
 
-def _effects(rows: Iterable[Any], at: Entry, entries: Mapping[str, Entry], faults: Faults) -> Iterator[Effect]:
+def _effects(
+    rows: Iterable[Any], at: Entry, entries: Mapping[str, Entry], faults: Faults, within: tuple[str, ...] = ()
+) -> Iterator[Effect]:
+    """Effects as they stand, and those of the actions that they are like; `within` names the ones being read."""
     for row in rows:
         if isinstance(row, str):
             effect = parsed(parse_effect, row, at, faults)
             if effect is not None:
                 yield effect
-        elif isinstance(row, dict) and row.get("like") in entries:
+        elif isinstance(row, dict) and isinstance(like := row.get("like"), str) and like in entries:
             when = parsed(parse_formula, row["when"], at, faults) if "when" in row else TRUE
-            for effect in _effects(entries[row["like"]].value.get("effects") or (), at, entries, faults):
+            if like in within:
+                faults.at(at, f"`{like}` is like itself in a circle", "let one of them name its effects")
+                continue
+            other = entries[like].value
+            more = other.get("effects") if isinstance(other, dict) else None
+            for effect in _effects(more if isinstance(more, list) else (), at, entries, faults, (*within, like)):
                 yield _under(when or TRUE, effect)
         else:
             faults.at(at, f"`{row}` is not an effect", "write a change, or `like: Action`")
@@ -169,7 +190,7 @@ def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) 
     """The repairs by name, in the order of the file: the first that fits is the one to try."""
     result = {}
     for name, entry in yaml_entries(layers, "repairs.yaml", faults).items():
-        fields = entry.value if isinstance(entry.value, dict) else {}
+        fields = parts(entry.value, _REPAIR_SHAPES, name, entry, faults)
         for key in sorted(fields.keys() - _REPAIR_KEYS - {"do"}):  # version 0.1 described edits, which nothing read
             faults.at(entry, f"`{key}` is not part of a repair", f"parts are {', '.join(sorted(_REPAIR_KEYS))}")
         if fields.get("on") not in Code.__members__:

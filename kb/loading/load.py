@@ -8,7 +8,6 @@ from pathlib import Path
 
 from hearth.kb.knowledge import Knowledge, grouped, key_of
 from hearth.kb.loading.actions import load_actions, load_derived, load_repairs
-from hearth.kb.loading.layers import yaml_entries
 from hearth.kb.loading.objects import (
     OBJECT_FILES,
     load_aliases,
@@ -17,7 +16,8 @@ from hearth.kb.loading.objects import (
     load_placements,
     load_stand_ins,
 )
-from hearth.kb.loading.source_files import Entry, Faults, check_extent
+from hearth.kb.loading.small_tables import load_limits, load_rooms, load_tables
+from hearth.kb.loading.source_files import Faults, check_extent
 from hearth.kb.records import Action, ObjectClass, Placement
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -127,7 +127,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
     actions = load_actions(layers, derived, faults)
     associations = load_associations(layers, objects, actions, faults)
     repairs = load_repairs(layers, actions, faults)
-    rooms, limits, tables = (yaml_entries(layers, f"{name}.yaml", faults) for name in ("rooms", "limits", "tables"))
+    stand_in, limits, tables = load_rooms(layers, faults), load_limits(layers, faults), load_tables(layers, faults)
     if faults:
         return None
     named = _with_synonyms(objects, aliases)
@@ -135,10 +135,10 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
     return Knowledge(
         actions=actions,
         objects=named,
-        rooms=tuple(sorted(rooms)),
+        rooms=tuple(sorted(stand_in)),
         state_groups=groups,
-        table_like=frozenset(tables["table_like"].value),
-        defaults=_default_states(tables["default_states"]),
+        table_like=tables.table_like,
+        defaults=tables.default_states,
         derived=derived,
         kinds=kinds,
         associations=associations,
@@ -146,18 +146,18 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
         _action_names=_action_spellings(actions),
         _object_names=spellings,
         _aliases={name: thing.synonyms for name, thing in named.items() if thing.synonyms},
-        _stand_ins={**stand_ins, **{name: _serving(name, rooms) for name in rooms}},
+        _stand_ins={**stand_ins, **{name: _serving(name, stand_in) for name in stand_in}},
         _placements=_by_weight(placements, 0),
         _held=_by_weight(placements, 2),
-        _limits={kind: entry.value for kind, entry in limits.items()},
+        _limits=limits,
     )
 
 
-def _serving(name: str, rooms: Mapping[str, Entry]) -> tuple[str, ...]:
+def _serving(name: str, stand_in: Mapping[str, str]) -> tuple[str, ...]:
     """The rooms that serve as a room where a home lacks it, nearest first."""
     found = [name]
-    while (stand_in := rooms[found[-1]].value.get("stand_in", name)) not in found:
-        found.append(stand_in)
+    while (other := stand_in[found[-1]] or name) not in found:
+        found.append(other)
     return tuple(found[1:])
 
 
@@ -188,7 +188,3 @@ def _with_synonyms(objects: Mapping[str, ObjectClass], aliases: Mapping[str, str
 
 def _by_weight(placements: list[Placement], column: int) -> dict[str, tuple[Placement, ...]]:
     return grouped((str(each[column]), each) for each in sorted(placements, key=lambda each: -each.weight))
-
-
-def _default_states(entry: Entry) -> dict[str, dict[str, tuple[str, ...]]]:
-    return {part: {name: tuple(states) for name, states in value.items()} for part, value in entry.value.items()}

@@ -3,8 +3,9 @@
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
+from hearth.kb.loading.entry_shapes import NAMES, parts
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, csv_rows, cycles, yaml_entries
-from hearth.kb.loading.source_files import Entry, Faults, strings
+from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
 from hearth.kb.records import EDGES, Association, Kind, ObjectClass, Placement, StateGroup
 from hearth.schemas.failures import Code
 
@@ -24,14 +25,18 @@ OBJECT_FILES = (
 _OBJECT_COLUMNS = (
     "id", "name", "category", "hypernym", "properties", "states", "rooms", "size", "gloss", "same_as", "source",
 )  # fmt: skip
+LONGEST = 1000
+"""Metres that no thing has."""
+
 _WEIGHTS = frozenset("012345")
+_STATE_SHAPES = dict.fromkeys(("states", "table", "needs", "given_by"), NAMES)
 
 
 def load_state_groups(layers: Layers, faults: Faults) -> dict[str, StateGroup]:
     """The groups of states, by name."""
     result = {}
     for name, entry in yaml_entries(layers, "states.yaml", faults).items():
-        fields = entry.value
+        fields = parts(entry.value, _STATE_SHAPES, name, entry, faults)
         states = strings(fields.get("states"))
         result[name] = StateGroup(
             name=name,
@@ -86,7 +91,7 @@ def _object(at: Entry, groups: Mapping[str, StateGroup], faults: Faults) -> Obje
     owned = check_properties(properties.split(), at, faults)
     return ObjectClass(
         name=name,
-        id=int(number) if number.isdecimal() else -1,
+        id=whole_number(number),
         category=category,
         hypernym=hypernym,
         properties=owned,
@@ -122,6 +127,8 @@ def _size(text: str, at: Entry, faults: Faults) -> tuple[float, float, float]:
     except ValueError:
         faults.at(at, f"`{text}` is not a size", "width, height and depth in metres: `0.6 1.8 0.65`")
         return (0.0, 0.0, 0.0)
+    if not all(0 <= side < LONGEST for side in (width, height, depth)):  # NaN is not, either
+        faults.at(at, f"`{text}` is not a size", f"metres from 0 to {LONGEST}")
     return (width, height, depth)
 
 
@@ -207,7 +214,7 @@ def load_stand_ins(layers: Layers, known: Container[str], faults: Faults) -> dic
         for thing in (name, stand_in):
             if thing not in known:
                 faults.at(entry, f"`{thing}` is not a known object", code=Code.UNKNOWN_OBJECT)
-        if not rank.isdecimal():
+        if whole_number(rank) < 0:
             faults.at(entry, f"`{rank}` is not a rank", "1 for the best, then 2, ...")
             continue
         found.setdefault(name, []).append((int(rank), stand_in))

@@ -177,3 +177,12 @@ def strings(value: Any) -> tuple[str, ...]:
     if isinstance(value, str):
         return (value,)
     return tuple(map(str, value)) if isinstance(value, list) else (str(value),)
+
+
+DIGITS = 9
+"""Of a number at most: ids are published as 32 bits, and Python refuses to read numbers of thousands of digits."""
+
+
+def whole_number(text: str) -> int:
+    """The whole number that a cell says, or -1."""
+    return int(text) if text.isdecimal() and len(text) <= DIGITS else -1

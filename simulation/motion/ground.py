@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -253,25 +252,30 @@ def _touched(moved: Moved) -> int:
     return moved.on | moved.inside | mask_of({key >> 3 for key in moved.extra if key & 7 in (ON, INSIDE)})
 
 
-_KNOWN: WeakKeyDictionary[Home, Here | None] = WeakKeyDictionary()
-
-
 def ground_of(home: Home) -> Here | None:
     """The ground of a home; None where its rooms have no boxes. A home derived from another shares its ground, unless
     something that stood on the floor is gone.
     """
+    known: dict[str, Here | None] = home.worked_out
     try:
-        return _KNOWN[home]
+        return known["ground"]
     except KeyError:
         pass
-    base = None if home.base is None else ground_of(home.base[0])
+    line = [home]
+    while (derived := line[-1].base) is not None and "ground" not in derived[0].worked_out:
+        line.append(derived[0])
+    for each in reversed(line):  # thousands of homes may be derived in a row: no recursion
+        each.worked_out["ground"] = _found(each)
+    return known["ground"]
+
+
+def _found(home: Home) -> Here | None:
+    """The ground of a home; that of the home it was derived from is known."""
+    base: Here | None = None if home.base is None else home.base[0].worked_out["ground"]
     if base is not None and not _gone(home, base.ground):
-        found: Here | None = Here(base.ground, home)
-    else:
-        rooms = [home.node(i) for i in indices(home.rooms & home.everything)]
-        found = Here(Ground(home), home) if rooms and all(room.box is not None for room in rooms) else None
-    _KNOWN[home] = found
-    return found
+        return Here(base.ground, home)
+    rooms = [home.node(i) for i in indices(home.rooms & home.everything)]
+    return Here(Ground(home), home) if rooms and all(room.box is not None for room in rooms) else None
 
 
 def _gone(home: Home, ground: Ground) -> bool:

@@ -13,8 +13,11 @@ from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
 from hearth.simulation.world import fitting, overlay, rows
 from hearth.simulation.world import moved as kinds
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.derived import Movable, added_nodes, extended, without
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.moved import Moved
 from hearth.simulation.world.world import World
 
 __all__ = ["Movable", "added_nodes", "apply", "edit", "extended", "free_id"]
@@ -41,7 +44,8 @@ def edit(
         add: new nodes, each with its states; see `free_id`. They are nowhere until placed.
         remove: ids of nodes that vanish, with all their edges, out of all hands and memories.
         place: node id -> (`ON` or `INSIDE`, id of the place): it leaves hands and all it was ON, INSIDE and CLOSE to,
-            both ways, and is in the place's room, ON or INSIDE the place, and CLOSE to it.
+            both ways, and is in the place's room, ON or INSIDE the place, and CLOSE to it. What a character holds
+            comes along, as when it walks.
         link: edges that come; of BETWEEN only those of new nodes.
         unlink: edges to remove; missing ones are ignored.
         set: (node id, state): it enters the state and leaves the opposite.
@@ -117,15 +121,13 @@ def _moved_over(world: World, home: Home) -> World:
     before = World.start(world.home)
     there = apply(start, world.changes(before))
     old, new = world.home.ids, home.index
-    agents = tuple(
-        there_agent._replace(
-            origins=tuple((new[old[o]], new[old[p]], kind) for o, p, kind in agent.origins),
-            pose=agent.pose,
-            stride=agent.stride,
-        )
-        for agent, there_agent in zip(world.agents, there.agents, strict=False)
-    )
-    return World(home, there.states, (*agents, *there.agents[len(agents) :]), there.moved)
+    agents = list(there.agents)
+    numbers = {agent.index: number for number, agent in enumerate(agents)}  # new ones may stand before the others
+    for agent in world.agents:
+        number = numbers[new[old[agent.index]]]
+        origins = tuple((new[old[o]], new[old[p]], kind) for o, p, kind in agent.origins)
+        agents[number] = agents[number]._replace(origins=origins, pose=agent.pose, stride=agent.stride)
+    return World(home, there.states, tuple(agents), there.moved)
 
 
 def _without_node(world: World, i: int) -> World:
@@ -158,9 +160,26 @@ def _placed(world: World, i: int, relation: str, j: int) -> World:
         edges.append((i, "CLOSE", j))
     if room >= 0 and j != room:
         edges.append((i, "INSIDE", room))
-    if not world.home.characters & bit:
+    if world.home.characters & bit:
+        moved = _come_along(agents, i, moved, room)
+    else:
         moved = kinds.lift(moved, i, -1)
     return overlay.linked(World(world.home, world.states, tuple(agents), moved), edges)
+
+
+def _come_along(agents: list[Agent], i: int, moved: Moved, room: int) -> Moved:
+    """Bring what a character holds into a room with it, CLOSE to it alone; the characters' rows change, too."""
+    held = next(agent.held for agent in agents if agent.index == i)
+    for number, agent in enumerate(agents):
+        parted = agent._replace(**{name: getattr(agent, name) & ~held for name in _LEFT_BEHIND})
+        agents[number] = parted._replace(close=parted.close | held) if agent.index == i else parted
+    for each in indices(held):
+        moved = kinds.carry(moved, each, room)
+    return moved
+
+
+_LEFT_BEHIND = ("close", "facing", "faced", "inside", "contents")
+"""The rows of characters that lose what is carried away."""
 
 
 def _linked(world: World, edges: Iterable[Edge], check: bool) -> World | Failure:

@@ -216,6 +216,13 @@ class Home:
         return {}
 
     @cached_property
+    def worked_out(self) -> dict[str, Any]:
+        """What other modules work out once for a home, by their names. It goes with the home, of which it may be in a
+        circle: a table of theirs by home would hold every home for ever, as its values know their homes.
+        """
+        return {}
+
+    @cached_property
     def everything(self) -> int:
         """All nodes."""
         return (1 << len(self.ids)) - 1 & ~self.absent
@@ -233,11 +240,14 @@ class Home:
     @cached_property
     def furniture(self) -> int:
         """All nodes of the category Furniture."""
-        if self.base is not None:
-            base = self.base[0]
-            new = (i for i in range(len(base), len(self)) if self.nodes[i].category == "Furniture")
-            return base.furniture & ~self.absent | mask_of(new)
-        return mask_of(i for i in range(len(self)) if self.node(i).category == "Furniture")
+        home, new = self, 0
+        while home.base is not None and "furniture" not in vars(home):  # thousands of homes may be derived in a row
+            base = home.base[0]
+            new |= mask_of(i for i in range(len(base), len(home)) if home.nodes[i].category == "Furniture")
+            home = base
+        if home is self:
+            return mask_of(i for i in range(len(self)) if self.node(i).category == "Furniture")
+        return (home.furniture | new) & ~self.absent
 
     @cached_property
     def around(self) -> Rows:

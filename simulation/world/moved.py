@@ -71,16 +71,18 @@ def lift(moved: Moved, i: int, room: int) -> Moved:
 
 
 def carry(moved: Moved, i: int, room: int) -> Moved:
-    """Take node i along to a room: it loses INSIDE, CLOSE and FACING in both directions and is INSIDE the room."""
+    """Take node i along to a room (or nowhere): it loses INSIDE, CLOSE and FACING both ways and is INSIDE the room."""
     bit = 1 << i
+    there = 1 << room if room >= 0 else 0
     extra = moved.extra
     settled = moved.inside & moved.close & moved.facing & bit
     movable = (8 * i + CONTENTS, 8 * i + CLOSE, 8 * i + FACING, 8 * i + FACED)
-    if settled and extra.get(8 * i + INSIDE) == 1 << room and not any(key in extra for key in movable):
+    if settled and extra.get(8 * i + INSIDE, 0) == there and not any(key in extra for key in movable):
         return moved
     extra = dict(extra)
     unlink_all(extra, i, (INSIDE, CONTENTS, CLOSE, FACING, FACED))
-    link(extra, i, INSIDE, room)
+    if there:
+        link(extra, i, INSIDE, room)
     return Moved(moved.on, moved.inside | bit, moved.close | bit, moved.facing | bit, extra)
 
 

@@ -101,11 +101,13 @@ def room_of(world: WorldState, i: int) -> int:
 
     Of several rooms the first by id; a cycle of INSIDE is left once it closes.
     """
-    home = world.home
-    if not world.moved.inside >> i & 1:
-        room = home.direct_room[i]
-        if room >= 0:
-            return room
+    home, moved = world.home, world.moved
+    room = home.direct_room[i]
+    if room == i:
+        return room
+    # Either end of an edge may have been removed; an edge that came may lead to a room of a lower id.
+    if room >= 0 and not (moved.inside >> i | moved.inside >> room) & 1 and 8 * i + INSIDE not in moved.extra:
+        return room
     if home.characters >> i & 1:
         return agent_room(world, character(world, i))
     return _search_room(world, containers(world, i), 1 << i)

@@ -2,7 +2,8 @@
 
 import pytest
 
-from hearth.grounding.binding import Binding, bind
+from hearth.grounding.binding import Binding, bind, nearest
+from hearth.grounding.trial import Trial, attempt
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -99,3 +100,30 @@ def test_nodes_named_by_their_ids_alone_stay_apart(knowledge):
     free = Step("Walk", (ObjectRef("keyboard", 1),))
     taken = bind(given.with_steps([*steps, free]), world(knowledge))
     assert isinstance(taken, Failure) and taken.code is Code.UNBOUND and taken.tick == 4
+
+
+def test_where_some_objects_have_nodes_the_failure_is_that_of_the_search(knowledge):
+    """A run of what is bound only in part would end at the first step, for want of a node."""
+    home = Home.from_graph(EnvironmentGraph(OFFICE, EDGES), "office", knowledge)
+    free, fixed = ObjectRef("keyboard", 1), ObjectRef("computer", 1, 11)
+    steps = (Step("Walk", (free,)), Step("Walk", (fixed,)), Step("SwitchOff", (fixed,)))
+    found = attempt(Program("Work", "", steps), home)
+    assert isinstance(found, Failure) and (found.code, found.tick) == (Code.IS_OFF, 2)
+    whole = attempt(Program("Work", "", steps[1:]), home)
+    assert isinstance(whole, Trial) and whole.execution.failure.code is Code.IS_OFF
+
+
+def test_without_characters_nobody_acts(knowledge):
+    nobody = world(knowledge, [node for node in OFFICE if node.id != 3], [e for e in EDGES if e.source != 3])
+    work = program("[Walk] <computer> (1)")
+    found = bind(work, nobody)
+    assert isinstance(found, Failure) and (found.code, found.tick) == (Code.UNKNOWN_AGENT, 0)
+    assert nearest(work, nobody).nodes == {("computer", 1): 11}
+
+
+def test_more_objects_than_an_action_takes_are_a_failure_of_their_step(knowledge):
+    computer, keyboard = ObjectRef("computer", 1), ObjectRef("keyboard", 1)
+    work = Program("Work", "", (Step("Walk", (computer,)), Step("Walk", (computer, keyboard))))
+    found = bind(work, world(knowledge))
+    assert isinstance(found, Failure) and (found.code, found.tick) == (Code.WRONG_ARITY, 1)
+    assert nearest(work, world(knowledge)).nodes.keys() == {("computer", 1), ("keyboard", 1)}

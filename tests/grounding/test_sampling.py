@@ -1,11 +1,13 @@
 """Sampled environments hold what they promise, and depend on nothing but seed, program and home."""
 
 import zipfile
+from functools import partial
 
 import orjson
 import pytest
 
 from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.environments.multi_agent import sample_together
 from hearth.grounding.environments.sampling import Size, sample
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.checking import unmet
@@ -16,8 +18,9 @@ from hearth.homes.lint import lint
 from hearth.kb import grammar
 from hearth.kb.loading.load import default, load
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Edge, Node, from_release
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node, from_release
 from hearth.schemas.literals import Literal
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.vocabulary import FIRST_ADDED_ID
 from hearth.simulation.engine import run
@@ -268,3 +271,24 @@ def test_a_thing_that_belongs_nowhere_is_named(maple, tmp_path):
     failure = sample(read("Zither\nFind it.\n\n\n[Walk] <zither> (1)\n", known), home, 0)
     assert (failure.code, failure.names) == (Code.NO_PLACE, ("zither",))
     assert "placements.csv" in failure.expected
+
+
+@pytest.mark.parametrize("draw", [sample, partial(sample_together, agents=2)])
+def test_a_home_without_rooms_is_a_failure(draw):
+    nodes = (Node(3, "character", "Characters"), Node(4, "cup", "Props", ("GRABBABLE",)))
+    home = Home.from_graph(EnvironmentGraph(nodes), "bare", default())
+    walk = Program("Walk", "", (Step("Walk", (ObjectRef("cup", 1),)),))
+    found = draw(walk, home, seed=0)
+    assert isinstance(found, Failure)
+    assert (found.code, found.actual) == (Code.NO_ROOM, "bare has none")
+
+
+def test_what_nodes_alone_name_stays_apart_in_another_home(maple):
+    refs = [ObjectRef("cup", 0, node) for node in (1, 2)]
+    take = Program("Take", "", tuple(Step(name, (ref,)) for ref in refs for name in ("Walk", "Grab")))
+    found = infer(take, default())
+    assert isinstance(found, Preconditions)
+    for conditions in (None, found):
+        environment, execution = sample(take, maple, 0, "apart", conditions)
+        assert execution.executable
+        assert len({ref.node for ref in environment.program.objects()}) == 2

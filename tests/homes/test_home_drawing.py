@@ -1,6 +1,7 @@
 """Floor plans as SVG and PNG."""
 
 import xml.etree.ElementTree as Xml
+from dataclasses import replace
 
 import pytest
 
@@ -46,3 +47,12 @@ def test_names_of_furniture_are_written_over_what_stands_on_it():
     last = max(number for number, shape in enumerate(drawn) if shape.kind == "rect")
     assert all(number > last for number, shape in enumerate(drawn) if shape.kind == "text")
     assert {"character", "bed", "fridge"} <= {shape.text for shape in drawn if shape.kind == "text" and shape.edge}
+
+
+def test_blinds_are_drawn_as_curtains():
+    layout = library.load_layout("maple", default())
+    curtain = next(thing for thing in layout.things if thing.class_name == "curtain")
+    hung = replace(layout, things=(*layout.things, replace(curtain, class_name="blinds")))
+    colour = drawing.COLOURS["curtain"]
+    drawn, before = (sum(shape.fill == colour for shape in drawing.shapes(each)) for each in (hung, layout))
+    assert drawn == before + 1

@@ -151,3 +151,13 @@ def test_tiles_and_walls_are_where_what_is_on_them_is():
     area = sum(box.size[0] * box.size[2] for n, box in boxes.items() if n in dict(panels[:6]))
     assert area == pytest.approx(boxes[2].size[0] * boxes[2].size[2])
     assert all(boxes[n] is not None for n, _ in panels)
+
+
+@pytest.mark.parametrize("relation", ["INSIDE", "ON"])
+def test_things_may_be_in_or_on_each_other_a_thousand_deep(relation):
+    boxes = tuple(Node(10 + i, "box", "Props", ("CONTAINERS", "CAN_OPEN")) for i in range(1200))
+    nodes = (Node(1, "kitchen", "Rooms"), Node(2, "character", "Characters"), *boxes)
+    edges = [Edge(2, "INSIDE", 1), Edge(10, "INSIDE", 1)]
+    edges += [Edge(each.id + 1, relation, each.id) for each in boxes[:-1]]
+    laid = lay_out(EnvironmentGraph(nodes, tuple(edges)), "tower", default())
+    assert {thing.line for thing in laid.layout.things} >= {box.id for box in boxes}

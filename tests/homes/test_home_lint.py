@@ -1,6 +1,8 @@
 """The linter finds each fault that a graph can have, and none in our homes."""
 
 from dataclasses import replace
+from itertools import pairwise
+from time import process_time
 from types import SimpleNamespace
 
 import pytest
@@ -144,3 +146,25 @@ def test_a_room_of_no_size_is_a_fault_and_no_memory(size):
 
     with pytest.raises(HearthError, match="metres"):
         grid(Plan, None, ())
+
+
+LONG = tuple(range(10, 6010))
+
+
+@pytest.mark.parametrize(
+    "edges",
+    [
+        [(one, "INSIDE", other) for one, other in pairwise((*LONG[::-1], ROOM))],
+        [(one, "INSIDE", other) for one, other in pairwise(LONG)],
+        [(CUP, "INSIDE", other) for other in LONG],
+        [edge for other in LONG for edge in ((CUP, "CLOSE", other), (other, "CLOSE", CUP))],
+    ],
+    ids=["a chain", "a chain in no room", "in many", "close to many"],
+)
+def test_large_graphs_take_time_by_their_size(edges):
+    """A hundredth of the limit; by the square of its size, a chain took four times the limit."""
+    boxes = tuple(Node(number, "box", "Props") for number in LONG)
+    graph = EnvironmentGraph((*NODES, *boxes), (*INSIDE, *(Edge(*edge) for edge in edges)))
+    began = process_time()
+    lint(graph, default())
+    assert process_time() - began < 3

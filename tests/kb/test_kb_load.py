@@ -261,3 +261,45 @@ def test_a_file_of_the_release_that_is_none_is_refused(tmp_path, text):
     (tmp_path / "object_states.json").write_text(text)
     with pytest.raises(HearthError, match="not the release's file"):
         read_release(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "message"),
+    [
+        ("limits.yaml", "sit: 3", "`sit` is `3`"),
+        ("limits.yaml", "lie: {bed: 3}", "`lie` is `{'bed': 3}`"),
+        ("limits.yaml", "lie: {default: many}", "`lie` is `{'default': 'many'}`"),
+        ("rooms.yaml", "kitchen:", "`kitchen` is `None`"),
+        ("rooms.yaml", "kitchen: {stand_in: [pantry]}", "`kitchen: stand_in` is `['pantry']`"),
+        ("rooms.yaml", "kitchen: {stand_in: cup}", "`cup` is not a room that programs may name"),
+        ("states.yaml", "power: [ON, OFF]", "`power` is `['ON', 'OFF']`"),
+        ("tables.yaml", "table_like: desk", "`table_like` is `desk`"),
+        (
+            "tables.yaml",
+            "default_states: {always: {states: [CLEAN]}, properties: {}}",
+            "`default_states` lacks `classes`",
+        ),
+        ("tables.yaml", "default_states: []", "`default_states` is `[]`"),
+        (
+            "tables.yaml",
+            "default_states: {always: {}, classes: {door: OPEN}, properties: {}}",
+            "`default_states: classes` is `{'door': 'OPEN'}`",
+        ),
+        ("affordances.yaml", "Cut: 7", "`Cut` is `7`"),
+        ("affordances.yaml", "Cut: [{any: {CUTTABLE: yes}}]", "`a requirement: any` is `{'CUTTABLE': 'yes'}`"),
+        ("repairs.yaml", "one: {on: [IS_OPEN]}", "`one: on` is `['IS_OPEN']`"),
+        ("actions_written.yaml", "Hop: {id: 900, roles: [], needs: yes}", "`Hop: needs` is `yes`"),
+        ("actions.yaml", "Hop: {id: 900, effects: 5}", "`Hop: effects` is `5`"),
+        ("actions.yaml", "Hop: {id: 900, effects: [{like: Hop}]}", "`Hop` is like itself in a circle"),
+        ("actions.yaml", "Hop: {id: 900, effects: [{like: [Walk]}]}", "`{'like': ['Walk']}` is not an effect"),
+        ("actions.yaml", f"Hop: {{id: {10**20}}}", "`Hop` has no id"),
+        ("stand_ins.csv", f"class,rank,stand_in,source\ncup,{'1' * 5000},mug,ours", f"`{'1' * 5000}` is not a rank"),
+        ("objects_things.csv", OBJECT_HEADER + f"{'1' * 5000},gadget,Props,tool,,,,,,,ours", "`gadget` has no id"),
+        ("objects_things.csv", OBJECT_HEADER + "9000,gadget,Props,tool,,,,1 nan 2,,,ours", "`1 nan 2` is not a size"),
+    ],
+)
+def test_entries_of_odd_shapes_are_faults_with_their_file_and_a_remedy(tmp_path, file, text, message):
+    (tmp_path / file).write_text(text + "\n")
+    first, *_ = faults(tmp_path)
+    assert first.message == message
+    assert first.file.endswith(file) and first.line > 0 and first.suggestion

@@ -5,7 +5,8 @@ from __future__ import annotations
 from repair_worlds import ROOMS, small_world, steps_of
 
 from hearth.grounding.preconditions.postconditions import achieved, missing, nodes_of, reached
-from hearth.schemas.literals import Literal
+from hearth.schemas.literals import HOLDS, Literal
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import run
 
 ME = ("character", 1)
@@ -78,3 +79,20 @@ def test_goals_are_said_of_instances_and_asked_of_any_binding():
 def test_every_character_has_a_node():
     world = small_world("1 kitchen\n10 character inside 1\n11 character inside 1")
     assert nodes_of(steps_of("[StandUp]"), world) == {("character", 1): 10, ("character", 2): 11}
+
+
+def test_of_what_nodes_alone_name_each_is_a_thing_of_its_own():
+    """As steps of `legal` name them: without instances."""
+    world = small_world(ROOMS + "20 table inside 1\n21 cup on 20 inside 1\n22 cup on 20 inside 1")
+    table, one, other = ObjectRef("table", 0, 20), ObjectRef("cup", 0, 21), ObjectRef("cup", 0, 22)
+    steps = [Step("Walk", (table,)), Step("Grab", (one,)), Step("Grab", (other,)), Step("PutBack", (other, table))]
+    program = Program("Cups", "", tuple(steps))
+    nodes = nodes_of(program, world)
+    assert sorted(nodes.values()) == [10, 20, 21, 22]
+    execution = run(world, program)
+    assert set(achieved(execution)) == {Literal(HOLDS, (ME, one.key))}
+    assert missing(achieved(execution), nodes, world) == achieved(execution)
+    again = Program("Cups", "", tuple(steps[:1] + steps[2:]))
+    assert nodes_of(again, world)[other.key] == 22
+    unbound = [(ref.name, ref.instance, ref.node) for ref in program.unbound().objects()]
+    assert unbound == [("table", 1, None), ("cup", 1, None), ("cup", 2, None)]

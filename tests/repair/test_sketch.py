@@ -66,6 +66,12 @@ def test_looking_stays_only_where_the_description_asks_for_it(homes):
     assert kept(program_of("TV", "", *steps), homes) == []
 
 
+def test_a_sketch_goes_by_the_rules_that_suit_its_program(homes):
+    steps = ["[Walk] <television> (1)", "[TurnTo] <television> (1)", "[Watch] <television> (1)"]
+    program = program_of("TV", "", *steps, "[SwitchOn] <television> (1)")
+    assert kept(program, homes) == ["[Watch] <television> (1)", "[SwitchOn] <television> (1)"]
+
+
 def test_words_ask_by_verb_and_by_any_name_of_the_object():
     program = program_of("", "I turn on the tv, and sit down.", "[SwitchOn] <television> (1)", "[Sit] <couch> (1)")
     assert asked(program, default()) == (True, False)

@@ -11,10 +11,14 @@ from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import OPPOSITE, STATES
 from hearth.simulation.engine import act
+from hearth.simulation.motion.ground import ground_of
+from hearth.simulation.observation import reach
 from hearth.simulation.rules import DEFAULT
+from hearth.simulation.world import rows
 from hearth.simulation.world.derived import Movable
 from hearth.simulation.world.edit import added_nodes, apply, edit, extended, free_id
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
 
@@ -184,6 +188,17 @@ def test_edges_and_states_come_and_go_one_by_one(seed):
         else:
             world, states = edit(world, clear=[(node_id, state)]), states - {(node_id, state)}
         assert facts(world) == (edges, states), edge
+    anew = World.start(Home.from_graph(world.graph(), "", default()))
+    assert [rows.room_of(world, i) for i in range(len(ids))] == [rows.room_of(anew, i) for i in range(len(ids))]
+
+
+def test_what_was_unlinked_from_a_room_is_no_longer_in_it():
+    world = World.start(kitchen())
+    alone = edit(world, unlink=[Edge(6, "INSIDE", 2)])
+    assert (rows.room_of(alone, 5), rows.room_of(alone, 1)) == (-1, 1)
+    lower = edit(world, link=[Edge(6, "INSIDE", 1)])
+    assert rows.room_of(lower, 5) == 0
+    assert reach.walkable(alone, alone.agents[0], False) >> 5 & 1 == 0
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -244,6 +259,20 @@ def test_memories_and_hands_survive_an_edit():
     assert Edge(5, "ON", 4) in back.edges()
 
 
+def test_a_new_character_of_a_lower_id_takes_nobodys_pose_or_memory():
+    world = act(
+        act(World.start(kitchen()), bound_step("Walk", [kitchen().node(4)])), bound_step("Grab", [kitchen().node(4)])
+    )
+    (me,) = world.agents
+    me = me._replace(pose=Pose(1.0, 2.0, 90), stride=0.5)
+    world = edit(World(world.home, world.states, (me,), world.moved), add=[node(0, "character", "Characters")])
+    new, old = world.agents
+    assert [world.home.ids[agent.index] for agent in (new, old)] == [0, 3]
+    assert (new.pose, new.origins, new.held) == (None, (), 0)
+    assert (old.pose, old.stride) == (me.pose, me.stride)
+    assert [tuple(world.home.ids[i] for i in entry[:2]) for entry in old.origins] == [(5, 4)]
+
+
 def test_placing_takes_a_thing_out_of_hands_and_away_from_where_it_was():
     home = kitchen()
     world = act(act(World.start(home), bound_step("Walk", [home.node(4)])), bound_step("Grab", [home.node(4)]))
@@ -253,7 +282,23 @@ def test_placing_takes_a_thing_out_of_hands_and_away_from_where_it_was():
     assert mine == {(5, "ON", 4), (5, "CLOSE", 4), (4, "CLOSE", 5), (5, "INSIDE", 1), (5, "MADE_BY", 6)}
     moved = edit(world, place={3: ("INSIDE", 2)})
     assert moved.holding() == {0: (5,)}
-    assert {tuple(e) for e in moved.edges() if e.source == 3} == {(3, "INSIDE", 2), (3, "HOLDS_RH", 5)}
+    assert {tuple(e) for e in moved.edges() if e.source == 3} == {
+        (3, "INSIDE", 2), (3, "HOLDS_RH", 5), (3, "CLOSE", 5),
+    }  # fmt: skip
+    assert {tuple(e) for e in moved.edges() if e.source == 5} == {(5, "INSIDE", 2), (5, "CLOSE", 3), (5, "MADE_BY", 6)}
+
+
+def test_what_a_placed_character_holds_comes_along_as_when_it_walks():
+    home = kitchen()
+    world = act(act(World.start(home), bound_step("Walk", [home.node(4)])), bound_step("Grab", [home.node(4)]))
+    world = edit(world, add=[node(1000, "character", "Characters")], link=[Edge(1000, "CLOSE", 5)], check=False)
+    walked = act(world, bound_step("Walk", [home.node(1)]))
+    about = {tuple(e) for e in walked.edges() if 5 in (e.source, e.target)}
+    for place in ((3, "INSIDE", 2), (3, "ON", 6)):  # the lamp is in the bedroom, too
+        placed = edit(world, place={3: place[1:]}, check=False)
+        assert {tuple(e) for e in placed.edges() if 5 in (e.source, e.target)} == about
+    nowhere = edit(world, add=[node(1001, "rug")], place={3: ("ON", 1001)}, check=False)
+    assert {tuple(e) for e in nowhere.edges() if e.source == 5} == {(5, "CLOSE", 3), (5, "MADE_BY", 6)}
 
 
 @pytest.mark.parametrize(
@@ -299,3 +344,12 @@ def test_removing_a_character_frees_what_it_held():
     assert world.holding() == {0: ()}
     assert 2000 not in {i for e in world.edges() for i in (e.source, e.target)}
     assert World.start(world.home).graph() == world.graph()
+
+
+def test_homes_may_be_derived_in_a_row_a_thousand_times(maple):
+    home = maple
+    for _ in range(1200):
+        home = extended(home, states={home.ids[-1]: ["CLEAN"]})
+    more = extended(home, [node(9000, "table", "Furniture")])
+    assert more.furniture == maple.furniture | 1 << more.index[9000]
+    assert ground_of(home).ground is ground_of(maple).ground

@@ -1,10 +1,14 @@
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import pytest
 from small_worlds import bound_step, node
 
+from hearth.grounding.environments.default_state import prepared
+from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
@@ -12,6 +16,7 @@ from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.simulation.engine import act, run, tick
 from hearth.simulation.env import Env, with_agents
+from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -304,3 +309,14 @@ def test_a_home_that_can_not_be_found_and_an_episode_that_has_not_begun_are_refu
         with pytest.raises(HearthError, match="UNKNOWN_HOME"):
             call(Env())
     assert not hasattr(Env(), "worlds")
+
+
+@pytest.mark.parametrize("work_out", [ground_of, prepared])
+def test_a_home_that_nobody_uses_any_more_is_freed(work_out):
+    home = Home.from_graph(library.load_graph("maple", default()), "maple", default())
+    found = work_out(home)
+    assert found is not None and work_out(home) is found
+    kept = weakref.ref(home)
+    del home, found
+    gc.collect()
+    assert kept() is None

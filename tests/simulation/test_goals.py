@@ -91,6 +91,7 @@ def test_two_books_in_two_hands_are_two():
         (Literal.of("UNDER", "plate", "table"), Code.SYNTAX, ""),
         (Literal.of("SHINY", "plate"), Code.SYNTAX, ""),
         (Literal.of("HOLDS", "agent:3", "plate"), Code.UNKNOWN_AGENT, ""),
+        (Literal.of("HOLDS", f"agent:{'1' * 5000}", "plate"), Code.UNKNOWN_AGENT, ""),
         (Literal.of("ON", 99, "table"), Code.UNKNOWN_OBJECT, ""),
     ],
 )
