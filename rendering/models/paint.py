@@ -21,7 +21,7 @@ class Paint:
         texture: a name of `textures.SLOTS`.
         scale: tiles of the texture per metre.
         glow: emitted light, in units of white paper in full light.
-        shine: 0 matt to 1 polished; above `rays.mirrors.MIRROR` a mirror.
+        shine: 0 matt to 1 polished; above `triangles.MIRROR` a mirror.
     """
 
     color: str = "#ffffff"

@@ -1,6 +1,7 @@
 """Joints of a body pose: forward kinematics, and two-bone inverse kinematics."""
 
 from dataclasses import replace
+from functools import lru_cache
 from math import acos, cos, hypot, radians, sin, sqrt
 
 import numpy as np
@@ -68,6 +69,7 @@ def bend(body_pose: BodyPose, body: Proportions) -> tuple[float, float]:
     return _stooping(effort_of(body_pose, body), body_pose, body)
 
 
+@lru_cache(maxsize=64)
 def effort_of(body_pose: BodyPose, body: Proportions) -> float:
     """How far a body stoops: as its pose says, else the least with which the hands reach their targets."""
     if body_pose.effort is not None:

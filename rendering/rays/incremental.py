@@ -9,16 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering.arrays import Bytes
+from hearth.rendering.arrays import Bytes, Ints
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.modalities import pictures_of as others
 from hearth.rendering.rays import shading
-from hearth.rendering.rays.mirrors import mirrored
+from hearth.rendering.rays.mirrors import mirrored, showing
 from hearth.rendering.rays.shading import Exposure, Setting
 from hearth.rendering.rays.shot import Shot, camera_rays, everywhere, hits_on_static, overlay, prepare, setting_of
 from hearth.rendering.rays.threads import each
@@ -53,6 +54,11 @@ class StaticLayer:
         setting, rgb = setting_of(shot), np.empty((len(rays), 3), np.uint8)
         exposures = shading.whole(shading.chunks(everywhere(len(rays))), rays, hits, geometry, setting, rgb)
         return cls(shot, setting, exposures, rgb)
+
+    @cached_property
+    def mirrors(self) -> Ints:
+        """The pixels that show a mirror among the static things."""
+        return showing(self.shot.hits, self.shot.geometry)
 
     def serves(self, scene: Scene, camera: Camera) -> bool:
         """Whether it is also the static layer of another scene."""
@@ -124,7 +130,8 @@ def _drawn(layer: StaticLayer, scene: Scene, geometry: Geometry, rest: tuple[Sta
     count = sum(each(shadowed, layer.exposures)) if len(geometry.moving.mesh) else 0
     shading.whole(shading.chunks(shown), base.rays, hits, geometry, layer.setting, rgb)
     # What mirrors show can change wherever something moves: they are drawn anew.
-    count += mirrored(base.rays, hits, geometry, layer.setting, rgb)
+    among = np.union1d(layer.mirrors, shown) if geometry.moving.mirrors.any() else layer.mirrors
+    count += mirrored(base.rays, hits, geometry, layer.setting, rgb, among)
     return IncrementalFrame(shot, rgb, count + len(shown), layer, rest)
 
 

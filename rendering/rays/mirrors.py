@@ -7,26 +7,25 @@ import numpy as np
 from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.rays import shading
 from hearth.rendering.rays.casting import Hits
-from hearth.rendering.rays.kernels import SHINE
 from hearth.rendering.rays.shading import Setting
 from hearth.rendering.scene.triangles import Geometry
-
-MIRROR = 1.1
-"""Shine from which on a surface is a mirror."""
 
 SILVER = np.array((0.9, 0.93, 0.92))
 """Share of each colour's grey level that a mirror throws back."""
 
 
-def mirrored(rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out: Bytes) -> int:
+def mirrored(
+    rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out: Bytes, among: Ints | None = None
+) -> int:
     """Replace the colours of pixels that show a mirror by what is seen in it; returns their number.
 
     Args:
         rays, hits, geometry: of all pixels.
         setting: the lights.
         out: (N, 3) colours of all pixels, changed.
+        among: the pixels that may show a mirror; None for all.
     """
-    pixels = _showing(hits, geometry)
+    pixels = showing(hits, geometry, among)
     if not len(pixels):
         return 0
     thrown = _thrown_back(pixels, rays, hits, geometry)
@@ -37,12 +36,14 @@ def mirrored(rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out
     return len(pixels)
 
 
-def _showing(hits: Hits, geometry: Geometry) -> Ints:
-    """The pixels that show a mirror."""
-    mirrors = np.concatenate([part.rows[:, SHINE] > MIRROR for part in (geometry.static, geometry.moving)])
+def showing(hits: Hits, geometry: Geometry, among: Ints | None = None) -> Ints:
+    """The pixels, all or some, that show a mirror."""
+    mirrors = np.concatenate((geometry.static.mirrors, geometry.moving.mirrors, [np.False_]))
     if not mirrors.any():
         return np.empty(0, np.int32)
-    return np.flatnonzero(np.append(mirrors, np.False_)[hits.triangle]).astype(np.int32)
+    if among is not None:
+        return among[mirrors[hits.triangle[among]]]
+    return np.flatnonzero(mirrors[hits.triangle]).astype(np.int32)
 
 
 def _thrown_back(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry) -> Floats:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import Mesh, join
 from hearth.rendering.rays.casting import Caster, Hits
-from hearth.rendering.rays.kernels import COLUMNS, nearer, triangle_rows
+from hearth.rendering.rays.kernels import COLUMNS, SHINE, nearer, triangle_rows
 from hearth.rendering.rays.shadow_maps import ShadowMaps
 from hearth.rendering.scene.instances import Thing, placed
 
@@ -20,6 +20,9 @@ Numbers = NDArray[np.integer[Any]]
 
 MARGIN = 0.01
 """Metres by which boxes around moving things are widened."""
+
+MIRROR = 1.1
+"""Shine from which on a surface is a mirror."""
 
 NEXT_TO = 0.15
 """Distance in metres below which boxes are merged."""
@@ -82,6 +85,11 @@ class Part:
         textures = np.ascontiguousarray(mesh.textures)
         triangle_rows(corners, normals, uvs, surface, textures, solid[self.owner] if len(mesh) else solid, rows)
         return rows
+
+    @cached_property
+    def mirrors(self) -> NDArray[np.bool_]:
+        """(T,) whether each triangle is of a mirror."""
+        return self.rows[:, SHINE] > MIRROR
 
     @cached_property
     def ends(self) -> Numbers:
