@@ -16,6 +16,7 @@ from hearth.rendering.models.mesh import rotation
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import Held
 from hearth.rendering.people.rotations import Vector
+from hearth.rendering.people.worn import WORN, on_head
 from hearth.rendering.scene.instances import Thing, own_mesh, tilted
 from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import PreparedScene
@@ -119,9 +120,8 @@ def held_things(prepared: PreparedScene, places: Places, actors: tuple[Actor, ..
             found[node] = tuple(_in_hand(prepared, places, actor, nodes[node], side))
             found |= _contents(prepared, places, nodes[node], found[node][0], nodes) if found[node] else {}
         for edge in places.graph.edges:
-            worn = edge.target == actor.node.id and edge.relation == "ON"
-            if worn and "hat" in nodes[edge.source].class_name:
-                found[edge.source] = tuple(_on_head(prepared, places, actor, nodes[edge.source]))
+            if edge.target == actor.node.id and edge.relation == "ON" and nodes[edge.source].class_name in WORN:
+                found[edge.source] = tuple(on_head(prepared, places, actor, nodes[edge.source]))
     return found
 
 
@@ -204,10 +204,3 @@ def _lip(hold: Hold, held: Held, size: Point) -> Vector:
     side = np.array((np.sign(held.roll) * 0.42 * min(size[0], size[2]), size[1] * 0.97, 0.0))
     found: Vector = side - turn @ np.array(hold.point)
     return found
-
-
-def _on_head(prepared: PreparedScene, places: Places, actor: Actor, node: Node) -> Iterator[Thing]:
-    size, head = places.size_of(node), actor.figure().joints()["head"]
-    x, y, z = (float(value) for value in head)
-    for thing in _at_origin(prepared, node, size):
-        yield replace(thing, position=actor.world((x, y + 0.035 * actor.body.height, z)), yaw=actor.yaw)
