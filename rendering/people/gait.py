@@ -305,7 +305,7 @@ class Gait:
         if number and share < high:
             swing = min(max((share - low) / (high - low), 0.0), 1.0)
             # The foot moves while it is well above the floor.
-            part = eased((swing - 0.14) / 0.72)
+            part = eased((swing - 0.14) / 0.81)
             turn = before.place.yaw + angle(before.place.yaw, here.place.yaw) * part
             x, z = between((before.place.x, before.place.z), (here.place.x, here.place.z), part)
             lift = LIFT * length * (0.45 + 0.55 * vigour) * sin(pi * swing) ** 0.7
