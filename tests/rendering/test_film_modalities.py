@@ -81,7 +81,7 @@ def test_flow_is_as_the_next_camera_sees_it(filmed, view):
 
 def test_no_flow_is_known_across_a_cut():
     graph = library.load_graph("maple", default())
-    program, _ = parse_program("Move on\nx\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n[Walk] <fridge> (1)\n")
+    program, _ = parse_program("Move on\nx\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n[StandUp]\n[Walk] <fridge> (1)\n")
     execution = attempt(program, Home.from_graph(graph, "maple", default())).execution
     trajectory, cuts = trajectory_of(execution, graph, default()), 0
     for one, other in pairwise(film(trajectory, graph, "auto", size=(24, 18), fps=2.0)):
