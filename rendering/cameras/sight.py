@@ -170,7 +170,8 @@ def _in_sight(
     cameras: Sequence[Camera], points: Coordinates, obstacles: Obstacles, node: int, skin: float = 0.0
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Coordinates]:
     """(cameras, points) each: whether points on a node are in the picture, whether nothing else hides them, and how
-    many metres deep they are; what is `skin` metres before a point does not hide it.
+    many metres deep they are. What is `skin` metres before a point does not hide it; without a skin the whole node
+    does not.
     """
     eyes = np.array([camera.eye for camera in cameras])
     ways = points[None] - eyes[:, None]

@@ -14,7 +14,6 @@ from hearth.schemas.libraries import library
 CODECS = {".webm": "VP80", ".mp4": "mp4v"}
 """OpenCV's codec by file suffix; browsers play VP80."""
 
-
 WAITING = 4
 """The most pictures that wait for the codec."""
 

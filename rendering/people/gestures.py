@@ -1,6 +1,5 @@
 """Gestures of actions: targets of hands and gaze, and stride."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hearth.schemas.program import Step
@@ -37,7 +36,7 @@ class Gesture:
     grip: str = ""
     motion: str = ""
     seconds: float = 0.0
-    tools: Sequence[str] = ()
+    tools: tuple[str, ...] = ()
     moves: float = 0.0
 
 
@@ -45,7 +44,8 @@ LOOK = Gesture()
 STILL = Gesture(gaze="")
 
 GESTURES: dict[str, Gesture] = {
-    action: Gesture(**fields) for action, fields in packaged("hearth.rendering.people", "gestures.yaml").items()
+    action: Gesture(**{**fields, "tools": tuple(fields.get("tools", ()))})
+    for action, fields in packaged("hearth.rendering.people", "gestures.yaml").items()
 }
 """The gesture of each action; an action without an entry is a gaze at its object."""
 

@@ -142,18 +142,13 @@ def _contents(
     return found
 
 
-def _at_origin(prepared: PreparedScene, node: Node, size: Point, opens: bool = False) -> tuple[Thing, ...]:
-    states = tuple(sorted({*node.states, "OPEN"} - {"CLOSED"})) if opens else node.states
-    still = replace(node, box=Box((0.0, size[1] / 2, 0.0), size), yaw=0.0, states=states)
-    return tuple(prepared.things(still))
-
-
 def _in_hand(prepared: PreparedScene, places: Places, actor: Actor, node: Node, side: str) -> Iterator[Thing]:
     hold, held = hold_of_node(node, places, side), actor.body_pose.hand(side[0]).held
     tilt = (held.pitch, held.roll, hold.turn + held.turn)
     turn = tilted(tilt)
     palm = actor.figure().joints()[f"palm_{side[0]}"] + np.array(held.gap)
-    for thing in _at_origin(prepared, node, places.size_of(node), held.opens):
+    opened = tuple(sorted({*node.states, "OPEN"} - {"CLOSED"})) if held.opens else node.states
+    for thing in prepared.at_origin(replace(node, states=opened), places.size_of(node)):
         assert isinstance(thing.model, Model)
         point = nearest_surface(thing.model, hold.point)
         x, y, z = (palm - turn @ (np.array(point) - thing.position)).tolist()

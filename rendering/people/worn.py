@@ -14,7 +14,7 @@ from hearth.rendering.people.acting import Actor
 from hearth.rendering.scene.instances import Thing, tilted
 from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import PreparedScene
-from hearth.schemas.graph import Box, Node, Point
+from hearth.schemas.graph import Node, Point
 from hearth.schemas.yaml_extent import packaged
 
 
@@ -33,7 +33,8 @@ class Worn(NamedTuple):
 
 
 WORN: Mapping[str, Worn] = {
-    name: Worn(**fields) for name, fields in packaged("hearth.rendering.people", "worn.yaml").items()
+    name: Worn(**{key: tuple(value) if isinstance(value, list) else value for key, value in fields.items()})
+    for name, fields in packaged("hearth.rendering.people", "worn.yaml").items()
 }
 """By class; other garments are not drawn as things."""
 
@@ -44,12 +45,12 @@ def on_head(prepared: PreparedScene, places: Places, actor: Actor, node: Node) -
     if worn is None:
         return
     joints = actor.figure().joints()
-    x, y, z = (joints["face"] - joints["head"]) / np.linalg.norm(joints["face"] - joints["head"])
+    ahead = joints["face"] - joints["head"]
+    x, y, z = ahead / np.linalg.norm(ahead)
     turn, nod = degrees(atan2(x, z)), degrees(asin(y))
-    middle = joints["head"] + rotation("y", turn) @ tilted((nod, 0.0, 0.0)) @ (np.array(worn.at) * actor.body.height)
-    size = worn.size or places.size_of(node)
-    still = replace(node, box=Box((0.0, size[1] / 2, 0.0), size), yaw=0.0)
+    turned = rotation("y", turn)
+    middle = joints["head"] + turned @ tilted((nod, 0.0, 0.0)) @ (np.array(worn.at) * actor.body.height)
     tilt = (nod + worn.pitch, 0.0, 0.0)
-    for thing in prepared.things(still):
-        px, py, pz = (middle + rotation("y", turn) @ tilted(tilt) @ np.array(thing.position)).tolist()
+    for thing in prepared.at_origin(node, worn.size or places.size_of(node)):
+        px, py, pz = (middle + turned @ tilted(tilt) @ np.array(thing.position)).tolist()
         yield replace(thing, position=actor.world((px, py, pz)), yaw=actor.yaw + turn, tilt=tilt)

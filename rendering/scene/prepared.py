@@ -140,6 +140,10 @@ class PreparedScene:
             found = self._drawn[key] = tuple(self.things(node)), tuple(self.lights(node))
         return found
 
+    def at_origin(self, node: Node, size: Point) -> Iterator[Thing]:
+        """The things that draw a node of a size that stands at the origin, as it is held or worn."""
+        return self.things(replace(node, box=Box((0.0, size[1] / 2, 0.0), size), yaw=0.0))
+
     def things(self, node: Node, ajar: float = 1.0) -> Iterator[Thing]:
         """The things that draw a node; `ajar` is its opening share if it is OPEN."""
         if node.box is None:
