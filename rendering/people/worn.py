@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import asin, atan2, degrees
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,9 +32,13 @@ class Worn(NamedTuple):
     pitch: float = 0.0
 
 
+def _read(fields: Mapping[str, Any]) -> Worn:
+    values: dict[str, Any] = {key: tuple(each) if isinstance(each, list) else each for key, each in fields.items()}
+    return Worn(**values)
+
+
 WORN: Mapping[str, Worn] = {
-    name: Worn(**{key: tuple(value) if isinstance(value, list) else value for key, value in fields.items()})
-    for name, fields in packaged("hearth.rendering.people", "worn.yaml").items()
+    name: _read(fields) for name, fields in packaged("hearth.rendering.people", "worn.yaml").items()
 }
 """By class; other garments are not drawn as things."""
 

@@ -127,6 +127,7 @@ def _drawn(layer: StaticLayer, scene: Scene, geometry: Geometry, rest: tuple[Sta
             shading.paint(surface, exposure.near, seen[changed], base.rays, hits, layer.setting, rgb)
         return len(changed)
 
+    shading.make_grids(layer.exposures, geometry.moving, layer.setting)
     count = sum(each(shadowed, layer.exposures)) if len(geometry.moving.mesh) else 0
     shading.whole(shading.chunks(shown), base.rays, hits, geometry, layer.setting, rgb)
     # What mirrors show can change wherever something moves: they are drawn anew.

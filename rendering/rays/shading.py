@@ -30,7 +30,6 @@ from hearth.rendering.scene.triangles import Geometry, Part
 
 CHUNK = 65536
 """Pixels in one chunk."""
-
 SUN = 0
 """Column of `Exposure.seen` for the sun; lights follow."""
 
@@ -253,23 +252,59 @@ def dim(exposure: Exposure, geometry: Geometry, setting: Setting, skipped: NDArr
     Returns:
         The new `seen`, and the indices of the points where it changed.
     """
-    moving = geometry.moving
     changed: list[Ints] = []
     seen = exposure.seen
     for column, lit in exposure.lit.items():
-        target = setting.day[:3] if column == SUN else setting.rows[column - 1, :3]
-        out, index = scratch("rays", len(lit), 6), scratch("index", len(lit), dtype=np.int32)
-        found = light_rays.aim_again(lit, skipped, exposure.points, target, column == SUN, moving.boxes, out, index)
-        if not found:
-            continue
-        caster, far = (moving.caster, 0.999) if column == SUN else (moving.shadows, 0.97)
-        dark = index[:found][caster.occluded(out[:found], far)]
+        dark = _darkened(lit, exposure.points, geometry.moving, setting, column, skipped)
         if len(dark):
             seen = seen.copy() if seen is exposure.seen else seen
             window = column != SUN and setting.lights[column - 1].facing is not None
             seen[dark, column] = DIM if window else 0
             changed.append(dark)
     return seen, np.unique(np.concatenate(changed)) if changed else NO_LIGHT
+
+
+def _darkened(
+    lit: Ints, points: Floats, moving: Part, setting: Setting, column: int, skipped: NDArray[np.bool_]
+) -> Ints:
+    """The points, of those that a light reaches, that moving things shade."""
+    is_sun, far = column == SUN, 0.999 if column == SUN else 0.97
+    if not _moves_before(moving, setting, column, lit):
+        return NO_LIGHT
+    target = _target(setting, column)
+    grid = moving.light_grids.of(target, is_sun=is_sun)
+    if grid is not None:
+        return grid.shaded(lit, skipped, points, far).copy()
+    out, index = scratch("rays", len(lit), 6), scratch("index", len(lit), dtype=np.int32)
+    found = light_rays.aim_again(lit, skipped, points, target, is_sun, moving.boxes, out, index)
+    return index[:found][(moving.caster if is_sun else moving.shadows).occluded(out[:found], far)]
+
+
+def make_grids(exposures: Sequence[Exposure], moving: Part, setting: Setting) -> None:
+    """Make the light grids that `dim` will need, on several threads."""
+    columns = {
+        column for one in exposures for column, lit in one.lit.items() if _moves_before(moving, setting, column, lit)
+    }
+    moving.light_grids.make((_target(setting, column), column == SUN) for column in sorted(columns))
+
+
+def _target(setting: Setting, column: int) -> Floats:
+    """The direction to the sun, or a light's position."""
+    return setting.day[:3] if column == SUN else setting.rows[column - 1, :3]
+
+
+def _moves_before(moving: Part, setting: Setting, column: int, lit: Ints) -> bool:
+    """Whether something that moves may lie between some points and a light that reaches them."""
+    if not len(lit) or not len(moving.mesh):
+        return False
+    return column == SUN or _between(setting.rows[column - 1], moving.boxes)
+
+
+def _between(light: Floats, boxes: Floats) -> bool:
+    """Whether one of (B, 6) boxes may lie between a lamp and the area that it lights."""
+    (x, _, z), (west, east, south, north) = light[:3], light[light_rays.L_AREA : light_rays.L_AREA + 4]
+    across = (boxes[:, 0] <= max(east, x)) & (boxes[:, 3] >= min(west, x))
+    return bool((across & (boxes[:, 2] <= max(north, z)) & (boxes[:, 5] >= min(south, z))).any())
 
 
 def paint(

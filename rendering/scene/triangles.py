@@ -13,6 +13,7 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import Mesh, join
 from hearth.rendering.rays.casting import Caster, Hits
 from hearth.rendering.rays.kernels import COLUMNS, SHINE, nearer, triangle_rows
+from hearth.rendering.rays.light_grids import LightGrids
 from hearth.rendering.rays.shadow_maps import ShadowMaps
 from hearth.rendering.scene.instances import Thing, placed
 
@@ -72,6 +73,11 @@ class Part:
     def shadow_maps(self) -> ShadowMaps:
         """What lights see of the things."""
         return ShadowMaps(self.mesh.corners, self.owner, self._lamps)
+
+    @cached_property
+    def light_grids(self) -> LightGrids:
+        """Which of the triangles lie in each direction from a light."""
+        return LightGrids(self.mesh.corners, self.owner, self._lamps)
 
     @cached_property
     def rows(self) -> Floats:
