@@ -18,7 +18,7 @@ from hearth.schemas.graph import Point
 if TYPE_CHECKING:
     from hearth.rendering.scene.prepared import PreparedScene
 
-FASTEST = 1.6
+FASTEST = 1.3
 """Metres per second at most."""
 
 LEAST = 0.5

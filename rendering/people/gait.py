@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from math import atan2, ceil, cos, degrees, hypot, pi, sin
+from math import atan2, ceil, cos, degrees, hypot, pi, radians, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +34,12 @@ TURNING = 130.0
 
 CORNERING = 170.0
 """Degrees per second at most of who walks round a corner: one slows down for sharp ones, where the head would fly."""
+
+SWUNG = 1.5
+"""Metres per second of hands at most as the body turns: who carries something wide turns slowly."""
+
+BRIEF = 0.6
+"""Share of `TURNING` at which one turns, on average, on a way of a few steps."""
 
 LOOKED = 0.05
 """Seconds between the moments of a walk at which it is looked how fast it turns."""
@@ -155,62 +161,71 @@ class Movement(NamedTuple):
     at: Callable[[float], Place]
 
 
-def turning(place: Place, yaw: float) -> Movement:
-    """A turn on the spot."""
+def turning(place: Place, yaw: float, reach: float = 0.0) -> Movement:
+    """A turn on the spot, with hands as far as `reach` metres from the body's axis."""
     turn = angle(place.yaw, yaw)
-    seconds = max(abs(turn) / TURNING, 0.4)
+    # An eased turn is fastest in its middle.
+    seconds = max(abs(turn) / TURNING, abs(radians(turn)) * reach * pi / 2 / SWUNG, 0.4)
     return Movement(seconds, lambda time: Place(place.x, place.z, place.yaw + turn * eased(time / seconds)))
 
 
-def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> Movement:
-    """A walk along a route, which starts in the direction of `place` and ends in the direction `yaw`."""
+def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float, reach: float = 0.0) -> Movement:
+    """A walk along a route, which starts in the direction of `place` and ends in the direction `yaw`.
+
+    Hands are as far as `reach` metres from the body's axis.
+    """
     route = Route(points, speed)
+    slower = max(1.0, abs(angle(place.yaw, yaw)) / (BRIEF * TURNING) / route.seconds)
     middle = place.yaw + angle(place.yaw, yaw) / 2
     most = abs(angle(middle, route.heading(route.length / 2)))
     # Few steps are made without turning that way and back.
     turned = 0.0 if route.length <= SIDEWAYS else min(1.0, TURNING * route.seconds / 4 / max(most, 1.0))
 
     def at(time: float) -> Place:
-        way = route.way(time)
+        way = route.way(time / slower)
         ends = eased(way / 0.45) * eased((route.length - way) / 0.45) * turned
         straight = place.yaw + angle(place.yaw, yaw) * eased(way / route.length)
         aside = angle(straight, route.heading(way))
         # Who walks backwards does not flip from one side to the other.
         return Place(*route.spot(way), straight + aside * ends * min(1.0, (180 - abs(aside)) / 120))
 
-    return slowed(Movement(route.seconds, at))
+    return slowed(Movement(route.seconds * slower, at), reach)
 
 
-def slowed(move: Movement) -> Movement:
-    """The same movement, slower where the body turns faster than `CORNERING`."""
+def slowed(move: Movement, reach: float = 0.0) -> Movement:
+    """The same movement, slower where the body turns faster than `CORNERING`, or hands at `reach` than `SWUNG`."""
+    most = min(CORNERING, degrees(SWUNG / max(reach, 1e-6)))
     count = max(1, ceil(move.seconds / LOOKED))
     times = [move.seconds * k / count for k in range(count + 1)]
     yaws = [move.at(time).yaw for time in times]
     real = [0.0]
     for (start, end), (one, other) in zip(pairwise(times), pairwise(yaws), strict=True):
-        real.append(real[-1] + max(end - start, abs(angle(one, other)) / CORNERING))
+        real.append(real[-1] + max(end - start, abs(angle(one, other)) / most))
     if real[-1] < move.seconds + 1e-6:
         return move
     return Movement(real[-1], lambda time: move.at(float(np.interp(time, real, times))))
 
 
-def movements(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> list[Movement]:
-    """Turns and a walk from a place along a route, at the end of which the body has the direction `yaw`."""
+def movements(place: Place, points: Sequence[Spot], speed: float, yaw: float, reach: float = 0.0) -> list[Movement]:
+    """Turns and a walk from a place along a route, at the end of which the body has the direction `yaw`.
+
+    Hands are as far as `reach` metres from the body's axis.
+    """
     route = Route(points, speed)
     if route.length < 0.01:
-        return [turning(place, yaw)] if abs(angle(place.yaw, yaw)) > 1 else []
+        return [turning(place, yaw, reach)] if abs(angle(place.yaw, yaw)) > 1 else []
     found = []
     first, last = route.heading(0.0), route.heading(route.length)
     if route.length > SIDEWAYS and abs(angle(place.yaw, first)) > ASIDE:
-        found.append(turning(place, first))
+        found.append(turning(place, first, reach))
         place = place._replace(yaw=first)
     if route.length <= SIDEWAYS and abs(angle(place.yaw, yaw)) > ASIDE:
-        found.append(turning(place, yaw))
+        found.append(turning(place, yaw, reach))
         place = place._replace(yaw=yaw)
     ends = last if route.length > SIDEWAYS and abs(angle(last, yaw)) > ASIDE else yaw
-    found.append(walking(place, points, speed, ends))
+    found.append(walking(place, points, speed, ends, reach))
     if ends != yaw:
-        found.append(turning(Place(*route.points[-1], ends), yaw))
+        found.append(turning(Place(*route.points[-1], ends), yaw, reach))
     return found
 
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, hypot, pi, radians, sin
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from hearth.kb.modifiers import SPEEDS, value
 from hearth.rendering.people.acting import Actor, open_side
 from hearth.rendering.people.bedding import Remade
@@ -16,6 +18,7 @@ from hearth.rendering.people.clearance import arms_on_the_way
 from hearth.rendering.people.gait import Gait, Place, angle, between, eased, movements
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.lying import lying_down, made_ready
+from hearth.rendering.people.pacing import holds_of, paced
 from hearth.rendering.people.reaching import posed, reach_for
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, effort_of
 from hearth.rendering.people.stepping import planted, stepping
@@ -85,17 +88,18 @@ def track(one: Actor, other: Actor, before: Keyframe, after: Keyframe, step: Ste
     """An actor's motion from one keyframe to the next."""
     segments: list[Segment] = []
     rest = _resting(one, before)
+    held, then = holds_of(one, before.places), holds_of(other, after.places)
     if rest.body_pose != one.body_pose:
-        segments.append(blended(one, rest, RELAX))
+        segments.append(paced(blended(one, rest, RELAX), held))
     here = _approach(segments, rest, other, step, (before, after))
     if step is not None:
         reach = reach_for(here, other, before.places, step)
         if reach.body_pose != here.body_pose:
-            segments.append(blended(here, reach, REACH))
+            segments.append(paced(blended(here, reach, REACH), held))
         here = reach
     change = sum(segment.seconds for segment in segments)
     if here != other:
-        segments.append(blended(here, other, BACK))
+        segments.append(paced(blended(here, other, BACK), then))
     if step is not None and gesture_of(step).seconds:
         segments.append(acted(other, gesture_of(step)))
     segments.append(motionless(other, HOLD))
@@ -192,7 +196,7 @@ def _walked(
 ) -> Actor:
     """Append turns and a walk to where another actor stands; returns the actor there, with arms as they are then."""
     arms = one.body_pose
-    moves = movements(Place(*one.spot, one.yaw), route, speed, other.yaw)
+    moves = movements(Place(*one.spot, one.yaw), route, speed, other.yaw, _reach(one))
     if moves:
         gait = Gait(one, moves, lambda places: arms_on_the_way(one, places, solids), other.body_pose.tucked, speed)
         segments.append(Segment(gait.seconds, lambda share: gait.at(share * gait.seconds)))
@@ -201,6 +205,13 @@ def _walked(
     if one.level != other.level:
         segments.append(blended(replace(other, level=one.level), other, RELAX))
     return other
+
+
+def _reach(actor: Actor) -> float:
+    """Metres from the body's axis to the farther palm, or to what it holds."""
+    joints, pose = actor.figure().joints(), actor.body_pose
+    palms = [joints[f"palm_{side}"] + np.array(pose.hand(side).held.gap) for side in "rl"]
+    return max(hypot(float(palm[0]), float(palm[2])) for palm in palms)
 
 
 def _got_up(

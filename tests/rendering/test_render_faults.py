@@ -29,6 +29,7 @@ def test_a_film_that_could_not_be_written_leaves_the_complete_one(tmp_path):
     film.write_bytes(b"an earlier one")
     writer = Writer(film, 32, 24, 5)
     writer.add(np.zeros((24, 32, 3), np.uint8))
+    writer._wait(0)
     writer.file.release()
     writer.part.write_bytes(b"")
     with pytest.raises(HearthError, match="nothing could be written"):
