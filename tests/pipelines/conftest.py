@@ -1,0 +1,8 @@
+"""Makes `read_sources` importable for the tests here."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+if str(HERE) not in sys.path:
+    sys.path.insert(0, str(HERE))
