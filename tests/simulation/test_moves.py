@@ -1,32 +1,23 @@
-"""Moving by metres over the floors of homes: ours, drawn ones and the release's laid out."""
+"""Moving by metres: strides, turns and steps forward, what stops them, and where a character and its things are."""
 
 import itertools
 import math
 import random
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from walks import OWN, at, id_of, own_home, step, walked
 
-from hearth.homes import library
 from hearth.homes.plans.floor import REACH, gaps
-from hearth.homes.procedural.generate import generate
-from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Box
-from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.legal import legal
-from hearth.simulation.actions.metres import _in_the_way
 from hearth.simulation.actions.registry import EVERY
 from hearth.simulation.engine import act, tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.ground import ground_of
-from hearth.simulation.motion.navigation import BODY_RADIUS
-from hearth.simulation.motion.positions import around, placed, spot
+from hearth.simulation.motion.positions import placed, spot
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
@@ -34,88 +25,10 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
-OWN = library.names()
-BODIES = DEFAULT._replace(bodies=True)
-
-
-def own_home(name):
-    return Home.from_graph(library.load_graph(name, default()), name, default())
-
-
-def drawn_home(seed):
-    return Home.from_graph(scene(generate(3 + seed % 7, seed, default()), default()), f"drawn {seed}", default())
-
 
 @pytest.fixture(scope="module")
 def here(maple):
     return placed(World.start(maple))
-
-
-def step(action, *nodes, agent=0):
-    return Step(action, tuple(ObjectRef("thing", 1, node) for node in nodes), agent)
-
-
-def id_of(home, name):
-    return home.ids[home.classes.index(name)]
-
-
-def at(world, pose, number=0, stride=1.0):
-    ground = ground_of(world.home).ground
-    room = 1 << ground.rooms[ground.ways.at(*pose.point)]
-    agent = world.agents[number]._replace(pose=pose, stride=stride, inside=room)
-    return World(world.home, world.states, (*world.agents[:number], agent, *world.agents[number + 1 :]), world.moved)
-
-
-def walked(world, node, limit=200):
-    """The worlds of walking to a node, until there is nothing left of the way."""
-    worlds = [world]
-    target = step("Walktowards", node)
-    ground = ground_of(world.home).ground
-    field = ground.ways.field(ground.stands(world.home.index[node]))
-    while ground.ways.left(field, *worlds[-1].agents[0].pose.point)[0] > 1e-9:
-        after = act(worlds[-1], target)
-        assert isinstance(after, World), after
-        worlds.append(after)
-        assert len(worlds) < limit
-    return worlds
-
-
-def assert_all_furniture_is_reached(home):
-    """The main region is in every room; from all its cells a way leads to each piece and ends within reach of it."""
-    ground = ground_of(home).ground
-    main = ground.ways.main
-    assert {ground.rooms[cell] for cell in np.flatnonzero(main)} >= set(indices(home.rooms))
-    appliances = home.by_class.get("fridge", 0) | home.by_class.get("dishwasher", 0)
-    for i in indices((home.furniture | appliances) & ~home.properties["GRABBABLE"]):
-        if home.node(i).box is None:
-            continue
-        stands = ground.stands(i)
-        assert stands and main[list(stands)].all(), (home, home.classes[i])
-        distance = np.asarray(ground.ways.field(stands).distance)
-        assert np.isfinite(distance[main]).all(), (home, home.classes[i])
-        if home.node(i).box.center[1] - home.node(i).box.size[1] / 2 < 0.1:
-            assert gaps(ground.ways.points[list(stands)], home.node(i).box).max() <= REACH, (home, home.classes[i])
-
-
-@pytest.mark.parametrize("name", OWN)
-def test_all_furniture_of_our_homes_is_reached(name):
-    assert_all_furniture_is_reached(own_home(name))
-
-
-@pytest.mark.parametrize("seed", [*range(6), *(pytest.param(n, marks=pytest.mark.slow) for n in range(6, 50))])
-def test_all_furniture_of_drawn_homes_is_reached(seed):
-    assert_all_furniture_is_reached(drawn_home(seed))
-
-
-@pytest.mark.parametrize("number", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in range(2, 8))])
-def test_no_furniture_of_the_real_homes_is_without_a_way_once_laid_out(real_data, number):
-    made = library.graph_layout(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
-    home = Home.from_graph(made.graph, "real", default())
-    assert_all_furniture_is_reached(home)
-    world = placed(World.start(home))
-    for i in indices(home.furniture):
-        after = act(world, step("Walktowards", home.ids[i]))
-        assert not (isinstance(after, Failure) and after.code is Code.NO_PATH), after
 
 
 @pytest.mark.parametrize("name", OWN)
@@ -208,23 +121,6 @@ def test_a_closed_door_stops_who_walks_straight_on(maple):
     assert stopped
 
 
-def test_of_blocked_cells_none_is_nearest(maple):
-    ways = ground_of(maple).ground.ways
-    blocked = np.ones(len(ways.points), bool)
-    assert ways.nearest((0.0, 0.0), blocked) == -1
-    blocked[7] = False
-    assert ways.nearest((0.0, 0.0), blocked) == 7 and ways.nearest(tuple(ways.points[7])) == 7
-
-
-def test_a_character_stands_in_the_main_region_from_the_start():
-    for home in (own_home("juniper"), own_home("willow"), drawn_home(1)):
-        world = placed(with_agents(World.start(home), 4, seed=5), random.Random(2))
-        ways = ground_of(home).ground.ways
-        points = [agent.pose.point for agent in world.agents]
-        assert all(ways.main[ways.at(*point)] for point in points)
-        assert min(math.dist(a, b) for i, a in enumerate(points) for b in points[:i]) >= 2 * BODY_RADIUS
-
-
 def test_who_passes_by_is_close_to_what_is_within_reach(here, maple):
     world = here
     ground = ground_of(maple).ground
@@ -311,48 +207,8 @@ def test_without_geometry_nobody_has_a_place(here, maple):
 
 
 def maple_without_boxes(maple):
-    from dataclasses import replace
-
     graph = World.start(maple).graph()
     return replace(graph, nodes=tuple(replace(node, box=None) for node in graph.nodes))
-
-
-def test_bodies_are_in_the_way_by_a_rule(maple):
-    world = placed(with_agents(World.start(maple), 2))
-    node = id_of(maple, "bed")
-    alone = walked(World(maple, world.states, world.agents[:1], world.moved), node)
-    middle = alone[len(alone) // 2].agents[0].pose
-    standing = at(world, middle, number=1)
-    through = around = standing
-    nearest = {"through": math.inf, "around": math.inf}
-    for _ in range(2 * len(alone)):
-        through, _ = tick(through, {0: step("Walktowards", node)}, DEFAULT)
-        around, _ = tick(around, {0: step("Walktowards", node)}, BODIES)
-        for name, now in (("through", through), ("around", around)):
-            nearest[name] = min(nearest[name], math.dist(now.agents[0].pose.point, middle.point))
-    assert nearest["through"] < 2 * BODY_RADIUS <= nearest["around"] + 0.02
-
-
-@given(st.tuples(*[st.integers(-30, 30)] * 6))
-def test_who_is_in_the_way_of_a_stride(numbers):
-    x0, z0, x1, z1, x, z = (number / 10 for number in numbers)
-    other = SimpleNamespace(pose=Pose(x, z, 0.0))
-    world = SimpleNamespace(agents=(SimpleNamespace(pose=Pose(x0, z0, 0.0)), other))
-    leg = Pose(x0, z0, 0.0), Pose(x1, z1, 0.0)
-    away = [math.dist((x0 + (x1 - x0) * n / 500, z0 + (z1 - z0) * n / 500), (x, z)) for n in range(501)]
-    comes_nearer = min(away) < away[0]
-    if abs(min(away) - 2 * BODY_RADIUS) > 1e-3:
-        assert _in_the_way(world, 0, leg) == (comes_nearer and min(away) < 2 * BODY_RADIUS)
-
-
-def test_of_two_that_walk_the_lower_number_goes_first(maple):
-    world = placed(with_agents(World.start(maple), 2))
-    towards = {0: step("Walktowards", id_of(maple, "bed")), 1: step("Walktowards", maple.ids[maple.agents[0]], agent=1)}
-    for _ in range(30):
-        world, failures = tick(world, towards)
-        assert not failures
-    one, other = world.agents
-    assert math.dist(one.pose.point, other.pose.point) < REACH and other.close & one.bit and one.close & other.bit
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -377,43 +233,3 @@ def test_legal_is_exactly_what_can_be_done_at_a_place(seed):
             ways = ground_of(world.home).ground.ways
             pose = world.agents[number].pose
             assert world.agents[number].on or ways.main[ways.at(*pose.point)]
-
-
-@pytest.mark.parametrize("name", OWN[:2])
-def test_diagonal_ways_need_both_their_sides_free(name):
-    """Of all cells that touch at a corner, those are joined that one can pass between."""
-    ways = ground_of(own_home(name)).ground.ways
-    joined = set(zip(*map(np.ndarray.tolist, ways.graph.nonzero()), strict=True))
-    free = {(x, z): number for (x, z), number in np.ndenumerate(ways.number) if number >= 0}
-    expected = set()
-    for (x, z), number in free.items():
-        for dx, dz in ((1, 0), (0, 1), (1, 1), (1, -1)):
-            sides = [(x + dx, z), (x, z + dz), (x + dx, z + dz)]
-            if all(side in free for side in sides):
-                expected.add((number, free[sides[2]]))
-    assert joined == expected
-
-
-@pytest.mark.parametrize("name", OWN[:2])
-def test_every_free_cell_is_in_a_room_and_one_walks_to_the_middle_of_rooms(name):
-    home = own_home(name)
-    world, here = placed(World.start(home)), ground_of(home)
-    ground, ways = here.ground, here.ground.ways
-    for cell in (0, 1, len(ways.points) // 2, len(ways.points) - 1):
-        _, room = around(world, 0, here, Pose(*map(float, ways.points[cell]), 0.0))
-        assert room == ground.rooms[cell] >= 0
-    for room in indices(home.rooms):
-        x, z = home.node(room).box.center[::2]
-        main = np.flatnonzero(ways.main & (np.asarray(ground.rooms) == room))
-        far = {cell: math.dist((x, z), ways.points[cell]) for cell in main.tolist()}
-        assert [far[cell] for cell in ground.stands(room)] == [min(far.values())]
-
-
-def test_who_has_a_place_in_the_graph_stands_there_and_looks_where_it_says(maple):
-    graph = World.start(maple).graph()
-    me = next(node for node in graph.nodes if node.class_name == "character")
-    here = placed(World.start(maple)).agents[0].pose
-    box = Box((here.x, 0.9, here.z), (0.5, 1.8, 0.4))
-    nodes = tuple(replace(node, box=box, yaw=210.0) if node == me else node for node in graph.nodes)
-    found = placed(World.start(Home.from_graph(replace(graph, nodes=nodes), "maple", default()))).agents[0].pose
-    assert found == Pose(here.x, here.z, 210.0)
