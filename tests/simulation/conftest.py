@@ -1,4 +1,4 @@
-"""Makes `small_worlds` and `walks` importable for the tests here."""
+"""Makes `small_worlds`, `action_home` and `walks` importable for the tests here."""
 
 import sys
 from pathlib import Path
