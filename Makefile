@@ -137,6 +137,7 @@ test: .venv/.models  ## the tests, without the slow ones
 	@touch $@
 
 test-tools: .venv/.tools .venv/.models  ## tests with other tools: planners, browsers, clusters, S3
+	@! command -v npm >/dev/null || $(MAKE) --no-print-directory web >/dev/null
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "tools and not slow"
 
 test-all: .venv/.tools .venv/.models  ## all tests
