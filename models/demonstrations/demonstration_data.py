@@ -94,8 +94,9 @@ class Demonstrations:
             HearthError: DAMAGED_FILE, as of `pictures`, or if they are not one more than the ticks of the program, or
                 the sketch has flags for fewer or more steps than the program has.
         """
-        if example.keep and (flags := len(example.keep)) != len(example.steps):
-            message = f"the sketch of `{example.program_id}` has {flags:,} flags, its program {len(example.steps):,} steps"
+        flags, steps = len(example.keep), len(example.steps)
+        if flags not in (0, steps):
+            message = f"the sketch of `{example.program_id}` has {flags:,} flags, its program {steps:,} steps"
             remedy = "correct its annotation, a flag for each step, or leave it out, and build the dataset again"
             raise HearthError.of(Code.DAMAGED_FILE, message, file=str(self.dataset.folder), suggestion=remedy)
         found, ticks = self.pictures(execution), len([*Program(steps=example.steps).ticks()])

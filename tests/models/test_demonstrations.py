@@ -274,8 +274,11 @@ def test_a_demonstration_that_does_not_fit_its_program_is_refused(pictured, tmp_
 def test_a_sketch_that_does_not_fit_its_program_is_refused(pictured, part, change):
     """Annotations may have flags for other steps than those that were published."""
     given = corpus(pictured, "activities")
-    given = replace(given, **{name: tuple(replace(each, keep=(True,) * len(each.steps)) for each in getattr(given, name))
-                              for name in ("train", "validation")})  # fmt: skip
+    train, validation = (
+        tuple(replace(each, keep=(True,) * len(each.steps)) for each in some)
+        for some in (given.train, given.validation)
+    )
+    given = replace(given, train=train, validation=validation)
     there = Demonstrations.of(pictured)
     some = getattr(given, part)
     bad = next(each for each in some if there.of_example(each))
