@@ -16,6 +16,7 @@ from hearth.challenges.definition import Challenge
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
+from hearth.simulation.engine import act
 from hearth.simulation.env import Tick
 from hearth.simulation.goals import Progress
 from hearth.simulation.observation.reach import visible
@@ -116,17 +117,21 @@ class _Analysis:
     def _count_undone(self, did: dict[int, Step], before: Progress, after: Progress, tick: Tick) -> None:
         lost = _lost(before, after)
         self.columns.undone += lost.bit_count()
-        self.columns.conflicts += self._by(HELPER, did, lost)
+        self.columns.conflicts += self._by(did.get(HELPER), before, lost, tick)
         if self.other is not None:
             now = self.other.then(tick.before, tick.world)
-            self.columns.conflicts += self._by(MAIN, did, _lost(self.other, now))
+            self.columns.conflicts += self._by(did.get(MAIN), self.other, _lost(self.other, now), tick)
             self.other = now
         elif len(self.goals) > HELPER and self.goals[HELPER] is not None:
-            self.columns.conflicts += self._by(MAIN, did, lost)
+            self.columns.conflicts += self._by(did.get(MAIN), before, lost, tick)
 
-    def _by(self, agent: int, did: dict[int, Step], lost: int) -> int:
-        """How many of these nodes an agent's instruction is about."""
-        return (lost & self._named(did[agent])).bit_count() if lost and agent in did else 0
+    def _by(self, did: Step | None, before: Progress, lost: int, tick: Tick) -> int:
+        """How many of these nodes an instruction is about and moves away: one may also go to what the other takes."""
+        about = lost & self._named(did) if lost and did is not None else 0
+        if not about or did is None:
+            return 0
+        alone = act(tick.before, did, self.which.rules)
+        return (about & _lost(before, before.then(tick.before, alone))).bit_count() if isinstance(alone, World) else 0
 
     def _named(self, step: Step) -> int:
         index = self.start.home.index

@@ -203,7 +203,7 @@ def dataset(
     file: Path,
     *,
     split: str = "",
-    part: str = "test",
+    part: str | None = None,
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
@@ -229,10 +229,12 @@ def dataset(
 
     if failures and split:
         raise typer.BadParameter("splits have no failing executions", param_hint="--failures")
+    if part is not None and not split:
+        raise typer.BadParameter("name the split whose part it is with --split", param_hint="--part")
     how = Options(match=match, scope=scope, instances=instances, seed=seed)
     with bar("shares scored") as seen:
         opened = Dataset.open(folder, failures)
-        scored = score_dataset(opened, file, split, part if split else "", how, workers, seen)
+        scored = score_dataset(opened, file, split, "test" if part is None else part, how, workers, seen)
     _show(scored, how, by, as_json)
 
 

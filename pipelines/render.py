@@ -6,7 +6,7 @@ demonstrations, pictures from above alone with class masks.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pyarrow as pa
@@ -17,6 +17,7 @@ from hearth.pipelines.engine import clip_cases, demonstration_cases
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.split_assignment import programs_of
 from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
@@ -260,7 +261,8 @@ def prepare(settings: Settings) -> Plan:
                 ran.append((row["program_id"], row["execution_id"], row["home"]))
                 files[row["execution_id"]] = file
     films = sorted(name for name, _ in list(found.values())[: settings.videos])
-    clips = dict(sorted(clip_cases.chosen(ran, homes.names(), settings.clips, settings.seed).items()))
+    steps = _steps(settings) if settings.clips else {}
+    clips = dict(sorted(clip_cases.chosen(ran, steps, homes.names(), settings.clips, settings.seed).items()))
     above = demonstration_cases.chosen(ran, homes.names(), settings.demonstrations, settings.seed)
     executions = dict(sorted([*found.values(), *((name, files[name]) for name in clips)]))
     executions |= {name: files[name] for name in above if name not in executions}
@@ -276,13 +278,22 @@ def no_pictures(libraries: list[str]) -> str:
 
 def _sampled(settings: Settings) -> Iterator[tuple[str, Any]]:
     """Every case with its file, of the columns that the choice needs."""
+    folder = settings.folder("sample")
+    for file in _sample_files(settings):
+        for row in read_rows(folder / file, ["program_id", "execution_id", "home", "executable"]):
+            yield file, row
+
+
+def _sample_files(settings: Settings) -> list[str]:
+    """The files of cases in the folder of the stage `sample`."""
     manifest = read_manifest(settings.folder("sample"))
-    if manifest is None:
-        return
-    for part in manifest.parts:
-        for file in part["files"]:
-            for row in read_rows(manifest.folder / file, ["program_id", "execution_id", "home", "executable"]):
-                yield file, row
+    return [file for part in manifest.parts for file in part["files"]] if manifest else []
+
+
+def _steps(settings: Settings) -> dict[str, Hashable]:
+    """What distinguishes the steps of each program: actions and classes."""
+    files = [settings.folder("sample") / file for file in _sample_files(settings)]
+    return {each.program_id: each.steps for each in programs_of(files, settings.seed)}
 
 
 SHARES = 64

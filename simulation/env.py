@@ -165,7 +165,7 @@ class Env:
             >>> env.observe().me.holding, len(env.observe().ids) < len(env.world.home)
             ((), True)
         """
-        self._check(agent)
+        self.world.agent(agent)
         if modalities:
             if self.camera_sensor is None:
                 remedy = "env.camera_sensor = hearth.rendering.cameras.sensor.CameraSensor(graph, knowledge)"
@@ -195,7 +195,6 @@ class Env:
             >>> [step.objects[0].name for step in env.legal() if step.action == "Open"]
             ['window', 'curtain', 'fridge', 'coffe_maker', 'oven', 'cupboard', 'cupboard', 'microwave']
         """
-        self._check(agent)
         seen = self.partial if only_visible is None else only_visible
         return legal(self.world, agent, self.rules, only_visible=seen, only_reachable=only_reachable, actions=actions)
 
@@ -209,10 +208,6 @@ class Env:
             message, remedy = f"no knowledge to read the home `{name}` with", "hearth.Env(), or Env(knowledge=...)"
             raise HearthError.of(Code.UNKNOWN_HOME, message, suggestion=remedy)
         return Home.from_graph(load_graph(name, self.knowledge), name, self.knowledge)
-
-    def _check(self, agent: int) -> None:
-        if not 0 <= agent < len(self.world.agents):
-            raise HearthError.of(Code.UNKNOWN_AGENT, f"no agent {agent}; there are {len(self.world.agents)}, from 0")
 
 
 def with_agents(world: World, count: int, seed: int = 0) -> World:

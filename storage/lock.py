@@ -1,4 +1,4 @@
-"""One build at a time in a folder."""
+"""One process at a time that writes in a folder."""
 
 import os
 from collections.abc import Iterator
@@ -12,11 +12,15 @@ from hearth.schemas.failures import Code
 
 
 @contextmanager
-def locked(folder: Path) -> Iterator[None]:
+def locked(folder: Path, doing: str = "building") -> Iterator[None]:
     """Hold a folder for this process; may be entered again by the process that holds it.
 
+    Args:
+        folder: made if it is not there.
+        doing: what such processes are doing there, for the message.
+
     Raises:
-        HearthError: LOCKED, naming the process that builds there now; UNWRITABLE, when the folder cannot be made.
+        HearthError: LOCKED, naming the process that holds it now; UNWRITABLE, when the folder cannot be made.
     """
     path = folder.resolve() / ".lock"
     # The system holds the lock, and frees it as soon as its process has ended.
@@ -27,7 +31,7 @@ def locked(folder: Path) -> Iterator[None]:
     except Timeout:
         holder = path.read_text().strip() or "?"
         suggestion = "wait until it has ended, or choose another folder with --out"
-        message = f"process {holder} is building here"
+        message = f"process {holder} is {doing} here"
         raise HearthError.of(Code.LOCKED, message, file=str(folder), suggestion=suggestion) from None
     except OSError as error:
         message = f"nothing can be written here: {(error.strerror or str(error)).lower()}"

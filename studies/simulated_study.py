@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hearth.challenges.episodes import Known
+from hearth.storage.lock import locked
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 from hearth.studies.simulate import Crowd, simulate
@@ -42,9 +43,18 @@ def simulated_study(
         workers: processes.
         watch: for what is being done, what is called with the number done.
         beside: where other studies' files are.
+
+    Raises:
+        HearthError: LOCKED, if another process simulates into the same folder; UNWRITABLE; errors of `simulate`.
     """
     folder = inside(out, study.name)
-    folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder, "simulating"):
+        return _simulated(study, crowd, out, folder, known, workers, watch, beside)
+
+
+def _simulated(
+    study: Study, crowd: Crowd, out: Path, folder: Path, known: Known, workers: int, watch: Watch, beside: Path | None
+) -> Collected:
     other = related(study, beside)
     people = simulated_study(other, crowd, out, known, workers, watch, beside).records() if other else {}
     results = references(study, folder, known, workers, lambda name: watch(f"{study.name}: agent, {name}"))

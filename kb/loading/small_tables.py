@@ -1,6 +1,6 @@
 """Small tables from YAML files: rooms, limits of seats and beds, states by default, places like tables."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from hearth.kb.loading.entry_shapes import LIMITS, NAME_LIST, NAMES_BY_NAME, TEXT, fits, parts
@@ -35,7 +35,7 @@ def load_limits(layers: Layers, faults: Faults) -> dict[str, Mapping[str, int]]:
     """By `sit` and `lie`: how many things may be on a seat or bed, by class; `default` is of all others."""
     found = {}
     for name, entry in _entries(layers, "limits.yaml", _LIMITED, faults).items():
-        if name in _LIMITED and fits(entry.value, LIMITS, name, entry, faults):
+        if fits(entry.value, LIMITS, name, entry, faults):
             found[name] = entry.value
     return found
 
@@ -47,6 +47,9 @@ def load_tables(layers: Layers, faults: Faults) -> Tables:
     names = like.value if like and fits(like.value, NAME_LIST, "table_like", like, faults) else ()
     shapes = dict.fromkeys(_DEFAULTS, NAMES_BY_NAME)
     given = parts(states.value, shapes, "default_states", states, faults) if states else {}
+    for part in given:
+        if states and part not in _DEFAULTS:
+            faults.at(states, f"`{part}` is not a part of `default_states`", f"its parts are {', '.join(_DEFAULTS)}")
     for part in _DEFAULTS:
         if states and isinstance(states.value, dict) and part not in states.value:
             faults.at(states, f"`default_states` lacks `{part}`", _WHOLE)
@@ -56,10 +59,12 @@ def load_tables(layers: Layers, faults: Faults) -> Tables:
     return Tables(frozenset(map(str, names)), by_default)
 
 
-def _entries(layers: Layers, file: str, wanted: Iterable[str], faults: Faults) -> dict[str, Entry]:
-    """The entries of a file; those that are wanted and in no layer are faults."""
+def _entries(layers: Layers, file: str, wanted: Collection[str], faults: Faults) -> dict[str, Entry]:
+    """The entries of a file that are wanted; those that are in no layer are faults, and so are other entries."""
     found = yaml_entries(layers, file, faults)
     for name in wanted:
         if name not in found:
             faults.add(str(next(iter(layers)) / file), 0, f"`{name}` is missing", "copy it from ours")
-    return found
+    for name in sorted(found.keys() - {*wanted}):
+        faults.at(found[name], f"`{name}` is not an entry of {file}", f"its entries are {', '.join(wanted)}")
+    return {name: entry for name, entry in found.items() if name in wanted}

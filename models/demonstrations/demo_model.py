@@ -84,7 +84,7 @@ class DemoModel(Settings):
 
         Raises:
             HearthError: UNKNOWN_ID, if no program with a sketch has a demonstration, of training or of validation;
-                DAMAGED_FILE, a demonstration does not fit its program.
+                DAMAGED_FILE, a demonstration or a sketch does not fit its program.
         """
         there = Demonstrations.of(corpus.dataset)
         learned, checked = (

@@ -91,8 +91,14 @@ class Demonstrations:
         """The pictures of an example's execution, to learn what is done between them.
 
         Raises:
-            HearthError: DAMAGED_FILE, as of `pictures`, or if they are not one more than the ticks of the program.
+            HearthError: DAMAGED_FILE, as of `pictures`, or if they are not one more than the ticks of the program, or
+                the sketch has flags for fewer or more steps than the program has.
         """
+        flags, steps = len(example.keep), len(example.steps)
+        if flags not in (0, steps):
+            message = f"the sketch of `{example.program_id}` has {flags:,} flags, its program {steps:,} steps"
+            remedy = "correct its annotation, a flag for each step, or leave it out, and build the dataset again"
+            raise HearthError.of(Code.DAMAGED_FILE, message, file=str(self.dataset.folder), suggestion=remedy)
         found, ticks = self.pictures(execution), len([*Program(steps=example.steps).ticks()])
         if (count := len(found.masks)) != ticks + 1:
             message = f"it has {count:,} pictures of {ticks:,} ticks, not one at the start and one after each tick"

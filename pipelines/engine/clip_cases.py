@@ -1,4 +1,4 @@
-"""Which executions are filmed for clips, and in which homes: a program is in one part, and so is a test's home.
+"""Which executions are filmed for clips, and in which homes: a step list is in one part, and so is a test's home.
 
 The thesis films training in homes 1-4, validation in home 5 and tests in all (4.4). Homes count in their order; without
 seven of them the last two are still never seen in training.
@@ -6,7 +6,7 @@ seven of them the last two are still never seen in training.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 
 from hearth.schemas.rng import rng
 
@@ -31,7 +31,10 @@ def home_kinds(homes: Sequence[str]) -> dict[str, str]:
 
 
 def part_of(program: str, seed: int) -> str:
-    """The part of a program, drawn from its id."""
+    """The part of a program, and of all with the same steps, drawn from the id that is the first of theirs.
+
+    Nearly all programs are the only one with their steps: they stay in the parts by which models were trained.
+    """
     drawn = rng(seed, "clip part", program).random()
     if drawn < SHARES[TRAIN]:
         return TRAIN
@@ -47,12 +50,13 @@ ALLOWED: Mapping[str, tuple[str, ...]] = {
 
 
 def chosen(
-    ran: Iterable[tuple[str, str, str]], homes: Sequence[str], count: int, seed: int
+    ran: Iterable[tuple[str, str, str]], steps: Mapping[str, Hashable], homes: Sequence[str], count: int, seed: int
 ) -> dict[str, tuple[str, str]]:
     """The executions to film, with the part and the kind of home of each.
 
     Args:
         ran: program, execution and home of those that ran.
+        steps: of each program; those with the same are in one part, whatever their ids.
         homes: all homes, in order.
         count: programs, at most.
         seed: of the parts and of the home of each test.
@@ -62,9 +66,12 @@ def chosen(
     for program, execution, home in ran:
         if home in kinds:
             by_program.setdefault(program, []).append((execution, kinds[home]))
+    first: dict[Hashable, str] = {}
+    for program in by_program:
+        first[steps[program]] = min(program, first.get(steps[program], program))
     found: dict[str, tuple[str, str]] = {}
     for program, runs in by_program.items():
-        part = part_of(program, seed)
+        part = part_of(first[steps[program]], seed)
         order = _order(part, program, seed)
         pick = next(((kind, name) for kind in order for name in _shuffled(runs, kind, program, seed)), None)
         if pick is not None and len(found) < count:

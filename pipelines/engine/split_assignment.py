@@ -36,12 +36,18 @@ def assignment(files: list[Path], seed: int) -> Assignment:
         files: Parquet files of cases (`tables.CASE`), in any order; a program may have several cases.
         seed: of the build.
     """
-    programs = SplitPrograms.of(_programs(files, seed))
+    programs = SplitPrograms.of(programs_of(files, seed))
     return Assignment(programs, splits.by_activity(programs, splits.groups(programs)))
 
 
-def _programs(files: list[Path], seed: int) -> Iterator[SplitProgram]:
-    """Each program once; its steps are a text with a character for each action and its classes."""
+def programs_of(files: list[Path], seed: int) -> Iterator[SplitProgram]:
+    """Each program of cases once; its steps are a text with a character for each action and its classes.
+
+    The texts of one call are alike where actions and classes are; those of two calls do not compare.
+
+    Args:
+        files, seed: as of `assignment`.
+    """
     seen: dict[str, str] = {}
     letters: dict[str, str] = {}
     for path in files:

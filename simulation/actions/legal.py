@@ -95,10 +95,13 @@ def legal(
         only_reachable: leave out instructions about what closed doors or containers keep from it, even where the
             action itself would not mind.
         actions: only these; all where None.
+
+    Raises:
+        HearthError: UNKNOWN_AGENT, if the world has no character of that number.
     """
-    keep = -1
+    me, keep = world.agent(agent), -1
     if only_visible:
-        keep = reach.visible(world, world.agents[agent])
+        keep = reach.visible(world, me)
         world = as_seen(world, keep)
     situation = Situation(world, agent, rules)
     if only_reachable:

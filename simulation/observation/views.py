@@ -115,8 +115,12 @@ def view(
             `reach.visible`); otherwise everything.
         last_actions: what each agent last tried.
         tick: how many ticks have passed.
+
+    Raises:
+        HearthError: UNKNOWN_AGENT, if the world has no character of that number.
     """
-    mask = reach.visible(world, world.agents[agent]) if partial else world.home.everything
+    me = world.agent(agent)
+    mask = reach.visible(world, me) if partial else world.home.everything
     others = tuple(
         pose(world, number, last_actions.get(number), mask)
         for number, other in enumerate(world.agents)

@@ -41,6 +41,18 @@ class World(WorldState):
         """The home as it is given."""
         return cls(home, home.states, tuple(home.agent_rows), NOTHING)
 
+    def agent(self, number: int) -> Agent:
+        """The character of a number.
+
+        Raises:
+            HearthError: UNKNOWN_AGENT, if the world has none of that number.
+        """
+        if not 0 <= number < len(self.agents):
+            message = f"no agent {number}; there are {len(self.agents)}, from 0"
+            remedy = "`Env.reset(world, agents=...)` adds characters"
+            raise HearthError.of(Code.UNKNOWN_AGENT, message, suggestion=remedy)
+        return self.agents[number]
+
     def with_agent(self, number: int, agent: Agent) -> World:
         """The same world with one agent's edges replaced."""  # by every step, so not `explained`
         agents = (agent,) if len(self.agents) == 1 else replaced(self.agents, number, agent)

@@ -169,7 +169,7 @@ def test_steps_read_by_columns_are_those_of_the_rows(made):
     files = [path for stage in ("augment", "sample") for path in (made.out / stage).glob("part-*.parquet")]
     known, letters = assignment(files, made.settings.seed), {}
     with mock.patch.object(split_assignment, "_steps", lambda steps, _: steps_read(steps, letters)):
-        rows = list(split_assignment._programs(files, made.settings.seed))
+        rows = list(split_assignment.programs_of(files, made.settings.seed))
     texts = {letter: text for text, letter in letters.items()}
     found = {each.program_id: [texts[letter] for letter in each.steps] for each in rows}
     assert found.keys() == {*known.programs.ids} and known.programs.known.all()

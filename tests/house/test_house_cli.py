@@ -93,6 +93,7 @@ def test_version():
         (["check"], "Missing argument"),
         (["check", "--nope", "x"], "--nope"),
         (["run", "x", "--seed", "many"], "--seed"),
+        (["score", "dataset", "x", "y", "--part", "train"], "name the split whose part it is with --split"),
     ],
 )
 def test_wrong_usage_is_status_2(arguments, message):

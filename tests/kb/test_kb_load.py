@@ -269,6 +269,7 @@ def test_a_file_of_the_release_that_is_none_is_refused(tmp_path, text):
         ("limits.yaml", "sit: 3", "`sit` is `3`"),
         ("limits.yaml", "lie: {bed: 3}", "`lie` is `{'bed': 3}`"),
         ("limits.yaml", "lie: {default: many}", "`lie` is `{'default': 'many'}`"),
+        ("limits.yaml", "seat: {default: 1}", "`seat` is not an entry of limits.yaml"),
         ("rooms.yaml", "kitchen:", "`kitchen` is `None`"),
         ("rooms.yaml", "kitchen: {stand_in: [pantry]}", "`kitchen: stand_in` is `['pantry']`"),
         ("rooms.yaml", "kitchen: {stand_in: cup}", "`cup` is not a room that programs may name"),
@@ -279,7 +280,13 @@ def test_a_file_of_the_release_that_is_none_is_refused(tmp_path, text):
             "default_states: {always: {states: [CLEAN]}, properties: {}}",
             "`default_states` lacks `classes`",
         ),
+        ("tables.yaml", "tables_like: [desk]", "`tables_like` is not an entry of tables.yaml"),
         ("tables.yaml", "default_states: []", "`default_states` is `[]`"),
+        (
+            "tables.yaml",
+            "default_states: {always: {}, class: {}, classes: {}, properties: {}}",
+            "`class` is not a part of `default_states`",
+        ),
         (
             "tables.yaml",
             "default_states: {always: {}, classes: {door: OPEN}, properties: {}}",

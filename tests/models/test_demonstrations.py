@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shutil
 from dataclasses import replace
 from io import BytesIO
@@ -266,6 +267,27 @@ def test_a_demonstration_that_does_not_fit_its_program_is_refused(pictured, tmp_
     with pytest.raises(HearthError, match=r"it has \d+ pictures of \d+ ticks") as caught:
         DemoModel(hidden=16, vector=16).fit(corpus(copy, "activities"), Training(epochs=1))
     assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE and caught.value.diagnostics[0].file
+
+
+@pytest.mark.parametrize("part", ["train", "validation"])
+@pytest.mark.parametrize("change", [lambda keep: keep[:1], lambda keep: (*keep, True)], ids=["few", "many"])
+def test_a_sketch_that_does_not_fit_its_program_is_refused(pictured, part, change):
+    """Annotations may have flags for other steps than those that were published."""
+    given = corpus(pictured, "activities")
+    train, validation = (
+        tuple(replace(each, keep=(True,) * len(each.steps)) for each in some)
+        for some in (given.train, given.validation)
+    )
+    given = replace(given, train=train, validation=validation)
+    there = Demonstrations.of(pictured)
+    some = getattr(given, part)
+    bad = next(each for each in some if there.of_example(each))
+    changed = replace(given, **{part: tuple(replace(each, keep=change(each.keep)) if each is bad else each
+                                            for each in some)})  # fmt: skip
+    with pytest.raises(HearthError, match=rf"the sketch of `{re.escape(bad.program_id)}` has \d+ flags") as caught:
+        DemoModel(hidden=16, vector=16).fit(changed, Training(epochs=1))
+    (fault,) = caught.value.diagnostics
+    assert fault.code is Code.DAMAGED_FILE and "annotation" in fault.suggestion
 
 
 def test_what_is_done_in_one_tick_is_before_one_picture(dataset, kept):

@@ -14,6 +14,7 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, to_release
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
+from hearth.simulation.observation.views import view
 from hearth.simulation.rules import DEFAULT, REPLAY
 from hearth.simulation.world import building
 from hearth.simulation.world.home import Home
@@ -230,3 +231,14 @@ def test_nothing_odd_gets_through_to_the_actions(seed):
     assert w.changes(World.start(w.home)) is not None
     assert w.graph() == World.start(Home.from_graph(w.graph(), "", default())).graph()
     assert all(len(legal(w, number)) >= 0 for number in range(len(w.agents)))
+
+
+@pytest.mark.parametrize("number", [0, 7, -1])
+@pytest.mark.parametrize(
+    "ask", [legal, lambda w, n: legal(w, n, only_visible=True), view, lambda w, n: view(w, n, partial=False)]
+)
+def test_who_is_not_in_the_world_is_refused_with_a_code(ask, number):
+    w = world(nodes=BASE[:2]) if number == 0 else world()
+    with pytest.raises(HearthError, match=rf"no agent {number}; there are \d, from 0") as caught:
+        ask(w, number)
+    assert caught.value.diagnostics[0].code is Code.UNKNOWN_AGENT and caught.value.diagnostics[0].suggestion

@@ -1,6 +1,8 @@
 """A whole study with agents in people's places: the same bytes, however often it is stopped; tables without names."""
 
 import re
+import subprocess
+import sys
 from dataclasses import replace
 
 import pyarrow.parquet as pq
@@ -9,6 +11,7 @@ from studies.small import simulated
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.studies.events import PLACES
 from hearth.studies.prepare import prepared
 from hearth.studies.simulate import Crowd, visits
@@ -17,6 +20,16 @@ from hearth.studies.study_findings import AGENT, PEOPLE, findings
 from hearth.studies.study_folder import EVENTS, opened
 from hearth.studies.study_report import page
 from hearth.studies.study_tables import TABLES, Rows, archive, export, person_of
+
+HOLDING = """
+import sys
+from pathlib import Path
+from hearth.storage.lock import locked
+with locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+"""A program that holds a folder until its input ends."""
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +81,21 @@ def test_workers_change_nothing(made, tmp_path):
 def test_another_simulation_is_not_mixed_in(folder):
     with pytest.raises(Exception, match="another study or simulation"):
         simulated(folder, seed=1)
+
+
+def test_two_simulations_at_once_are_refused(folder):
+    held = subprocess.Popen(
+        [sys.executable, "-c", HOLDING, str(folder / "small")], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert held.stdout.readline() == "held\n"
+        with pytest.raises(HearthError, match=f"process {held.pid} is simulating here") as caught:
+            simulated(folder)
+        assert caught.value.diagnostics[0].code is Code.LOCKED
+    finally:
+        held.kill()
+        held.communicate()
+    simulated(folder)
 
 
 def test_tables_hold_all_trials_and_no_id_of_a_person(made, tmp_path):
