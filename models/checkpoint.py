@@ -107,6 +107,20 @@ def load(folder: Path) -> Checkpoint:
     return Checkpoint(model, weights=_weights(folder / WEIGHTS, document.get("weights")), **parts)  # type: ignore[arg-type]
 
 
+def identity(folder: Path) -> str:
+    """A digest of a folder's checkpoint, without how long its training took: that differs from run to run."""
+    document = _document(folder / NAME)
+    if not isinstance(document, dict):
+        return file_digest(folder / NAME)
+    return value_digest({**document, "trained": _without_minutes(document.get("trained"))})
+
+
+def _without_minutes(trained: Any) -> Any:
+    if not isinstance(trained, dict):
+        return trained
+    return {name: _without_minutes(value) for name, value in trained.items() if name != "minutes"}
+
+
 def _facts_fit(trained: Mapping[str, Any]) -> bool:
     """Whether what is computed with, or drawn, of how a model was trained is numbers."""
     phases = [trained, trained.get("imitation", {})]

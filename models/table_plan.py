@@ -11,13 +11,13 @@ from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from hearth.datasets.dataset import Dataset
-from hearth.models.checkpoint import NAME
+from hearth.models.checkpoint import NAME, identity
 from hearth.models.data import facts_of
 from hearth.models.fit_model import STATE, fit
 from hearth.models.model_registry import settings_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.files import file_digest, value_digest, write_json
+from hearth.storage.files import value_digest, write_json
 from hearth.storage.input_files import read_input
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
@@ -106,7 +106,7 @@ class Needed(NamedTuple):
 
     def recipe(self, out: Path, dataset: str, how: Mapping[str, Any]) -> str:
         """A digest of what its weights depend on: dataset, settings, training, the model that it goes on from."""
-        before = file_digest(self.before.folder(out) / NAME) if self.before else ""
+        before = identity(self.before.folder(out)) if self.before else ""
         settings = repr(settings_of(self.name))
         return value_digest([dataset, self.name, settings, self.settings(out)[bool(before) :], dict(how), before])
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from hearth.cli import app
 from hearth.models import table_plan
+from hearth.models.checkpoint import Checkpoint, save
 from hearth.models.fit_model import STATE
 from hearth.models.model_registry import MODELS
 from hearth.models.table_plan import ONCE, PLANS, Plan, chosen, rows, train, training
@@ -88,3 +90,16 @@ def test_a_training_that_was_stopped_goes_on_only_by_the_same_recipe(made, tmp_p
         with pytest.raises(KeyboardInterrupt):
             train(needed, made.out, tmp_path, minutes)
     assert found == [False, True, False]
+
+
+def test_how_long_the_model_before_took_is_not_in_the_recipe(tmp_path):
+    pytest.importorskip("safetensors")
+    (needed,) = Plan("5.4", "people", "activities", (), ("consensus-sketch",)).needed(1)
+    before = needed.before.folder(tmp_path)
+
+    def recipe(minutes, loss):
+        trained = {"minutes": minutes, "imitation": {"minutes": 2 * minutes}, "curves": {"loss": [loss]}}
+        save(Checkpoint("desc2sketch", {}, {}, {"weights": np.ones(3, np.float32)}, trained), before)
+        return needed.recipe(tmp_path, "a dataset", {})
+
+    assert recipe(0.1, 1.0) == recipe(0.2, 1.0) != recipe(0.1, 2.0)
