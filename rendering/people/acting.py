@@ -24,8 +24,14 @@ from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 ARM = 0.85
 """Greatest distance in metres at which hands are used without a step nearer."""
 
+INTO = 0.6
+"""Greatest distance in metres from an open container at which hands are used in it without a step nearer."""
+
 LEANING = 1.2
 """Greatest distance in metres at which who sits uses hands without getting up."""
+
+SWINGING = ("Open", "Close")
+"""Actions in which doors and drawers swing."""
 
 LONG = 1.5
 """Metres of depth from which on one lies along a thing, as in a bed; on less one lies across it, as on a couch."""
@@ -139,10 +145,12 @@ def moved(
         yaw = floor.outlook(stays, actor.yaw) if gesture_of(step).hand == "read" else actor.yaw
         return replace(actor, spot=stays, yaw=yaw, room=room)
     acts = step is not None and (gesture_of(step).near or step.action == "Find")
-    if goes or (acts and _gap(actor.spot, pose.box) > ARM):
+    top, within = outermost(target, places)[0], _within(target, step, places)
+    moves = acts and (_gap(actor.spot, pose.box) > (INTO if within else ARM) or _hinders(actor, step, floor, top))
+    if goes or moves:
         there = room_of(graph, target) or room
         now = actor.spot if there == actor.room else None
-        spot = floor.spot_for(pose.box, front, there, now, others, outermost(target, places)[0])
+        spot = floor.spot_for(pose.box, front, there, now, others, top, still=_still(step))
         actor = replace(actor, spot=spot or actor.spot, room=there)
     return replace(actor, yaw=_towards(actor.spot, pose.box.center, actor.yaw))
 
@@ -156,9 +164,27 @@ def elsewhere(
     if pose is None:
         return
     room, top = room_of(graph, target) or actor.room, outermost(target, places)[0]
-    for spot in floor.spots_for(pose.box, front, room, actor.spot, others, top):
+    for spot in floor.spots_for(pose.box, front, room, actor.spot, others, top, still=_still(step)):
         if _gap(spot, pose.box) < ARM:
             yield replace(actor, spot=spot, yaw=_towards(spot, pose.box.center, actor.yaw), room=room)
+
+
+def _within(target: int, step: Step | None, places: Places) -> bool:
+    """Whether hands go into a container that stands open."""
+    if step is None or step.action not in ("Grab", "PutIn"):
+        return False
+    top, inside = outermost(target, places)
+    return (inside or step.action == "PutIn") and "OPEN" in _states(places.graph, top)
+
+
+def _hinders(actor: Actor, step: Step | None, floor: FreeFloor, top: int) -> bool:
+    """Whether somebody stands where the doors swing that it opens or closes."""
+    return step is not None and step.action in SWINGING and floor.in_the_way(actor.spot, top)
+
+
+def _still(step: Step | None) -> bool:
+    """Whether doors stay as they are: who only comes to a thing may open it next."""
+    return step is not None and gesture_of(step).near and step.action not in SWINGING
 
 
 def _out_of_reach(seated: Actor, places: Places, step: Step | None) -> bool:

@@ -47,6 +47,7 @@ class FreeFloor:
         rooms: (n,) id of each cell's room.
         level: height of the floor.
         sweeps: node id -> (n, 2) x and z of the floor that its doors or drawers sweep.
+        leaves: node id -> (n, 2) x and z of the floor below its doors or drawers if they stand open.
         walkable: the floor over which one comes to them, if known.
     """
 
@@ -56,6 +57,7 @@ class FreeFloor:
     level: float
     sweeps: Callable[[int], Floats] = nothing
     walkable: WalkableFloor | None = None
+    leaves: Callable[[int], Floats] = nothing
 
     @classmethod
     def of(
@@ -64,6 +66,7 @@ class FreeFloor:
         nodes: Iterable[Node],
         sweeps: Callable[[int], Floats] = nothing,
         walkable: WalkableFloor | None = None,
+        leaves: Callable[[int], Floats] = nothing,
     ) -> FreeFloor:
         """The free floor of rooms between things; both have boxes."""
         known = [(room.id, room.box) for room in rooms if room.box]
@@ -82,7 +85,7 @@ class FreeFloor:
         free = eroded(free)
         i, j = np.nonzero(free)
         centers = np.column_stack((low[0] + (i + 0.5) * CELL, low[2] + (j + 0.5) * CELL))
-        return cls((low[0], low[2]), centers, inside[i, j], low[1], sweeps, walkable)
+        return cls((low[0], low[2]), centers, inside[i, j], low[1], sweeps, walkable, leaves)
 
     def reachable_from(self, spot: Spot) -> FreeFloor:
         """The part to which a way leads from a spot; all of it where that is unknown."""
@@ -111,13 +114,29 @@ class FreeFloor:
         return float(x), float(z)
 
     def spot_for(
-        self, box: Box, yaw: float | None, room: int, now: Spot | None, taken: Iterable[Spot] = (), opens: int = 0
+        self,
+        box: Box,
+        yaw: float | None,
+        room: int,
+        now: Spot | None,
+        taken: Iterable[Spot] = (),
+        opens: int = 0,
+        *,
+        still: bool = False,
     ) -> Spot | None:
         """The best of `spots_for`; None if there is no floor."""
-        return next(self.spots_for(box, yaw, room, now, taken, opens), None)
+        return next(self.spots_for(box, yaw, room, now, taken, opens, still=still), None)
 
     def spots_for(
-        self, box: Box, yaw: float | None, room: int, now: Spot | None, taken: Iterable[Spot] = (), opens: int = 0
+        self,
+        box: Box,
+        yaw: float | None,
+        room: int,
+        now: Spot | None,
+        taken: Iterable[Spot] = (),
+        opens: int = 0,
+        *,
+        still: bool = False,
     ) -> Iterator[Spot]:
         """Spots for using an object, `APART` metres from each other, best first: near it, in front of it if it has a
         front, and close to `now`.
@@ -129,12 +148,13 @@ class FreeFloor:
             now: the character's position.
             taken: positions of other characters.
             opens: the node whose doors may swing there: the object or its outermost container.
+            still: whether its doors stay as they are.
         """
         # Where no way leads into the room, one comes as near as one can.
         mine = self.centers[self.rooms == room] if (self.rooms == room).any() else self.centers
         if not len(mine):
             return
-        cost = _distances(mine, box, yaw, self.level) + _crowding(mine, taken) + self._hit(mine, opens)
+        cost = _distances(mine, box, yaw, self.level) + _crowding(mine, taken) + self._hit(mine, opens, still)
         if now is not None:
             cost += np.linalg.norm(mine - np.array(now), axis=1) * 0.08
         while np.isfinite(cost).any():
@@ -158,9 +178,13 @@ class FreeFloor:
         blocked = self.walkable.blocked(spot, end)
         return AHEAD * (int(blocked.argmax()) if blocked.any() else len(blocked)) / len(blocked)
 
-    def _hit(self, centers: NDArray[np.float64], opens: int) -> NDArray[np.float64]:
-        """A cost for standing in the swept area of a door."""
-        passed = self.sweeps(opens)
+    def in_the_way(self, spot: Spot, opens: int) -> bool:
+        """Whether a thing's doors or drawers would hit who stands at a spot."""
+        return bool(self._hit(np.array([spot]), opens)[0])
+
+    def _hit(self, centers: NDArray[np.float64], opens: int, still: bool = False) -> NDArray[np.float64]:
+        """A cost for standing in the swept area of a door, or where it stands if it stays so."""
+        passed = self.leaves(opens) if still else self.sweeps(opens)
         if not len(passed):
             return np.zeros(len(centers))
         near = np.linalg.norm(centers[:, None] - passed, axis=2).min(axis=1) < SIDE

@@ -55,7 +55,11 @@ class Floors:
             known = number in sweeping
             return swept(self.prepared, sweeping[number], self.level) if known else nothing(number)
 
-        return FreeFloor.of(rooms, [node for node in nodes if node.box], sweeps, walkable)
+        def leaves_of(number: int) -> Floats:
+            is_open = number in sweeping and "OPEN" in sweeping[number].states
+            return self._leaf(sweeping[number]) if is_open else nothing(number)
+
+        return FreeFloor.of(rooms, [node for node in nodes if node.box], sweeps, walkable, leaves_of)
 
     def _leaf(self, node: Node) -> Floats:
         if node.id not in self._leaves:
