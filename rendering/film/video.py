@@ -245,7 +245,7 @@ def record(
         >>> trajectory = hearth.trajectory_of(execution, graph, known)
         >>> film = hearth.record(trajectory, graph, Path(), size=(64, 48), fps=1, suffixes=[".mp4"])
         >>> film.frames, len(film.steps), [path.name for path in film.files]
-        (14, 4, ['auto.mp4'])
+        (15, 4, ['auto.mp4'])
     """
     drawn = check_modalities([name for name in modalities if name not in ("graph", "rgb")], quality)
     known = {span.tick: span for span in spans(trajectory, trajectory.variation.speed)}

@@ -30,9 +30,6 @@ INTO = 0.6
 LEANING = 1.2
 """Greatest distance in metres at which who sits uses hands without getting up."""
 
-SWINGING = ("Open", "Close")
-"""Actions in which doors and drawers swing."""
-
 LONG = 1.5
 """Metres of depth from which on one lies along a thing, as in a bed; on less one lies across it, as on a couch."""
 
@@ -171,20 +168,19 @@ def elsewhere(
 
 def _within(target: int, step: Step | None, places: Places) -> bool:
     """Whether hands go into a container that stands open."""
-    if step is None or step.action not in ("Grab", "PutIn"):
-        return False
+    gesture = gesture_of(step)
     top, inside = outermost(target, places)
-    return (inside or step.action == "PutIn") and "OPEN" in _states(places.graph, top)
+    return gesture.into and (inside or gesture.about > 0) and "OPEN" in _states(places.graph, top)
 
 
 def _hinders(actor: Actor, step: Step | None, floor: FreeFloor, top: int) -> bool:
     """Whether somebody stands where the doors swing that it opens or closes."""
-    return step is not None and step.action in SWINGING and floor.in_the_way(actor.spot, top)
+    return gesture_of(step).swings and floor.in_the_way(actor.spot, top)
 
 
 def _still(step: Step | None) -> bool:
     """Whether doors stay as they are: who only comes to a thing may open it next."""
-    return step is not None and gesture_of(step).near and step.action not in SWINGING
+    return gesture_of(step).near and not gesture_of(step).swings
 
 
 def _out_of_reach(seated: Actor, places: Places, step: Step | None) -> bool:

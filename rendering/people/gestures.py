@@ -24,6 +24,8 @@ class Gesture:
         asleep: whether the eyes stay closed until the next action.
         tools: classes and kinds of what acts if a hand holds it.
         moves: metres by which the object slides away from the actor; below 0 towards it.
+        swings: whether doors or drawers of the object swing.
+        into: whether hands go into an open container, that of the object or the object itself.
     """
 
     hand: str = ""
@@ -38,6 +40,8 @@ class Gesture:
     seconds: float = 0.0
     tools: tuple[str, ...] = ()
     moves: float = 0.0
+    swings: bool = False
+    into: bool = False
 
 
 LOOK = Gesture()
