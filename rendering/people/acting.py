@@ -105,7 +105,7 @@ def _initial(node: Node, room: int, floor: FreeFloor, taken: list[Spot]) -> Spot
     """The free spot nearest to the character's box if that is in its room; else the middle of the room's free floor."""
     if node.box:
         x, z = node.box.center[0], node.box.center[2]
-        near = floor.spot_for(node.box, None, room, (x, z), taken)
+        near = next(floor.spots_for(node.box, None, room, (x, z), taken), None)
         if near is not None and abs(near[0] - x) + abs(near[1] - z) < 1.2:
             return (x, z) if not taken else near
     return floor.spot_in(room, taken) or ((node.box.center[0], node.box.center[2]) if node.box else (0.0, 0.0))
@@ -147,7 +147,7 @@ def moved(
     if goes or moves:
         there = room_of(graph, target) or room
         now = actor.spot if there == actor.room else None
-        spot = floor.spot_for(pose.box, front, there, now, others, top, still=_still(step))
+        spot = next(floor.spots_for(pose.box, front, there, now, others, top, still=_still(step)), None)
         actor = replace(actor, spot=spot or actor.spot, room=there)
     return replace(actor, yaw=_towards(actor.spot, pose.box.center, actor.yaw))
 
@@ -201,7 +201,7 @@ def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -
     """The actor standing in front of the seat that it used, or beside the bed, with the back to it."""
     pose, lay = places.poses.get(actor.place), actor.body_pose.posture == "lying"
     front = (open_side(pose) if lay else pose.yaw) if pose else None
-    spot = floor.spot_for(pose.box, front, actor.room, actor.spot, others) if pose else None
+    spot = next(floor.spots_for(pose.box, front, actor.room, actor.spot, others), None) if pose else None
     if lay and spot is not None:
         actor = replace(actor, yaw=_towards(actor.spot, (spot[0], 0.0, spot[1]), actor.yaw))
     return replace(actor, spot=spot or actor.spot)

@@ -30,6 +30,7 @@ from hearth.rendering.scene.triangles import Geometry, Part
 
 CHUNK = 65536
 """Pixels in one chunk."""
+
 SUN = 0
 """Column of `Exposure.seen` for the sun; lights follow."""
 
@@ -269,7 +270,7 @@ def _darkened(
 ) -> Ints:
     """The points, of those that a light reaches, that moving things shade."""
     is_sun, far = column == SUN, 0.999 if column == SUN else 0.97
-    if not _moves_before(moving, setting, column, lit):
+    if not len(lit) or not _moves_before(moving, setting, column):
         return NO_LIGHT
     target = _target(setting, column)
     grid = moving.light_grids.of(target, is_sun=is_sun)
@@ -282,10 +283,9 @@ def _darkened(
 
 def make_grids(exposures: Sequence[Exposure], moving: Part, setting: Setting) -> None:
     """Make the light grids that `dim` will need, on several threads."""
-    columns = {
-        column for one in exposures for column, lit in one.lit.items() if _moves_before(moving, setting, column, lit)
-    }
-    moving.light_grids.make((_target(setting, column), column == SUN) for column in sorted(columns))
+    columns = sorted({column for one in exposures for column, lit in one.lit.items() if len(lit)})
+    due = [column for column in columns if _moves_before(moving, setting, column)]
+    moving.light_grids.make((_target(setting, column), column == SUN) for column in due)
 
 
 def _target(setting: Setting, column: int) -> Floats:
@@ -293,11 +293,9 @@ def _target(setting: Setting, column: int) -> Floats:
     return setting.day[:3] if column == SUN else setting.rows[column - 1, :3]
 
 
-def _moves_before(moving: Part, setting: Setting, column: int, lit: Ints) -> bool:
-    """Whether something that moves may lie between some points and a light that reaches them."""
-    if not len(lit) or not len(moving.mesh):
-        return False
-    return column == SUN or _between(setting.rows[column - 1], moving.boxes)
+def _moves_before(moving: Part, setting: Setting, column: int) -> bool:
+    """Whether something that moves may lie between a light and what it lights."""
+    return len(moving.mesh) > 0 and (column == SUN or _between(setting.rows[column - 1], moving.boxes))
 
 
 def _between(light: Floats, boxes: Floats) -> bool:

@@ -113,20 +113,6 @@ class FreeFloor:
         x, z = mine[numbers.randrange(len(mine))]
         return float(x), float(z)
 
-    def spot_for(
-        self,
-        box: Box,
-        yaw: float | None,
-        room: int,
-        now: Spot | None,
-        taken: Iterable[Spot] = (),
-        opens: int = 0,
-        *,
-        still: bool = False,
-    ) -> Spot | None:
-        """The best of `spots_for`; None if there is no floor."""
-        return next(self.spots_for(box, yaw, room, now, taken, opens, still=still), None)
-
     def spots_for(
         self,
         box: Box,

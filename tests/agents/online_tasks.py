@@ -1,4 +1,4 @@
-"""Tasks for helpers that are not told the goal: a toy grammar of goals, and episodes in which all see everything."""
+"""Tasks for helpers that do not know the goal: a toy grammar of goals, and episodes in which all see everything."""
 
 from small_tasks import ALLOWED, wanted
 
@@ -23,7 +23,7 @@ class Nobody:
 
 
 def play(world, goal, agents, seed=0, limit=250):
-    """An episode in which everybody sees everything, and only the first is told the goal."""
+    """An episode in which everybody sees everything, and only the first knows the goal."""
     players = [Player(agents[0] or Nobody(), goal), Player(agents[1] or Nobody(), None)]
     return played_by(world, goal, players, seed, actions=ALLOWED, partial=False, limit=limit)
 

@@ -1,4 +1,4 @@
-"""Helpers that are not told the goal: what they fetch, hand over and bring back, and that none is in the way."""
+"""Helpers that do not know the goal: what they fetch, hand over and bring back, and that none is in the way."""
 
 import pytest
 from online_tasks import COUNTS, goals_of, holding, play

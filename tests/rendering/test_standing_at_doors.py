@@ -59,7 +59,7 @@ def test_one_steps_up_to_what_is_inside_and_back_before_the_door_closes(keyframe
 def test_doors_that_stay_as_they_are_take_up_only_the_floor_where_they_are():
     floor = FreeFloor.of([ROOM], [], lambda node: ARC, leaves=lambda node: LEAF)
     here = (0.0, 0.5)
-    swinging, still = (floor.spot_for(FRIDGE, 0.0, ROOM.id, here, opens=2, still=each) for each in (False, True))
+    swinging, still = (next(floor.spots_for(FRIDGE, 0.0, ROOM.id, here, opens=2, still=each)) for each in (False, True))
     assert np.hypot(*(ARC - swinging).T).min() > 0.25 > np.hypot(*(ARC - still).T).min()
     assert np.hypot(*(LEAF - still).T).min() > 0.25
     assert abs(still[0]) < 0.35 < abs(swinging[0]), "before it, and aside"
