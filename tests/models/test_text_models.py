@@ -17,7 +17,7 @@ KINDS = {
 }
 HOW = Training(epochs=120, rate=0.01, patience=0, halve_after=0)
 SLOWLY = replace(HOW, epochs=160, rate=0.004)
-"""For a transformer, which is right by chance early at a greater rate, and its weights are those of then."""
+"""For those that are right by chance early at a greater rate: their weights would be those of then."""
 
 
 def small(**changed):
@@ -36,7 +36,7 @@ def learned(dataset, eight):
     from hearth.models.data import Corpus
 
     corpus = Corpus(dataset, "activities", eight, eight)
-    return {kind: small(**changed).fit(corpus, SLOWLY if "body" in changed else HOW) for kind, changed in KINDS.items()}
+    return {kind: small(**changed).fit(corpus, SLOWLY if changed else HOW) for kind, changed in KINDS.items()}
 
 
 @pytest.mark.parametrize("kind", KINDS)
