@@ -232,9 +232,10 @@ def dataset(
     if part is not None and not split:
         raise typer.BadParameter("name the split whose part it is with --split", param_hint="--part")
     how = Options(match=match, scope=scope, instances=instances, seed=seed)
+    asked = "test" if split and part is None else part or ""
     with bar("shares scored") as seen:
         opened = Dataset.open(folder, failures)
-        scored = score_dataset(opened, file, split, "test" if part is None else part, how, workers, seen)
+        scored = score_dataset(opened, file, split, asked, how, workers, seen)
     _show(scored, how, by, as_json)
 
 

@@ -223,13 +223,15 @@ class Knowledge:
 
     def seat_limit(self, name: str) -> int:
         """How many things may be ON it before one may no longer sit down."""
-        limits = self._limits["sit"]
-        return limits.get(name) or limits["default"]
+        return self._limit("sit", name)
 
     def bed_limit(self, name: str) -> int:
         """How many things may be ON it before one may no longer lie down."""
-        limits = self._limits["lie"]
-        return limits.get(name) or limits["default"]
+        return self._limit("lie", name)
+
+    def _limit(self, kind: str, name: str) -> int:
+        limits, thing = self._limits[kind], self.object_class(name)
+        return limits.get(name) or limits.get(thing.name if thing else name) or limits["default"]
 
     def default_states(self, name: str) -> tuple[str, ...]:
         """The simulated states in which a home's thing of that class starts (thesis 5.5.2)."""

@@ -62,7 +62,7 @@ def score_dataset(
         The scores by id, without worlds.
 
     Raises:
-        HearthError: errors of `read_pairs`; UNKNOWN_ID if the dataset has no such split or part.
+        HearthError: errors of `read_pairs` and of `chosen`.
     """
     wanted = chosen(dataset, split, part)
     predicted = {pair.id: pair for pair in _read(dataset, file)}
@@ -166,8 +166,11 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
     """The ids of the executions in a part of a split, sorted; without a split, of all that the dataset includes.
 
     Raises:
-        HearthError: UNKNOWN_ID, with the existing parts.
+        HearthError: UNKNOWN_ID, with the existing parts; BAD_ARGUMENT, for a part without a split.
     """
+    if part and not split:
+        message = f"the part `{part}` without its split"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name the split that has it")
     if not split:
         query = f"SELECT execution_id FROM executions WHERE {dataset.included} ORDER BY 1"
         return [name for (name,) in dataset.rows(query)[1]]

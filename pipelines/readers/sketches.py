@@ -42,7 +42,7 @@ _ABSENT = (0, None)
 
 
 def read(item: Item) -> IngestedRow | Reject:
-    """The record of a sketch: its program, a flag for each step that it keeps, and the steps."""
+    """The record of a sketch: its program, a flag for each of its steps, and the steps that the flags keep."""
     keep, given = item.value["keep"], item.value["input"]
     try:
         flags = [bool(flag) for flag in keep]
@@ -53,6 +53,9 @@ def read(item: Item) -> IngestedRow | Reject:
         return Reject.of(Code.BAD_JSON, message, file=item.place, suggestion="it needs title, descr, prog and prefix")
     if not flags:
         return Reject.of(Code.EMPTY, "a sketch without steps", file=item.place)
+    if sum(flags) != (count := text.count("\n")):
+        message = f"not a sketch: flags set {sum(flags):,}, steps in `prog` {count:,}"
+        return Reject.of(Code.BAD_JSON, message, file=item.place, suggestion="set a flag for each step that is kept")
     own = program_id.startswith((f"{WRITTEN}:", f"{crowd.NAME}:"))
     described = program_id if own else f"{release.NAME}:{program_id}"
     return record(item, "sketch", title, description, description_id=described, text=text, line=0, keep=flags)

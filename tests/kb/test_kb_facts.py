@@ -191,6 +191,7 @@ def test_places_say_what_they_hold_most_usual_first(knowledge):
 
 def test_limits_rooms_and_defaults(knowledge):
     assert [knowledge.seat_limit(name) for name in ("couch", "sofa", "bench", "chair", "stove")] == [4, 4, 2, 1, 1]
+    assert [knowledge.seat_limit(name) for name in ("love_seat", "loveseat", "settee", "pianobench")] == [2, 2, 4, 2]
     assert [knowledge.bed_limit(name) for name in ("bed", "bathtub", "bench", "mat")] == [3, 2, 1, 1]
     assert knowledge.has("sofa", "SITTABLE") and knowledge.has("bed", "LIEABLE")
     assert not knowledge.has("table", "SITTABLE")

@@ -10,25 +10,20 @@ import zipfile
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+import read_sources
 from oracles import mutated_input
+from read_sources import PROGRAM
 
-from hearth.pipelines.engine.sources import labelled
-from hearth.pipelines.ingest import READERS, items
 from hearth.storage import archives
 from hearth.storage.rejects import Reject
 
-PROGRAM = "Watch TV\nFrom the sofa.\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n"
 SPOKEN = "Task: Drink milk\nStep 1: Walk to fridge\nStep 2: Grab milk"
 RECORD = {"title": "Sleep", "description": "In bed.", "steps": ["[Walk] <bed> (1)", "[Lie] <bed> (1)"]}
 
 
 def read(*paths):
     """Everything that sources give: rows and rejects."""
-    found = []
-    for _, item in items(labelled(map(str, paths))):
-        outputs = READERS[item.reader](item, "salt")
-        found.extend([outputs] if isinstance(outputs, dict | Reject) else outputs)
-    return found
+    return [output for _, output in read_sources.read(*paths)]
 
 
 def codes(found):
@@ -104,9 +99,10 @@ def test_a_published_dataset_is_read_back(made, build_folder, tmp_path):
 
 def test_sketches(write):
     given = {"title": "T", "descr": "D", "prog": ["walk bed "], "prefix": "b/file1_2"}
-    data = {"answer": [[0, 1], [], [1]], "represent": [1, 1, 1], "input": [given, given, {}]}
+    data = {"answer": [[0, 1], [], [1], [1, 1]], "represent": [1, 1, 1, 1], "input": [given, given, {}, given]}
     found = read(write("s.json", json.dumps(data)))
-    assert codes(found) == ["sketch", "EMPTY", "BAD_JSON"]
+    assert codes(found) == ["sketch", "EMPTY", "BAD_JSON", "BAD_JSON"]
+    assert found[3].diagnostics[0].message == "not a sketch: flags set 2, steps in `prog` 1"
     assert (found[0]["keep"], found[0]["text"]) == ([False, True], "walk bed\n")
     assert found[0]["description_id"] == "release:b/file1_2"
 

@@ -125,6 +125,8 @@ def test_only_a_part_of_a_split(ds, tmp_path):
     assert ids == chosen(ds, "activities", "train")
     with pytest.raises(HearthError, match="no executions in part `x`"):
         score_dataset(ds, file, "activities", "x")
+    with pytest.raises(HearthError, match="the part `train` without its split"):
+        score_dataset(ds, file, part="train")
 
 
 def test_an_unknown_id_is_named_with_its_line(ds, tmp_path):
