@@ -110,16 +110,20 @@ TRAINED := chooser mle-composed retrieve-edit
 models/trained/chooser: HOW := --epochs 10
 models/trained/mle-composed: HOW := --epochs 15 --rate 0.003
 
-.PHONY: $(TRAINED:%=models/trained/%)
-$(TRAINED:%=models/trained/%):
-	@$(HEARTH) model train $(notdir $@) $(OUT) --seed $(SEED) --out $@ $(HOW)
+FILMED := clips-context masks
+$(FILMED:%=models/trained/%): HOW := --epochs 22 --rate 0.002
+$(TRAINED:%=models/trained/%): FROM := $(OUT)
+$(FILMED:%=models/trained/%): FROM := $(OUT)/clips
+
+.PHONY: $(TRAINED:%=models/trained/%) $(FILMED:%=models/trained/%)
+$(TRAINED:%=models/trained/%) $(FILMED:%=models/trained/%):
+	@$(HEARTH) model train $(notdir $@) $(FROM) --seed $(SEED) --out $@ $(HOW)
 
 models: .venv/.models $(call manifest,publish)  ## train the models that come with Hearth, in models/trained
 	@$(MAKE) --no-print-directory -j 2 $(TRAINED:%=models/trained/%)
 
 film-models: .venv/.models  ## train the models of films on data_out/clips, which `make clips` makes, in models/trained
-	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 22 --rate 0.002
-	@$(HEARTH) model train masks $(OUT)/clips --seed $(SEED) --out models/trained/masks --epochs 22 --rate 0.002
+	@$(MAKE) --no-print-directory -j 2 $(FILMED:%=models/trained/%)
 
 film-tables: .venv/.models  ## tables 4.2, 4.3 and 4.6 with three seeds, of data_out/clips, in data_out/tables: a night
 	@$(HEARTH) model tables $(OUT) --clips $(OUT)/clips --out $(OUT)/tables --minutes 20 --table 4.2 --table 4.3 --table 4.3b --table 4.6
