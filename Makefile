@@ -111,7 +111,8 @@ models/trained/chooser: HOW := --epochs 10
 models/trained/mle-composed: HOW := --epochs 15 --rate 0.003
 
 FILMED := clips-context masks
-$(FILMED:%=models/trained/%): HOW := --epochs 22 --rate 0.002
+models/trained/clips-context: HOW := --epochs 22 --rate 0.002
+models/trained/masks: HOW := --epochs 11 --rate 0.002
 $(TRAINED:%=models/trained/%): FROM := $(OUT)
 $(FILMED:%=models/trained/%): FROM := $(OUT)/clips
 

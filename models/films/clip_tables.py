@@ -15,6 +15,7 @@ from hearth.models.films.film_arrays import COLOURS, MASKS
 from hearth.models.films.mask_model import TrainedMaskModel
 from hearth.models.films.predicted_masks import PredictedMasks
 from hearth.models.films.seen_model import TrainedSeenModel
+from hearth.models.films.whole_films import named_in_films
 from hearth.models.model_registry import restore
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -90,7 +91,7 @@ class ClipRow(NamedTuple):
 
 
 def clip_table(number: str, dataset: Dataset, models: Sequence[Path | str], seed: int = 0) -> list[ClipRow]:
-    """The rows of a table, over the clips of the test part.
+    """The rows of a table, over the clips of the test part: each clip by itself, and by the whole film.
 
     Args:
         number: of `TABLES`.
@@ -114,6 +115,8 @@ def clip_table(number: str, dataset: Dataset, models: Sequence[Path | str], seed
     named: dict[str, list[list[Instruction]]] = {}
     for name, trained in found:
         named.setdefault(name, []).append(trained.named(test))
+        if isinstance(trained, TrainedSeenModel):
+            named.setdefault(f"{name}, whole film", []).append(named_in_films(trained, test, done))
     return [*rows, *(row for name, each in named.items() for row in _rows(name, "ours", test, each, len(each)))]
 
 

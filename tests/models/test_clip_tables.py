@@ -45,12 +45,15 @@ def given(monkeypatch):
     models = {"a": ("clips-seen", Named(WALK)), "b": ("clips-seen", Named(GRAB)), "m": ("masks", Masked())}
     monkeypatch.setattr(clip_tables.Clips, "of", lambda *_, **__: Clips(("film",), films, clips, 9))
     monkeypatch.setattr(clip_tables, "restore", models.__getitem__)
+    monkeypatch.setattr(clip_tables, "named_in_films", lambda trained, test, _: [GRAB] * len(test))
     return models
 
 
 def test_rows_are_of_homes_and_seeds(given):
     rows = clip_tables.clip_table("4.3", None, ["a", "b"])
-    ours = {row.homes: row for row in rows if row.of == "ours"}
+    ours = {row.homes: row for row in rows if row.method == "clips-seen"}
+    whole = [row.scores["action"] for row in rows if row.method == "clips-seen, whole film"]
+    assert whole == [0.5, 1.0, 0.5]
     assert ours["seen"].clips == 3 and ours["unseen"].clips == 1 and ours["all"].clips == 4
     assert ours["seen"].scores["mean"] == 0.5 and ours["seen"].seeds == 2 and ours["seen"].spread == 0
     assert ours["unseen"].scores["mean"] == 0.5 and ours["unseen"].spread == 0.5
@@ -60,7 +63,7 @@ def test_rows_are_of_homes_and_seeds(given):
 
 def test_predicted_masks_need_a_network_that_predicts_them(given):
     rows = clip_tables.clip_table("4.2", None, ["a", "m"])
-    assert [row.method for row in rows if row.of == "ours"] == ["clips-seen"] * 3
+    assert [row.method for row in rows if row.of == "ours"] == ["clips-seen"] * 3 + ["clips-seen, whole film"] * 3
     assert given["a"][1].films[0][0].tolist() == np.ones((9, 2, 2)).tolist()
     with pytest.raises(HearthError, match="0 checkpoints of `masks`"):
         clip_tables.clip_table("4.2", None, ["a"])
