@@ -7,7 +7,7 @@ from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hearth.datasets.damage import reading, refused_question
+from hearth.datasets.damage import reading, refused_question, using
 from hearth.datasets.file_ranges import reading_between
 from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
 from hearth.datasets.format.ids import names_of
@@ -249,7 +249,8 @@ class Dataset:
             for entry in entries
             for run in entry.runs
         )
-        return to_tensors(samples, self.vocabulary_ids)
+        with using(self.folder):
+            return to_tensors(samples, self.vocabulary_ids)
 
     @cached_property
     def vocabulary_ids(self) -> list[Any]:
