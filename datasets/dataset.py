@@ -176,7 +176,8 @@ class Dataset:
 
     def __iter__(self) -> Iterator[str]:
         """The ids of all programs, sorted."""
-        yield from (row["program_id"] for row in self.read("SELECT program_id FROM programs ORDER BY program_id"))
+        query = "SELECT program_id::VARCHAR AS program_id FROM programs ORDER BY 1"  # a stranger's may be bytes
+        yield from (row["program_id"] for row in self.read(query))
 
     def __contains__(self, program_id: str) -> bool:
         return any(self._rows("SELECT 1 FROM programs WHERE program_id = $id", name) for name in names_of(program_id))

@@ -21,6 +21,8 @@ from hearth.datasets.verify import verify
 from hearth.kb.tools.published_programs import programs
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.tables import TABLES
+from hearth.web.annotate.marking import films_of
 
 
 @pytest.fixture
@@ -114,4 +116,20 @@ def test_a_challenge_whose_table_is_a_pipe_is_not_waited_for(tmp_path):
     assert data is not None
     with pytest.raises(HearthError) as caught:
         data.rows("SELECT 1")
+    assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE
+
+
+def test_films_of_programs_that_there_are_not_are_not_shown(copy):
+    films_of.cache_clear()
+    (name,) = Dataset.open(copy).rows("SELECT min(execution_id) FROM executions")[1][0]
+    (copy / "films").mkdir()
+    (copy / "films/a.webm").write_bytes(b"x")
+    row = {**dict.fromkeys(TABLES["videos"].names), "execution_id": name, "file": "films/a.webm"}
+    rewritten(copy, "videos", lambda _: pa.Table.from_pylist([row], TABLES["videos"]))
+    assert list(films_of(copy)) == [name]
+    films_of.cache_clear()
+    rewritten(copy, "executions", lambda table: table.set_column(
+        table.column_names.index("program_id"), "program_id", pa.array(["x"] * len(table))))  # fmt: skip
+    with pytest.raises(HearthError) as caught:
+        films_of(copy)
     assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE
