@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from attack import Attack, Ground
+from attack import DEEP, Attack, Ground
 from attacks_on_challenges import _read, _strange
 from attacks_on_studies import _at, _places, _with
 
@@ -35,6 +35,7 @@ SKETCHES = {
 
 BAD: tuple[Any, ...] = (
     None, [], {}, "", -1, 1e300, True, "9" * 5_000, "{guard}/secret.csv", [[[[]]]], {"x": {"x": []}}, "\u202e\x1b[2J",
+    DEEP,
 )  # fmt: skip
 """Values that somebody could write in the place of any other."""
 

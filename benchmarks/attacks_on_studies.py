@@ -14,7 +14,7 @@ from typing import Any
 
 import orjson
 import yaml
-from attack import Attack, Ground
+from attack import DEEP, Attack, Ground
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -51,6 +51,7 @@ BAD: tuple[Any, ...] = (
     ["x"] * 2_000,
     {"x": {"x": []}},
     "\u202e\x1b[2J",
+    DEEP,
 )
 """Values that somebody could write in the place of any other."""
 
