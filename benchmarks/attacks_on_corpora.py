@@ -13,7 +13,7 @@ from typing import Any
 import yaml
 from attack import DEEP, Attack, Ground
 from attacks_on_challenges import _read, _strange
-from attacks_on_studies import _at, _places, _with
+from attacks_on_studies import _at, _other_keys, _places, _with
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -298,6 +298,9 @@ def _grammars() -> Iterator[Attack]:
         ):
             name, document = f"grammar: {'.'.join(map(str, place))[:30]} = {bad!r:.16}", _with(whole, place, bad)
             yield Attack("corpora", name, lambda ground, d=document: _read(synthesized, yaml.safe_dump(d), ground))
+    for place, document in _other_keys(whole):
+        yield Attack("corpora", f"grammar: a key in {'.'.join(map(str, place))[:40]}", lambda ground, d=document: _read(
+            synthesized, yaml.safe_dump(d), ground))  # fmt: skip
     for like in ("sit", "none", []):
         document = _with(whole, ("tasks", "sit", "like"), like)
         yield Attack("corpora", f"grammar: like {like}", lambda ground, d=document: _read(

@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 from attack import DEEP, Attack, Ground
 from attacks_on_corpora import CELLS
-from attacks_on_studies import _at, _places, _with
+from attacks_on_studies import _at, _other_keys, _places, _with
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import FILES, OURS, default, load
@@ -118,6 +118,9 @@ def _yaml(name: str, data: bytes) -> Iterator[Attack]:
                 return laid(_written(ground, name, text.encode()))
 
             yield Attack("knowledge", f"{name}: {'.'.join(map(str, place))[:30]} = {bad!r:.16}", changed)
+    for place, document in _other_keys(whole):
+        yield Attack("knowledge", f"{name}: a key in {'.'.join(map(str, place))[:30]}", lambda
+                     ground, d=document: laid(_written(ground, name, yaml.safe_dump(d).encode())))  # fmt: skip
     for text in (b'a: "\x07"\n', b"\x00", b"\xff\xfe", b"[]", b"x", b"? [a]\n: b", b"a: !!python/object:os.system {}",
                  b"a: &a [*a]", b"a: 2020-13-45", b"{" * 9_000):  # fmt: skip
         yield Attack("knowledge", f"{name}: {text[:30]!r}", lambda ground, t=text: laid(_written(ground, name, t)))

@@ -331,7 +331,7 @@ def _values() -> dict[str, Any]:
         "a map": pa.array([[("a", 1)]], pa.map_(pa.string(), pa.int64())), "half": pa.array([1.0], pa.float16()),
         "a dictionary": pa.array(["a"]).dictionary_encode(), "lists": pa.array([[[["a"]]]]),
         "a decimal": pa.array([None], pa.decimal256(70, 2)), "huge": pa.array([2**63 - 1]),
-        "no text": pa.Array.from_buffers(pa.string(), 1, pa.array([b"\xff\xfe"]).buffers()),
+        "broken text": pa.Array.from_buffers(pa.string(), 1, pa.array([b"\xff\xfe"]).buffers()),
         "steps": pa.array([[{"action": "Sleep", "objects": [{"name": "bed", "instance": 2**60, "node": -5}]}]]),
     }  # fmt: skip
 

@@ -122,7 +122,7 @@ def test_a_challenge_whose_table_is_a_pipe_is_not_waited_for(tmp_path):
 def test_films_of_programs_that_there_are_not_are_not_shown(copy):
     films_of.cache_clear()
     (name,) = Dataset.open(copy).rows("SELECT min(execution_id) FROM executions")[1][0]
-    (copy / "films").mkdir()
+    (copy / "films").mkdir(exist_ok=True)
     (copy / "films/a.webm").write_bytes(b"x")
     row = {**dict.fromkeys(TABLES["videos"].names), "execution_id": name, "file": "films/a.webm"}
     rewritten(copy, "videos", lambda _: pa.Table.from_pylist([row], TABLES["videos"]))
@@ -133,3 +133,22 @@ def test_films_of_programs_that_there_are_not_are_not_shown(copy):
     with pytest.raises(HearthError) as caught:
         films_of(copy)
     assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE
+
+
+def test_code_that_is_written_has_numbers_of_agents_alone(copy, tmp_path):
+    def changed(table):
+        rows = table.to_pylist()
+        for row in rows:
+            for step in row["steps"]:
+                step["agent"] = "1); import os; os.abort("
+        kind = table.schema.field("steps").type.value_type
+        step = pa.struct([field if field.name != "agent" else pa.field("agent", pa.string()) for field in kind])
+        columns = {name: [row[name] for row in rows] for name in table.column_names}
+        types = {field.name: field.type if field.name != "steps" else pa.list_(step) for field in table.schema}
+        return pa.table({name: pa.array(values, types[name]) for name, values in columns.items()})
+
+    rewritten(copy, "programs", changed)
+    with pytest.raises(HearthError) as caught:
+        export(Dataset.open(copy), "code", tmp_path / "code")
+    assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE
+    assert not (tmp_path / "code/programs.py").exists()
