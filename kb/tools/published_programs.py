@@ -22,8 +22,11 @@ def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
     files = _files(dataset)
     try:
         table = pyarrow.dataset.dataset(files, format="parquet")
-        if "steps" not in table.schema.names:
-            raise HearthError.of(Code.BAD_TABLE, "the programs have no `steps`", file=str(dataset))
+    except (pyarrow.ArrowException, OSError, ValueError) as error:
+        raise HearthError.of(Code.BAD_TABLE, f"not Parquet: {error}", file=str(dataset)) from error
+    if "steps" not in table.schema.names:
+        raise HearthError.of(Code.BAD_TABLE, "the programs have no `steps`", file=str(dataset))
+    try:
         origin = pyarrow.dataset.field("origin") != "augmented" if "origin" in table.schema.names else None
         for batch in table.to_batches(columns=["steps"], filter=origin):
             for steps in batch.column("steps").to_pylist():
