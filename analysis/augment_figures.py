@@ -80,20 +80,22 @@ def figures(dataset: Path) -> dict[str, Any]:
         they run.
 
     Raises:
-        HearthError: MISSING_FILE, if there is no dataset.
+        HearthError: MISSING_FILE, if there is no dataset; DAMAGED_FILE.
     """
+    from hearth.datasets.damage import using
     from hearth.datasets.dataset import Dataset
 
     data = Dataset.open(dataset)
-    return {
-        "strength": data.manifest.get(STRENGTH, MILD),
-        "table": {name: {"ours": _row(data, name), "thesis": thesis} for name, thesis in THESIS.items()},
-        "lengths": {name: _lengths(data, name) for name in ("executable", "augmented")},
-        "conditions": {name: _conditions(data, name) for name in SHOWN_CLASSES},
-        "near_duplicates": _near_duplicates(data),
-        "executable_share": _share(data),
-        "bytes_a_program": _bytes(dataset, data),
-    }
+    with using(data.folder):
+        return {
+            "strength": data.manifest.get(STRENGTH, MILD),
+            "table": {name: {"ours": _row(data, name), "thesis": thesis} for name, thesis in THESIS.items()},
+            "lengths": {name: _lengths(data, name) for name in ("executable", "augmented")},
+            "conditions": {name: _conditions(data, name) for name in SHOWN_CLASSES},
+            "near_duplicates": _near_duplicates(data),
+            "executable_share": _share(data),
+            "bytes_a_program": _bytes(dataset, data),
+        }
 
 
 def _row(data: Any, group: str) -> dict[str, float | None]:

@@ -16,6 +16,17 @@ class Ground(NamedTuple):
     dataset: Path
 
 
+def _deep(depth: int) -> list[Any]:
+    found: list[Any] = []
+    for _ in range(depth):
+        found = [found]
+    return found
+
+
+DEEP = _deep(300)
+"""A value that JSON is read with, but not written."""
+
+
 @dataclass(frozen=True, slots=True)
 class Attack:
     """One attack. Its call may raise HearthError; what it returns must not hold the guard's secret."""

@@ -27,10 +27,12 @@ from attacks_on_corpora import corpora  # noqa: E402
 from attacks_on_datasets import datasets  # noqa: E402
 from attacks_on_episodes import episodes  # noqa: E402
 from attacks_on_films import films  # noqa: E402
+from attacks_on_knowledge import knowledge  # noqa: E402
 from attacks_on_models import checkpoints, kinds  # noqa: E402
 from attacks_on_queries import queries  # noqa: E402
 from attacks_on_stores import stores  # noqa: E402
 from attacks_on_studies import studies  # noqa: E402
+from attacks_on_tables import tables  # noqa: E402
 from attacks_on_trainings import trainings  # noqa: E402
 from attacks_on_ways import ways  # noqa: E402
 from attacks_on_web import web  # noqa: E402
@@ -287,6 +289,7 @@ def terminals() -> Iterator[Attack]:
         shown = CliRunner().invoke(app, filled).output
         bad = {c for c in shown if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160 or c in "\u202e\u2066")}
         assert shown and not bad, f"it prints {bad!a}"
+        assert "error in Hearth" not in shown, shown[-200:]
 
     commands = (
         ["query", "{dataset}", "SELECT title, description, place FROM programs"], ["check", "{file}"],
@@ -300,6 +303,7 @@ def terminals() -> Iterator[Attack]:
 GROUPS = (
     queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals, checkpoints, kinds, trainings,
     task_files, results, belief_results, clients, episodes, films, studies, stores, ways, web, corpora, datasets,
+    knowledge, tables,
 )  # fmt: skip
 
 

@@ -10,14 +10,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from attack import Attack, Ground
+from attack import DEEP, Attack, Ground
 
 from hearth.challenges import result_files
 from hearth.challenges import task_files as files
 from hearth.kb.loading.load import default
 
 BAD: tuple[Any, ...] = (
-    None, True, -1, 10**30, 1e308, "", "../../guard/x", "{guard}/x", "x" * 100_000, "\x1b[2J", [], [[]], {}, {"x": {}},
+    None, True, -1, 10**30, 1e308, "", "../../guard/x", "{guard}/x", "x" * 100_000, "\x1b[2J", [], [[]], {},
+    {"x": {}}, {"x": DEEP},
 )  # fmt: skip
 
 
@@ -126,7 +127,26 @@ def _verified(path: Path) -> Any:
     found = result_files.read(path)
     faults = verify(found, str(path), default)
     metrics = [(each.metrics, each.final) for each in found.records]
-    return [fault.message for fault in faults] or metrics
+    return [fault.message for fault in faults] or metrics, consumed(path)
+
+
+def consumed(path: Path) -> Any:
+    """What commands make of results without doing them again: figures, and rows of tables."""
+    import pyarrow as pa
+
+    from hearth.challenges.challenge_tables import TABLES, _episode, _once, _trajectory
+    from hearth.challenges.metrics import summary
+    from hearth.challenges.verification import read_whole
+
+    found = read_whole(path)
+    figures = summary(found.outcomes(False), found.outcomes(True) if found.header.helped[-1] else {})
+    ends = {each.end["code"] for each in found.records if each.end}
+    rows = {
+        "episodes": [_episode(header, each) for header, each in _once([found])],
+        "trajectories": [row for header, each in _once([found]) for row in _trajectory(header, each)],
+    }
+    tables = [pa.Table.from_pylist(some, schema=TABLES[name]) for name, some in rows.items()]
+    return figures, ends, len(tables)
 
 
 def results() -> Iterator[Attack]:
@@ -149,6 +169,16 @@ def results() -> Iterator[Attack]:
             yield _changed("results", first, _with(second, ("metrics", name), bad), f"metric {name} = {bad!r:.20}")
     many = json.dumps({**first, "seeds": 1_000})
     yield Attack("results", "more seeds than episodes", lambda ground: _read(_verified, many, ground))
+    yield Attack("results", "no episodes", lambda ground: _read(consumed, json.dumps(first), ground))
+    yield Attack("results", "millions of episodes", lambda ground: _read(consumed, _many(first), ground))
+    yield Attack("results", "another first line", lambda ground: _read(consumed, json.dumps(second), ground))
+
+
+def _many(first: dict[str, Any]) -> str:
+    """A first line that says many more episodes than there are."""
+    task = first["suite"]["tasks"][0]
+    tasks = [{**task, "id": f"t{number}"} for number in range(10_000)]
+    return json.dumps({**first, "suite": _signed({**first["suite"], "tasks": tasks}), "seeds": 1_000})
 
 
 def _changed(group: str, first: dict[str, Any], second: dict[str, Any], title: str) -> Attack:

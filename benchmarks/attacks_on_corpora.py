@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from attack import Attack, Ground
+from attack import DEEP, Attack, Ground
 from attacks_on_challenges import _read, _strange
-from attacks_on_studies import _at, _places, _with
+from attacks_on_studies import _at, _other_keys, _places, _with
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -35,6 +35,7 @@ SKETCHES = {
 
 BAD: tuple[Any, ...] = (
     None, [], {}, "", -1, 1e300, True, "9" * 5_000, "{guard}/secret.csv", [[[[]]]], {"x": {"x": []}}, "\u202e\x1b[2J",
+    DEEP,
 )  # fmt: skip
 """Values that somebody could write in the place of any other."""
 
@@ -297,6 +298,9 @@ def _grammars() -> Iterator[Attack]:
         ):
             name, document = f"grammar: {'.'.join(map(str, place))[:30]} = {bad!r:.16}", _with(whole, place, bad)
             yield Attack("corpora", name, lambda ground, d=document: _read(synthesized, yaml.safe_dump(d), ground))
+    for place, document in _other_keys(whole):
+        yield Attack("corpora", f"grammar: a key in {'.'.join(map(str, place))[:40]}", lambda ground, d=document: _read(
+            synthesized, yaml.safe_dump(d), ground))  # fmt: skip
     for like in ("sit", "none", []):
         document = _with(whole, ("tasks", "sit", "like"), like)
         yield Attack("corpora", f"grammar: like {like}", lambda ground, d=document: _read(

@@ -9,13 +9,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from attack import Attack, Ground
+from attack import DEEP, Attack, Ground
 from attacks_on_studies import _at, _with
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.manifest import NAME
 
-BAD: tuple[Any, ...] = (None, [], -1, True, "9" * 5_000, {"x": {"x": []}})
+BAD: tuple[Any, ...] = (None, [], -1, True, "9" * 5_000, {"x": {"x": []}}, DEEP)
 """Values that somebody could write in the place of any other."""
 
 FIELDS = (

@@ -14,7 +14,7 @@ from typing import Any
 
 import orjson
 import yaml
-from attack import Attack, Ground
+from attack import DEEP, Attack, Ground
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -51,6 +51,7 @@ BAD: tuple[Any, ...] = (
     ["x"] * 2_000,
     {"x": {"x": []}},
     "\u202e\x1b[2J",
+    DEEP,
 )
 """Values that somebody could write in the place of any other."""
 
@@ -111,6 +112,23 @@ def _with(document: Any, place: tuple[Any, ...], bad: Any) -> Any:
     return changed
 
 
+KEYS = ("\u00b2", "9" * 5_000, "", "__class__", "\x1b[2J", "-1")
+"""Keys that no mapping has."""
+
+
+def _other_keys(document: Any) -> Iterator[tuple[tuple[Any, ...], Any]]:
+    """The document with another first key in each of its mappings."""
+    for place in ((), *_places(document)):
+        inner = document
+        for key in place:
+            inner = inner[key]
+        if isinstance(inner, dict) and inner:
+            (_, value), *others = inner.items()
+            for key in KEYS:
+                changed = {key: value, **dict(others)}
+                yield place, _with(document, place, changed) if place else changed
+
+
 def _at(value: Any, ground: Ground) -> Any:
     return json.loads(json.dumps(value).replace("{guard}", str(ground.guard)))
 
@@ -127,6 +145,9 @@ def _study_files() -> Iterator[Attack]:
             for bad in BAD:
                 name, document = f"study: {'.'.join(map(str, place))} = {bad!r:.16}", _with(whole, place, bad)
                 yield Attack("studies", name, lambda ground, d=document: read(d, ground))
+        for place, document in _other_keys(whole):
+            name = f"study: a key in {'.'.join(map(str, place))}: {len(str(document))}"
+            yield Attack("studies", name, lambda ground, d=document: read(d, ground))
     large = {"people": 5_000, "repeats": 1_000, "practice": 10, "at_least": 1_000}
     for name, value in large.items():
         document = {**yaml.safe_load(HEAD), name: value}

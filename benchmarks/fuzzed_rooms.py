@@ -1,7 +1,7 @@
 """Readers of what strangers give to challenges, models, studies and pages: targets of `guided_fuzz.py`.
 
 Each takes a file's bytes, or a message's, and may raise only HearthError or the server's refusal. Those of what is
-beside corpora, datasets and stores are in `fuzzed_files.py`.
+beside corpora, datasets and stores are in `fuzzed_files.py`, of knowledge, tables and goals in `fuzzed_tables.py`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,10 @@ from typing import Any
 
 try:
     from benchmarks.fuzzed_files import FILES, One, Room, _by_file, _signed_results
+    from benchmarks.fuzzed_tables import TABLES
 except ImportError:
     from fuzzed_files import FILES, One, Room, _by_file, _signed_results
+    from fuzzed_tables import TABLES
 
 SMALL = "goal-inference"
 """The checkpoint whose description is changed."""
@@ -69,13 +71,15 @@ def _read_tasks(path: Path) -> Any:
 
 
 def _read_results(path: Path) -> Any:
+    from attacks_on_challenges import consumed
+
     from hearth.challenges.result_files import read
     from hearth.challenges.verification import verify
     from hearth.kb.loading.load import default
 
     _signed_results(path)
     found = read(path)
-    return len(found.header.keys) < 10 and verify(found, str(path), default)
+    return verify(found, str(path), default), consumed(path)
 
 
 def _episodes() -> bytes:
@@ -334,4 +338,5 @@ ROOMS: dict[str, Room] = {
     "agent-answer": Room(lambda: _ANSWER, _answers),
     "page-steps": Room(lambda: _STEPS, _messages),
     **FILES,
+    **TABLES,
 }

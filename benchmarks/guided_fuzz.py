@@ -161,7 +161,9 @@ def _command(command: Command, scratch: Path) -> Callable[[bytes], None]:
         done = runner.invoke(app, words)
         if done.exception is not None and not isinstance(done.exception, SystemExit):
             raise done.exception
-        if done.exit_code not in (0, 1, 2) or re.search(r"fault of Hearth|INTERNAL_ERROR|Traceback", done.output):
+        if done.exit_code not in (0, 1, 2) or re.search(
+            r"(fault|error) (of|in) Hearth|INTERNAL_ERROR|Traceback", done.output
+        ):
             raise AssertionError(f"status {done.exit_code}: {done.output[-600:]}")
 
     return one

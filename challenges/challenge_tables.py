@@ -23,6 +23,7 @@ from hearth.datasets.format.catalog import SQL, limited, quoted
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.numbers import number_of
 from hearth.schemas.tables import comment_of, struct
 from hearth.storage.files import read_json, value_digest, write_bytes
 from hearth.storage.manifest import NAME, describe
@@ -131,6 +132,11 @@ class ChallengeData(Dataset):
         import duckdb
 
         root = f"{self.folder.resolve()}/"
+        for table in TABLES:  # a query would wait for a pipe
+            path = inside(self.folder, f"{table}.parquet")
+            if path.exists() and not path.is_file():
+                remedy = "fetch or build the challenge again"
+                raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(path), suggestion=remedy)
         with reading(self.folder):
             connection = duckdb.connect()
             connection.execute(_sql(root))
@@ -168,7 +174,11 @@ def _demonstration(shown: Demonstration, rate: float) -> table_rows.Demonstratio
 
 def _instruction(tick: int, text: str) -> table_rows.InstructionRow:
     action, *objects = text.split(" ")
-    return {"tick": tick, "action": action, "objects": list(map(int, objects))}
+    nodes = [number for each in objects if (number := number_of(each)) is not None]
+    if len(nodes) < len(objects):
+        remedy = "`challenge verify` finds what is not as it was done"
+        raise HearthError.of(Code.BAD_ARGUMENT, f"`{text[:60]}` is not an instruction", suggestion=remedy)
+    return {"tick": tick, "action": action, "objects": nodes}
 
 
 def episode_id(found: Results, record: Record) -> str:

@@ -123,15 +123,18 @@ def of_tasks(outcomes: Outcomes, name: str) -> dict[str, float]:
 
 
 def speedups(alone: Outcomes, helped: Outcomes) -> dict[str, float]:
-    """Task id -> L_alone / L_help - 1, of mean lengths over the task's episodes: a mean of ratios would flatter."""
+    """Task id -> L_alone / L_help - 1, of mean lengths over the task's episodes: a mean of ratios would flatter.
+
+    Tasks that nobody did alone have none.
+    """
     before, after = of_tasks(alone, "length"), of_tasks(helped, "length")
-    return {task: before[task] / max(after[task], 1.0) - 1 for task in after}
+    return {task: before[task] / max(after[task], 1.0) - 1 for task in after if task in before}
 
 
 def savings(alone: Outcomes, helped: Outcomes) -> dict[str, float]:
     """Task id -> (L_alone - L_help) / L_alone, as others publish it."""
     before, after = of_tasks(alone, "length"), of_tasks(helped, "length")
-    return {task: (before[task] - after[task]) / max(before[task], 1.0) for task in after}
+    return {task: (before[task] - after[task]) / max(before[task], 1.0) for task in after if task in before}
 
 
 SHARES = {"conflict_episodes": "conflicts", "needless_episodes": "needless"}
@@ -139,7 +142,7 @@ SHARES = {"conflict_episodes": "conflicts", "needless_episodes": "needless"}
 
 
 def summary(alone: Outcomes, helped: Outcomes) -> dict[str, float | int | None]:
-    """All metrics: means over tasks (of means over their seeds), each with `_se`, and the `SHARES`.
+    """All metrics: means over tasks (of means over their seeds), each with `_se`, and the `SHARES`; None of no task.
 
     Args:
         alone: of the main agent by itself.
@@ -157,8 +160,10 @@ def summary(alone: Outcomes, helped: Outcomes) -> dict[str, float | int | None]:
         columns[share] = of_tasks(any_of, share)
     columns |= {name: of_tasks(shown, name) for name in NAMES}
     for name, values in columns.items():
-        one = mean(list(values.values()))
-        found |= {name: one.value, f"{name}_se": one.error}
+        found |= {name: None, f"{name}_se": None}
+        if values:
+            one = mean(list(values.values()))
+            found |= {name: one.value, f"{name}_se": one.error}
     return found
 
 

@@ -15,6 +15,7 @@ from hearth.challenges.metrics import METRICS, Outcomes, by_task
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.numbers import LARGEST
 from hearth.storage.input_files import read_input, read_lines
 from hearth.version import VERSION
 
@@ -52,9 +53,21 @@ class Header:
     @property
     def keys(self) -> list[tuple[str, int, bool]]:
         """Task, seed and kind of every episode, in the order of the file."""
+        return list(self.each_key())
+
+    def each_key(self) -> Iterator[tuple[str, int, bool]]:
+        """The same one by one: a short file of a stranger may say that it has millions."""
         if self.episodes is not None:
-            return list(self.episodes)
-        return [(t.id, n, helped) for t in self.suite.tasks for n in range(self.seeds) for helped in self.helped]
+            yield from self.episodes
+            return
+        yield from ((t.id, n, helped) for t in self.suite.tasks for n in range(self.seeds) for helped in self.helped)
+
+    @property
+    def count(self) -> int:
+        """How many episodes there are."""
+        if self.episodes is not None:
+            return len(self.episodes)
+        return len(self.suite.tasks) * self.seeds * len(self.helped)
 
     def as_json(self) -> dict[str, Any]:
         """As the first line has it."""
@@ -234,7 +247,29 @@ def episode_of(given: Mapping[str, Any]) -> Record | None:
         isinstance(tick, list) and all(each is None or isinstance(each, str) for each in tick) for tick in actions
     ):
         return None
-    metrics = given["metrics"]
-    if metrics.keys() != METRICS or not all(isinstance(value, (int, float)) for value in metrics.values()):
+    if not (_measured(given["metrics"]) and _counted(given["helper_goal"]) and _ended(given["end"])):
+        return None
+    if not 0 <= given["seed"] <= LARGEST:
         return None
     return replace(Record(**given), actions=tuple(map(tuple, actions)))
+
+
+def _measured(metrics: Mapping[str, Any]) -> bool:
+    """Whether these are the metrics of an episode, as numbers that tables hold."""
+    if metrics.keys() != METRICS or type(metrics["success"]) is not bool:
+        return False
+    counts = (value for name, value in metrics.items() if name not in ("success", "reward"))
+    numbers = type(metrics["reward"]) in (int, float) and all(type(value) is int for value in counts)
+    return numbers and all(abs(value) <= LARGEST for value in metrics.values())
+
+
+def _counted(goal: Mapping[str, Any] | None) -> bool:
+    """Whether this is a goal in the words of a grammar, or none."""
+    return goal is None or all(type(number) is int for number in goal.values())
+
+
+def _ended(end: Mapping[str, Any] | None) -> bool:
+    """Whether this says by which failure an agent ended the episode, in plain values, or nothing."""
+    return end is None or (
+        isinstance(end.get("code"), str) and all(isinstance(value, (str, int)) for value in end.values())
+    )

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby, islice, zip_longest
+from pathlib import Path
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Job, Known, Record, again, played
-from hearth.challenges.result_files import Results
+from hearth.challenges.result_files import Results, read
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -33,6 +34,19 @@ class Check:
     records: tuple[Record, ...]
     known: Known
     jobs: tuple[Job, ...] = ()
+
+
+def read_whole(path: Path) -> Results:
+    """The results of a file that has the episodes which its first line says, whatever was done in them.
+
+    Raises:
+        HearthError: those of `result_files.read`; DAMAGED_FILE: it has others.
+    """
+    found = read(path)
+    for fault in _missing(found):
+        remedy = "run it again, or fetch the file again"
+        raise HearthError.of(Code.DAMAGED_FILE, fault, file=str(path), suggestion=remedy)
+    return found
 
 
 def verify(
@@ -60,9 +74,10 @@ def verify(
 
 
 def _missing(results: Results) -> Iterator[str]:
-    keys, here = results.header.keys, ((each.task, each.seed, each.helped) for each in results.records)
+    keys, here = results.header.each_key(), ((each.task, each.seed, each.helped) for each in results.records)
     if any(one != other for one, other in zip_longest(here, keys)):
-        yield f"{len(results.records):,} episodes, not {len(keys):,}: one of each task, seed and kind, in order"
+        wanted = results.header.count
+        yield f"{len(results.records):,} episodes, not {wanted:,}: one of each task, seed and kind, in order"
 
 
 def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:

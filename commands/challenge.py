@@ -119,9 +119,9 @@ def score(results: Path, *, as_json: bool = False) -> None:
     Example:
       python cli.py challenge score hp.jsonl --json
     """
-    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import read_whole
 
-    _print(read(results), as_json)
+    _print(read_whole(results), as_json)
 
 
 @app.command()
@@ -144,11 +144,11 @@ def build(
       python cli.py query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
     """
     from hearth.challenges.challenge_tables import publish
-    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import read_whole
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
-    runs = [read(path) for path in results or ()]
+    runs = [read_whole(path) for path in results or ()]
     with bar("demonstrations") as seen:
         counts = publish(out, name, default, runs, limit, rate, workers, seen)
     if as_json:

@@ -80,13 +80,13 @@ def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> No
       python cli.py challenge board hp.jsonl mine.jsonl
     """
     from hearth.challenges.metrics import summary
-    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import read_whole
     from hearth.challenges.verification import verify as differences
     from hearth.kb.loading.load import default
 
     rows: list[dict[str, Any]] = []
     for path in results:
-        found = read(path)
+        found = read_whole(path)
         header = found.header
         figures = summary(found.outcomes(False), found.outcomes(True))
         rows.append(
@@ -105,7 +105,7 @@ def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> No
                 "verified": not differences(found, str(path), default, workers),
             }
         )
-    rows.sort(key=lambda row: (not row["verified"], -row["speedup"], row["file"]))
+    rows.sort(key=lambda row: (not row["verified"], row["speedup"] is None, -(row["speedup"] or 0), row["file"]))
     if as_json:
         output.emit(rows)
     else:

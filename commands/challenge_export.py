@@ -24,9 +24,9 @@ def export(
       python cli.py challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
     """
     from hearth.challenges.episode_export import export as written
-    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import read_whole
     from hearth.kb.loading.load import default
 
-    count = written(read(results), form, out, agent, default(), limit)
+    count = written(read_whole(results), form, out, agent, default(), limit)
     document = {"out": out, "format": form, "agent": agent, "episodes": count}
     output.emit(document) if as_json else output.figures(document)

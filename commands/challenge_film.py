@@ -28,14 +28,14 @@ def film(
     """
     from hearth.analysis.episode_drawing import episode_of, ticks_of
     from hearth.challenges.episode_films import execution_of
-    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import read_whole
     from hearth.homes.library import load_graph
     from hearth.kb.loading.load import default
     from hearth.rendering.film.player import page
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record as filmed
 
-    known, found = default(), read(results)
+    known, found = default(), read_whole(results)
     one, record = episode_of(found, str(results), task, episode, alone)
     start, ticks = ticks_of(one, record, known)
     home = load_graph(one.home, known)

@@ -21,12 +21,12 @@ def infer(results: Path, *, workers: int = 0, as_json: bool = False) -> None:
       python cli.py challenge infer nopa.jsonl
     """
     from hearth.analysis.online_inference import inference
-    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import read_whole
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
     with bar("episodes") as seen:
-        found = inference(read(results), default, workers, seen)
+        found = inference(read_whole(results), default, workers, seen)
     if as_json:
         output.emit(found)
         return

@@ -65,12 +65,12 @@ def show(
     """
     from hearth.analysis import belief_drawing
     from hearth.analysis.episode_drawing import episode_of, furniture, narrated, panels_of, ticks_of
-    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import read_whole
     from hearth.homes import plan_panels
     from hearth.homes.library import load_layout
     from hearth.kb.loading.load import default
 
-    found, known = read(results), default()
+    found, known = read_whole(results), default()
     one, record = episode_of(found, str(results), task, episode, alone)
     start, ticks = ticks_of(one, record, known)
     if belief:

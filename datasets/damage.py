@@ -23,6 +23,21 @@ def reading(place: Path | str) -> Iterator[None]:
         raise unreadable(error, place) from error
 
 
+@contextmanager
+def using(place: Path | str) -> Iterator[None]:
+    """The same where something is made of rows: faults of the machine, as a full disk, stay what they are.
+
+    Raises:
+        HearthError: DAMAGED_FILE, in place of what our own use of values raised that no build writes.
+    """
+    try:
+        yield
+    except (HearthError, OSError, MemoryError):
+        raise
+    except Exception as error:
+        raise unreadable(error, place) from error
+
+
 def unreadable(error: Exception, place: Path | str) -> HearthError:
     """What is said of a dataset whose tables cannot be read."""
     said = str(error).split("\n", 1)[0]

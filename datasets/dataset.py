@@ -7,7 +7,7 @@ from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hearth.datasets.damage import reading, refused_question
+from hearth.datasets.damage import reading, refused_question, using
 from hearth.datasets.file_ranges import reading_between
 from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
 from hearth.datasets.format.ids import names_of
@@ -176,7 +176,8 @@ class Dataset:
 
     def __iter__(self) -> Iterator[str]:
         """The ids of all programs, sorted."""
-        yield from (row["program_id"] for row in self.read("SELECT program_id FROM programs ORDER BY program_id"))
+        query = "SELECT program_id::VARCHAR AS program_id FROM programs ORDER BY 1"  # a stranger's may be bytes
+        yield from (row["program_id"] for row in self.read(query))
 
     def __contains__(self, program_id: str) -> bool:
         return any(self._rows("SELECT 1 FROM programs WHERE program_id = $id", name) for name in names_of(program_id))
@@ -249,7 +250,8 @@ class Dataset:
             for entry in entries
             for run in entry.runs
         )
-        return to_tensors(samples, self.vocabulary_ids)
+        with using(self.folder):
+            return to_tensors(samples, self.vocabulary_ids)
 
     @cached_property
     def vocabulary_ids(self) -> list[Any]:

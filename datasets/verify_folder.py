@@ -53,7 +53,7 @@ def manifest_faults(dataset: Dataset) -> Iterator[Diagnostic]:
     place = str(dataset.folder / NAME)
     try:
         found = list(_contradictions(dataset))
-    except (KeyError, TypeError, ValueError, AttributeError, IndexError, AssertionError, OSError) as error:
+    except (HearthError, KeyError, TypeError, ValueError, AttributeError, IndexError, AssertionError, OSError) as error:
         found = [f"a field is missing or of another kind: {type(error).__name__} {error}"]
     yield from (Diagnostic(Code.BAD_JSON, message, place, suggestion=AGAIN) for message in found)
 

@@ -153,10 +153,11 @@ def read_graph(path: Path, which: str) -> EnvironmentGraph:
 
     try:
         data = orjson.loads(read_input(path))
-    except orjson.JSONDecodeError as error:
+        if isinstance(data, dict) and which in data:
+            data = data[which]
+        orjson.dumps(data)  # what is read may stand deeper in one another than can be written
+    except (orjson.JSONDecodeError, orjson.JSONEncodeError) as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error
-    if isinstance(data, dict) and which in data:
-        data = data[which]
     if not isinstance(data, dict):
         raise HearthError.of(Code.BAD_GRAPH, "not an environment graph", file=str(path), suggestion="nodes and edges")
     return from_release(data, str(path))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,8 +16,7 @@ from hearth.models.fit_model import STATE, fit
 from hearth.models.model_registry import settings_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.files import value_digest, write_json
-from hearth.storage.input_files import read_input
+from hearth.storage.files import read_json, value_digest, write_json
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 
@@ -211,7 +209,7 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
     folder, rate, epochs = needed.folder(out), *needed.pace
     how = {"epochs": epochs, "minutes": minutes, "rate": rate, "seed": needed.seed}
     recipe = {"digest": needed.recipe(out, facts_of(Dataset.open(dataset))["digest"], how)}
-    same = (folder / RECIPE).exists() and json.loads(read_input(folder / RECIPE)) == recipe
+    same = read_json(folder / RECIPE) == recipe
     if same and (folder / NAME).exists():
         rmtree(folder / STATE, ignore_errors=True)  # of a training that was stopped at its very end
         return False

@@ -7,6 +7,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from hearth.datasets.damage import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.cases import Source, start_of
 from hearth.datasets.format.codecs import bindings_of, program_of
@@ -109,7 +110,8 @@ def _scored_share(job: Job) -> list[Scored]:
         message = f"the statistics of its file say that it has no such id: {missing[0]}"
         raise HearthError.of(Code.DAMAGED_FILE, message, file=str(dataset.folder / "executions"))
     filled = [_filled(pair, cases[pair.id]) for pair in pairs]
-    every = zip(filled, lcs_of(filled, options.instances), strict=True)
+    with using(folder):
+        every = zip(filled, lcs_of(filled, options.instances), strict=True)
     groups = groupby(every, key=lambda each: each[0].id)
     return [each for name, group in groups for each in _scored(cases[name], list(group), homes, options)]
 
@@ -118,11 +120,13 @@ def _scored(
     case: StoredCaseRow, pairs: Sequence[tuple[Pair, BothLcs]], homes: Source, options: Options
 ) -> Iterator[Scored]:
     """The scores of an execution's predictions, given with their LCS."""
-    world, options = start_of(case["environment"], case["home"], homes), replace(options, rules=RULES[case["rules"]])
-    program = Program(steps=steps_of(pairs[0][0].reference))
-    # Reading and applying the stored ticks takes four times as long as running the program again.
-    ran = run(world, program, options.rules)
-    reference = Reference.of(program, world, ran.final if ran.executable else None)
+    with using(f"execution {case['execution_id']}"):
+        world = start_of(case["environment"], case["home"], homes)
+        options = replace(options, rules=RULES[case["rules"]])
+        program = Program(steps=steps_of(pairs[0][0].reference))
+        # Reading and applying the stored ticks takes four times as long as running the program again.
+        ran = run(world, program, options.rules)
+        reference = Reference.of(program, world, ran.final if ran.executable else None)
     for pair, lcs in pairs:
         each = scored(pair, lcs, world.home.knowledge, world, options, reference)
         # A world references its whole home: worlds are dropped, only scores are kept.
@@ -131,7 +135,8 @@ def _scored(
 
 def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
     """A pair with its reference, and the fields for grouping, without a goal that its row brings along."""
-    steps = program_of(case, bindings_of(case["bindings"])).steps
+    with using(f"execution {case['execution_id']}"):
+        steps = program_of(case, bindings_of(case["bindings"])).steps
     given = {name: value for name, value in pair.more.items() if name not in GOALS}
     return replace(pair, reference=steps, more={**given, "activity": case["activity_id"], "home": case["home"]})
 

@@ -44,7 +44,7 @@ def rows_of(path: Path, columns: Sequence[str], faults: FirstFaults, named: Name
     """
     data = read_input(path, LARGEST_TABLE)
     needed = columns[1:] if named else columns
-    records = _parquet(path, needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
+    records = _parquet(path, len(data), needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
     for line, given in records:
         values, *more = _with_ids(given, columns[0], named)
         missing = [name for name in columns if name not in values]
@@ -112,9 +112,11 @@ def _json_lines(data: bytes, path: Path, faults: FirstFaults) -> Iterator[tuple[
             faults.append(_fault(path, line, f"a {type(values).__name__}, not an object", "one JSON object a line"))
 
 
-def _parquet(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, dict[str, Any]]]:
+def _parquet(path: Path, size: int, columns: Sequence[str]) -> Iterator[tuple[int, dict[str, Any]]]:
     import pyarrow as pa
     from pyarrow import parquet
+
+    from hearth.storage.parquet_rows import row_lists
 
     try:
         table = parquet.ParquetFile(path)
@@ -124,11 +126,11 @@ def _parquet(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, dict[str
             found = ", ".join(table.schema_arrow.names)
             raise HearthError(_fault(path, 0, f"no column {listed}", f"its columns are {found}"))
         line = 0
-        for batch in table.iter_batches():
-            for values in batch.to_pylist():
+        for rows in row_lists(table, size, str(path)):
+            for values in rows:
                 line += 1
                 yield line, values
-    except (pa.ArrowException, UnicodeDecodeError, OSError) as error:
+    except (pa.ArrowException, ValueError, OSError) as error:
         message = f"not readable as Parquet: {error}".splitlines()[0]
         raise HearthError.of(Code.BAD_TABLE, message, file=str(path)) from None
 

@@ -36,6 +36,9 @@ OTHER_NAMES = {"ONTOP": "ON", "NEXT_TO": "CLOSE"}
 VARIABLES = 2
 """Variables within one another: each multiplies the cost by the number of things."""
 
+MOST = 1_000
+"""States, relations and actions of a goal: each is looked at in every tick."""
+
 
 def read_goal(given: str | Mapping[str, Any], home: Home, file: str = "goal") -> Goal:
     """A goal from text, or from a record of the Embodied Agent Interface: `vh_goal`, or a task with it or `tl_goal`.
@@ -88,6 +91,7 @@ class _Parser(Tokens):
         super().__init__(text, file)
         self.home = home
         self.variables: tuple[str, ...] = ()
+        self.counted = 0
 
     def ordered(self) -> Goal:
         return self._joined("then", self.several(self.alternatives, "then"))
@@ -142,6 +146,9 @@ class _Parser(Tokens):
         return Goal(parts=(Joined(join, (goal,), variable),))
 
     def _counted(self) -> Goal:
+        self.counted += 1
+        if self.counted > MOST:
+            raise self.fault(f"more than {MOST:,} states, relations and actions")
         place = self.next
         bracketed = self.peek() == "[" and bool(self.take())
         word = self.name()

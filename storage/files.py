@@ -134,5 +134,14 @@ def _not_followed(path: Path, folder: Path) -> bool:
 
 
 def value_digest(value: Any) -> str:
-    """SHA-256 of a JSON value, keys sorted."""
-    return hashlib.sha256(orjson.dumps(value, option=orjson.OPT_SORT_KEYS)).hexdigest()
+    """SHA-256 of a JSON value, keys sorted.
+
+    Raises:
+        HearthError: BAD_JSON: parts stand deeper in one another than JSON is written; it is read four times as deep.
+    """
+    try:
+        return hashlib.sha256(orjson.dumps(value, option=orjson.OPT_SORT_KEYS)).hexdigest()
+    except orjson.JSONEncodeError as error:
+        if "Recursion" not in str(error):
+            raise
+        raise HearthError.of(Code.BAD_JSON, "its values stand too deep in one another") from error

@@ -32,11 +32,18 @@ def inside(folder: Path, name: str) -> Path:
         HearthError: DAMAGED_FILE: the name is empty or leaves the folder, by itself or by a link on the way.
     """
     path = folder / name
-    longest = max((len(os.fsencode(part)) for part in path.parts), default=0)
-    if not name.strip("/.") or leaves(name) or "\0" in name or longest > 255 or not _stays(path, folder):
+    if not name.strip("/.") or leaves(name) or "\0" in name or not _fits(path) or not _stays(path, folder):
         message = f"`{name[:LONGEST]!a}` is not the name of a file in this folder"
         raise HearthError.of(Code.DAMAGED_FILE, message, file=str(folder), suggestion="fetch or write the data again")
     return path
+
+
+def _fits(path: Path) -> bool:
+    """Whether systems have such names: not too long, and without half a character as JSON may have it."""
+    try:
+        return all(len(os.fsencode(part)) <= 255 for part in path.parts)
+    except UnicodeEncodeError:
+        return False
 
 
 def _stays(path: Path, folder: Path) -> bool:

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.files import sync_folder, write_bytes
+from hearth.storage.files import sync_folder, value_digest, write_bytes
 from hearth.storage.input_files import LARGEST_TABLE, read_input
 
 PLACES = "places"
@@ -171,6 +171,7 @@ def event_of(line: bytes, file: str, number: int) -> Event:
 
     try:
         given = orjson.loads(line)
+        orjson.dumps(given)  # what is read may stand deeper in one another than can be written
         return Event(str(given["stream"]), int(given["number"]), str(given["kind"]), float(given["at"]), given["data"])
     except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise HearthError.of(Code.BAD_JSON, f"line {number} is not an event", file=file) from error
@@ -190,6 +191,10 @@ def header_of(path: Path) -> dict[str, Any]:
         raise HearthError.of(Code.BAD_JSON, "not a file of events", file=str(path)) from error
     if not isinstance(found, dict) or found.get("format") != FORMAT:
         raise HearthError.of(Code.BAD_JSON, f"not a file of events ({FORMAT})", file=str(path))
+    try:
+        value_digest(found)
+    except HearthError as error:
+        raise HearthError.of(Code.BAD_JSON, error.diagnostics[0].message, file=str(path)) from error
     return found
 
 

@@ -15,6 +15,7 @@ from hearth.schemas import located
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.numbers import number_of
 from hearth.schemas.yaml_fields import Faults, ReadValue, fields, one_of, reads
 from hearth.storage.input_files import read_input
 from hearth.studies.assignment import assignment, imbalances
@@ -227,10 +228,16 @@ def _scale(entry: Any, faults: Faults) -> dict[str, Any]:
     if {"from", "to"} <= found.keys() and low >= high:
         faults.add(Code.BAD_ARGUMENT, f"the scale from {low} to {high} is empty", line, "`from` is below `to`")
     labels = found.get("labels") or {}
-    if not isinstance(labels, dict) or any(not key.isdigit() or not low <= int(key) <= high for key in labels):
+    if not isinstance(labels, dict) or any(not _is_of_scale(key, low, high) for key in labels):
         faults.add(Code.SYNTAX, "`labels` gives words to numbers of the scale", line, f"labels: {{{low}: never}}")
         labels = {}
     return {"low": low, "high": high, "labels": tuple((int(key), str(word)) for key, word in labels.items())}
+
+
+def _is_of_scale(key: str, low: int, high: int) -> bool:
+    """Whether a key is a number of a scale; other digits than 0 to 9, or thousands of them, are none."""
+    number = number_of(key)
+    return number is not None and low <= number <= high
 
 
 def _check_room(room: str, top: dict[str, Any], tasks: Any, films: Any, tree: Any, faults: Faults) -> None:

@@ -63,7 +63,7 @@ _UNSEEN = frozenset({"Cc", "Cf", "Cs"})
 
 def _call(step: Step) -> str:
     given = [repr(_object(ref)) for ref in step.objects]
-    given += [f"agent={step.agent}"] if step.agent else []
+    given += [f"agent={int(step.agent)}"] if step.agent else []  # a stranger's may be any text
     given += ["together=True"] if step.joins else []
     given += [f"{_identifier(name)}={value!r}" for name, value in step.modifiers]
     return f"{call_name(step.action)}({', '.join(given)})"

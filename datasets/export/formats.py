@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from hearth.datasets.damage import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.code import code
@@ -35,7 +36,7 @@ def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) 
     """Write a dataset in one of `FORMATS` into a folder.
 
     Raises:
-        HearthError: the form or a program's id is unknown, or the folder is not empty.
+        HearthError: the form or a program's id is unknown, the folder is not empty, or the tables cannot be read.
 
     Examples:
         >>> hearth.export(hearth.load(folder), "nl", Path("words"))
@@ -52,4 +53,5 @@ def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) 
     if to.exists() and (not to.is_dir() or any(to.iterdir())):
         message, remedy = "there is something already", "name a new or empty folder"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)
-    return FORMATS[form](dataset, to, wanted)
+    with using(dataset.folder):
+        return FORMATS[form](dataset, to, wanted)

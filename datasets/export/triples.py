@@ -46,7 +46,7 @@ def _program(row: ProgramRow) -> Iterator[str]:
     for number, step in enumerate(row["steps"]):
         place = iri("program", f"{row['program_id']}#{number}")
         objects = "".join(
-            f" ; h:{role} [ h:class {iri('class', ref['name'])} ; h:instance {ref['instance']} ]"
+            f" ; h:{role} [ h:class {iri('class', ref['name'])} ; h:instance {int(ref['instance'])} ]"
             for role, ref in zip(("object", "second"), step["objects"], strict=False)
         )
         yield f"{me} h:step {place} ."

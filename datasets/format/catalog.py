@@ -160,9 +160,9 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remem
     return limited(connection, root)
 
 
-def limited(connection: Any, root: str) -> Any:
-    """The connection, which reaches one folder only from now on."""
-    connection.execute(f"SET allowed_directories = [{quoted(root)}]")
+def limited(connection: Any, *roots: str) -> Any:
+    """The connection, which reaches these folders only from now on."""
+    connection.execute(f"SET allowed_directories = [{', '.join(map(quoted, roots))}]")
     for setting in _CLOSED:
         connection.execute(f"SET {setting}")
     return connection

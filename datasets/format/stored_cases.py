@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any, TypedDict
 
+from hearth.datasets.damage import using
 from hearth.datasets.dataset import Dataset
 from hearth.schemas.row_types import BindingRow, DifferenceRow, StepRow
 
@@ -48,6 +49,9 @@ def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = (
 
     Returns:
         Rows as `StoredCaseRow`, with the further columns.
+
+    Raises:
+        HearthError: DAMAGED_FILE: an execution is of a program or in an environment that there is not.
     """
 
     def asked(table: str, query: str, ids: Sequence[str]) -> list[Any]:
@@ -63,4 +67,6 @@ def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = (
     )
     found = {run["execution_id"]: run for run in runs}
     for run in (found[name] for name in names if name in found):
-        yield {**run, **programs[run["program_id"]], "environment": environments[run["environment_id"]]}
+        with using(dataset.folder):  # it may name a program or an environment that there is not
+            case = {**run, **programs[run["program_id"]], "environment": environments[run["environment_id"]]}
+        yield case

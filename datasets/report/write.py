@@ -9,6 +9,7 @@ from typing import Any
 
 import orjson
 
+from hearth.datasets.damage import using
 from hearth.datasets.dataset import OWN, Dataset
 from hearth.datasets.format.datasheet import STRENGTH, datasheet
 from hearth.datasets.report.copied_pictures import copy_pictures, pictured
@@ -48,12 +49,18 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unse
         Number of programs.
 
     Raises:
-        HearthError: the folder contains something else.
+        HearthError: the folder contains something else, or the tables cannot be read.
     """
     if to.exists() and (not to.is_dir() or (any(to.iterdir()) and not (to / "index.html").exists())):
         message, remedy = "there is something else already", "name a new or empty folder, or an earlier report"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)
     (to / "data").mkdir(parents=True, exist_ok=True)
+    with using(dataset.folder):
+        return _written(dataset, to, workers, seen, replays)
+
+
+def _written(dataset: Dataset, to: Path, workers: int, seen: Seen, replays: int) -> int:
+    """Write it all into a folder that is there; the number of programs."""
     rows = [[*row, *_pictured(row[0], looks)] for looks in (pictured(dataset),) for row in _rows(dataset)]
     (to / "data/programs.js").write_bytes(b"HEARTH.programs(" + orjson.dumps(rows) + b");\n")
     _write_stories(dataset, to, workers, seen)

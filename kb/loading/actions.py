@@ -1,30 +1,19 @@
 """Actions, derived predicates and repairs, built from their files."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
-from hearth.kb.formula import (
-    BUILT_IN,
-    TRUE,
-    And,
-    Effect,
-    Formula,
-    Term,
-    free,
-    parse_atom,
-    parse_effect,
-    parse_formula,
-    predicates,
-)
+from hearth.kb.formula import TRUE, And, Effect, Formula, Term, parse_atom, parse_effect, parse_formula
 from hearth.kb.groups import DECLARED
 from hearth.kb.loading.entry_shapes import LIST, NAMES, REASONS, TEXT, fits, parts
+from hearth.kb.loading.formula_checks import Derived, check_derived, check_literals
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed, yaml_entries
 from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
 from hearth.kb.records import Action, Condition, Repair, Requirement
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
-from hearth.schemas.vocabulary import RELATIONS
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
 _ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source"})
@@ -35,7 +24,7 @@ _REPAIR_SHAPES = {"on": TEXT, "actions": NAMES, "when": TEXT, "say": TEXT, "sour
 _REPAIR_KEYS = frozenset({"on", "actions", "when", "say", "source"})
 
 
-def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict[str, Action]:
+def load_actions(layers: Layers, derived: Derived, faults: Faults) -> dict[str, Action]:
     """Every action by name, in the order of the ids."""
     executed = yaml_entries(layers, "actions.yaml", faults, inherited="groups")
     written = yaml_entries(layers, "actions_written.yaml", faults, inherited="groups")
@@ -52,9 +41,8 @@ def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict
         else:
             faults.at(entry, f"`{name}` is not a mapping", "id, roles, needs, say, ...")
     check_ids({name: (action.id, entries[name]) for name, action in result.items()}, faults)
-    known = {*RELATIONS, *BUILT_IN, *derived}
     for name in sorted(executed.keys() & result.keys()):
-        _check_literals(result[name], known, entries[name], faults)
+        check_literals(result[name], derived, entries[name], faults)
         result[name] = replace(result[name], executed=True)
     return dict(sorted(result.items(), key=lambda item: item[1].id))
 
@@ -73,6 +61,9 @@ def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str
         faults.at(entry, f"{name} has {len(roles)} roles but needs for {len(needs)}", "one need for each role")
     if len(accepts) != len(roles):
         faults.at(grammar or entry, f"{name} takes {len(roles)} objects, not {len(accepts)}", code=Code.WRONG_ARITY)
+    checks = tuple(_conditions(fields.get("before") or (), entry, faults))
+    effects = _all_effects(name, fields.get("effects") or (), entry, entries, faults)
+    _check_words(name, fields, len(roles), entry, faults)
     return Action(
         name=name,
         id=whole_number(str(fields["id"])) if type(fields.get("id")) is int else -1,
@@ -80,14 +71,30 @@ def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str
         roles=roles,
         needs=needs,
         grammar=accepts,
-        preconditions=tuple(_conditions(fields.get("before") or (), entry, faults)),
-        effects=tuple(_effects(fields.get("effects") or (), entry, entries, faults)),
+        preconditions=checks,
+        effects=effects,
         template=str(fields.get("say") or name),
         words=strings(fields.get("words")),
         aliases=strings(fields.get("aliases")),
         groups=_groups(fields.get("groups"), entry, faults),
         source=str(fields.get("source") or "release"),
     )
+
+
+def _check_words(name: str, fields: Mapping[str, Any], arity: int, at: Entry, faults: Faults) -> None:
+    """Note braces in words that are not `{0}` and `{1}`, each object once: phrases are made, and read, by these."""
+    template = str(fields.get("say") or name)
+    said = _PLACES.findall(template)
+    wanted = [f"{{{place}}}" for place in range(arity)]
+    if len(set(said)) < len(said) or not {*said} <= {*wanted} or _BRACE.search(_PLACES.sub("", template)):
+        remedy = f"words with {' and '.join(wanted)}, each once" if wanted else "words"
+        faults.at(at, f"`say` of {name} is `{template[:60]}`", remedy)
+    for words in strings(fields.get("words")):
+        if _BRACE.search(words):
+            faults.at(at, f"words of {name} are `{words[:60]}`", "words alone")
+
+
+_PLACES, _BRACE = re.compile(r"\{[0-9]\}"), re.compile(r"[{}]")
 
 
 def _groups(value: Any, at: Entry, faults: Faults) -> frozenset[str]:
@@ -133,11 +140,41 @@ def _conditions(rows: Iterable[Any], at: Entry, faults: Faults) -> Iterator[Cond
             yield Condition(formula, Code[code], str(row.get("option") or ""))
 
 
+MOST_EFFECTS = 1_000
+"""Of an action, with those of the actions that it is like: a few that are each like another twice are billions."""
+
+
+@dataclass(slots=True)
+class _Left:
+    """How many effects of an action may still be read."""
+
+    rows: int = MOST_EFFECTS
+
+
+def _all_effects(
+    name: str, rows: Iterable[Any], at: Entry, entries: Mapping[str, Entry], faults: Faults
+) -> tuple[Effect, ...]:
+    left = _Left()
+    effects = tuple(_effects(rows, at, entries, faults, left))
+    if left.rows < 0:
+        message = f"{name} has more than {MOST_EFFECTS:,} effects, with those of the actions that it is like"
+        faults.at(at, message, "name the changes themselves")
+    return effects
+
+
 def _effects(
-    rows: Iterable[Any], at: Entry, entries: Mapping[str, Entry], faults: Faults, within: tuple[str, ...] = ()
+    rows: Iterable[Any],
+    at: Entry,
+    entries: Mapping[str, Entry],
+    faults: Faults,
+    left: _Left,
+    within: tuple[str, ...] = (),
 ) -> Iterator[Effect]:
     """Effects as they stand, and those of the actions that they are like; `within` names the ones being read."""
     for row in rows:
+        left.rows -= 1
+        if left.rows < 0:
+            return
         if isinstance(row, str):
             effect = parsed(parse_effect, row, at, faults)
             if effect is not None:
@@ -149,7 +186,7 @@ def _effects(
                 continue
             other = entries[like].value
             more = other.get("effects") if isinstance(other, dict) else None
-            for effect in _effects(more if isinstance(more, list) else (), at, entries, faults, (*within, like)):
+            for effect in _effects(more if isinstance(more, list) else (), at, entries, faults, left, (*within, like)):
                 yield _under(when or TRUE, effect)
         else:
             faults.at(at, f"`{row}` is not an effect", "write a change, or `like: Action`")
@@ -165,25 +202,14 @@ def _under(condition: Formula, effect: Effect) -> Effect:
 
 def load_derived(layers: Layers, faults: Faults) -> dict[str, tuple[Literal[Term], Formula]]:
     """Definitions by predicate: `close` -> (close(a, x), its formula)."""
-    result = {}
+    result, entries = {}, {}
     for head, entry in yaml_entries(layers, "derived.yaml", faults).items():
         atom = parsed(parse_atom, head, entry, faults)
         body = parsed(parse_formula, entry.value, entry, faults)
         if atom is not None and body is not None:
-            result[atom.name] = (atom, body)
+            result[atom.name], entries[atom.name] = (atom, body), entry
+    check_derived(result, entries, faults)
     return result
-
-
-def _check_literals(action: Action, known: set[str], at: Entry, faults: Faults) -> None:
-    """Note predicates that nothing defines and variables that nothing binds."""
-    bound = {"a", *"os"[: action.arity]}
-    parts: list[tuple[Formula, set[str]]] = [(condition.formula, bound) for condition in action.preconditions]
-    parts += [(part, bound | {*e.variables}) for e in action.effects for part in (e.condition, e.literal.atom)]
-    for part, variables in parts:
-        for unknown in sorted(predicates(part) - known):
-            faults.at(at, f"in `{part}`: nothing says what `{unknown}` is", "see derived.yaml")
-        for unbound in sorted(free(part) - variables):
-            faults.at(at, f"in `{part}`: `{unbound}` is not an argument of {action.name} and is not bound")
 
 
 def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) -> dict[str, Repair]:

@@ -29,9 +29,14 @@ def _names_by_name(value: Any) -> bool:
     return isinstance(value, dict) and all(isinstance(each, list) and all(map(_name, each)) for each in value.values())
 
 
+MOST_THINGS = 50
+"""On a seat or bed; planners write out every pair of them."""
+
+
 def _limits(value: Any) -> bool:
-    whole = (type(limit) is int and limit >= 0 for limit in value.values()) if isinstance(value, dict) else ()
-    return isinstance(value, dict) and "default" in value and all(whole)
+    if not isinstance(value, dict) or "default" not in value:
+        return False
+    return all(type(limit) is int and 0 <= limit <= MOST_THINGS for limit in value.values())
 
 
 MAPPING = Shape(lambda value: isinstance(value, dict), "a mapping")
@@ -40,7 +45,7 @@ NAMES_BY_NAME = Shape(_names_by_name, "a list of names for each name")
 LIST = Shape(_list, "a list")
 TEXT = Shape(lambda value: value is None or _name(value), "a text")
 REASONS = Shape(lambda value: isinstance(value, dict) or _names(value), "a reason for each class")
-LIMITS = Shape(_limits, "whole numbers by class, one of them for `default`")
+LIMITS = Shape(_limits, f"whole numbers up to {MOST_THINGS} by class, one of them for `default`")
 NAME_LIST = Shape(lambda value: isinstance(value, list) and _names(value), "a list of names")
 
 SHOWN = 60

@@ -109,7 +109,7 @@ def _check_files(layer: Path, complete: bool, faults: Faults) -> None:
         faults.add(str(layer), 0, "is not a directory of knowledge files", code=Code.MISSING_FILE)
         return
     present = {path.name for path in layer.iterdir() if path.suffix in (".yaml", ".yml", ".csv")}
-    for name in () if complete else sorted(present & set(FILES)):
+    for name in () if layer == OURS else sorted(present & set(FILES)):
         check_extent(layer / name, faults)
     for name in sorted(present - set(FILES)):
         faults.add(str(layer / name), 0, "is not one of the knowledge's files", f"they are {', '.join(FILES)}")

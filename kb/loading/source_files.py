@@ -57,8 +57,9 @@ def read_yaml(path: Path, faults: Faults) -> dict[str, Entry]:
     text = _text(path, faults)
     if text is None:
         return {}
-    loader = LOADER(text)
+    loader = None
     try:
+        loader = LOADER(text)
         node = loader.get_single_node()
         if node is None:
             return {}
@@ -71,8 +72,12 @@ def read_yaml(path: Path, faults: Faults) -> dict[str, Entry]:
         line, column = (mark.line + 1, mark.column + 1) if mark else (0, 0)
         faults.append(Diagnostic(Code.BAD_TABLE, f"not YAML: {error.problem}", str(path), line, column))
         return {}
+    except yaml.YAMLError as error:  # a character that YAML does not allow
+        faults.add(str(path), 0, f"not YAML: {' '.join(str(error).split())}")
+        return {}
     finally:
-        loader.dispose()
+        if loader is not None:
+            loader.dispose()
 
 
 def _items(loader: Any, node: yaml.MappingNode, file: str, faults: Faults) -> Iterator[tuple[str, Any, int]]:

@@ -7,6 +7,9 @@ from typing import Any
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
+LARGEST = 64 << 20
+"""Bytes of a file, at most; the release's have less than one million."""
+
 Fact = tuple[str, ...]
 """Names; what they mean depends on the table."""
 
@@ -20,7 +23,7 @@ def read_release(directory: Path) -> dict[str, set[Fact]]:
     """The facts of the files there, by table: properties, states, placements, synonyms, affordances.
 
     Raises:
-        HearthError: a file is not JSON or not of its form.
+        HearthError: a file is not JSON or not of its form, or larger than any.
     """
     import orjson
 
@@ -30,11 +33,30 @@ def read_release(directory: Path) -> dict[str, set[Fact]]:
         if not path.is_file():
             continue
         try:
-            found[table] = set(facts(orjson.loads(path.read_bytes())))
+            found[table] = set(map(_texts, facts(orjson.loads(_bytes(path)))))
         except (ValueError, TypeError, KeyError, AttributeError) as error:
             message = f"not the release's file: {type(error).__name__} {error}"
             raise HearthError.of(Code.BAD_JSON, message, file=str(path)) from error
     return found
+
+
+def _bytes(path: Path) -> bytes:
+    size = path.stat().st_size
+    if size > LARGEST:
+        raise HearthError.of(Code.FILE_TOO_LARGE, f"{size:,} bytes are too many", file=str(path))
+    return path.read_bytes()
+
+
+def _texts(fact: Fact) -> Fact:
+    """The fact, whose parts may be anything that JSON has.
+
+    Raises:
+        TypeError: one is not a text.
+    """
+    if not all(isinstance(part, str) for part in fact):
+        kinds = ", ".join(type(part).__name__ for part in fact)
+        raise TypeError(f"{kinds} where texts are expected")
+    return fact
 
 
 def _pairs(data: dict[str, list[str]]) -> Iterator[Fact]:

@@ -13,11 +13,13 @@ from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.item import Item, refused
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.syntax import print_lines
 from hearth.storage.archives import DamagedError
 from hearth.storage.files import read_json
+from hearth.storage.parquet_rows import row_lists
 from hearth.storage.rejects import Reject
 
 NAME = "published"
@@ -29,7 +31,6 @@ COLUMNS = [
 DESCRIPTION_COLUMNS = [
     "description_id", "title", "description", "scene", "origin", "worker", "platform", "style", "programs",
 ]  # fmt: skip
-_ROWS = 1_000
 
 
 def names_it(path: Path) -> bool:
@@ -89,8 +90,10 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:
                 if lacking:
                     raise ValueError(f"it lacks the column{'s' * (len(lacking) > 1)} {', '.join(lacking)}")
                 _check_text(source.schema_arrow, columns)
-                for batch in source.iter_batches(_ROWS, columns=columns):
-                    yield from batch.to_pylist()
+                for rows in row_lists(source, file.stat().st_size, f"{table}/{file.name}", columns):
+                    yield from rows
+        except HearthError as error:  # it unpacks to too much
+            raise DamagedError(error.diagnostics) from error
         except (pa.ArrowException, OSError, ValueError) as error:
             name = f"{table}/{file.name}"
             message = f"can't be read as a table of a dataset: {error}"

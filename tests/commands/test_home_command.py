@@ -198,3 +198,10 @@ def test_what_finds_no_room_is_refused(tmp_path):
     done = run("edit", "maple", *beds, "--out", tmp_path / "x.json", "--json")
     assert done.exit_code == 1 and not (tmp_path / "x.json").exists()
     assert [fault["code"] for fault in json.loads(done.stdout)["errors"]] == ["NO_PLACE"]
+
+
+def test_a_graph_with_values_too_deep_to_be_written(tmp_path):
+    graph = '{"nodes": [], "edges": [], "more": ' + "[" * 300 + "]" * 300 + "}"
+    (tmp_path / "home.json").write_text(graph)
+    done = run("convert", tmp_path / "home.json", tmp_path / "copy.json")
+    assert done.exit_code == 1 and "error[BAD_JSON]" in done.output

@@ -224,3 +224,12 @@ def test_names_are_different_texts(bad):
     assert texts(["a", "b"]) == ("a", "b")
     with pytest.raises(ValueError, match="list of names"):
         texts(bad)
+
+
+@pytest.mark.parametrize("part", ["content", "settings", "trained"])
+def test_values_too_deep_in_one_another(folder, part):
+    text = (folder / NAME).read_text()
+    document = json.loads(text)
+    document[part]["deep"] = "DEEP"
+    (folder / NAME).write_text(json.dumps(document).replace('"DEEP"', "[" * 300 + "]" * 300))
+    assert code(folder) == Code.DAMAGED_FILE

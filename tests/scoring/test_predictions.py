@@ -206,3 +206,19 @@ def test_rows_under_two_versions_of_an_id_are_two_rows_of_it(write):
     assert faults(path, {new: "[Walk] <sofa> (1)"}) == [
         (Code.DUPLICATE, 2, f"a second row of id `{new}`; the first is line 1", "keep one row an id")
     ]
+
+
+@pytest.mark.parametrize("column", ["id", "graph", "x"])
+def test_a_table_with_a_date_that_no_calendar_has(tmp_path, column):
+    columns = {"id": ["a"], "predicted": ["[Sleep]"], "reference": ["[Sleep]"]}
+    columns[column] = pa.array([2**40], pa.timestamp("s"))
+    parquet.write_table(pa.table(columns), tmp_path / "p.parquet")
+    ((code, *_),) = faults(tmp_path / "p.parquet")
+    assert code == Code.BAD_TABLE
+
+
+def test_a_small_table_of_millions_of_rows(tmp_path):
+    columns = dict.fromkeys(("id", "predicted", "reference"), pa.nulls(3_000_000, pa.string()))
+    parquet.write_table(pa.table(columns), tmp_path / "p.parquet")
+    ((code, *_),) = faults(tmp_path / "p.parquet")
+    assert code == Code.FILE_TOO_LARGE

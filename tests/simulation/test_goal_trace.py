@@ -262,3 +262,8 @@ def test_what_was_done_was_done_in_its_order(seed):
 def test_of_alternatives_one_must_begin_to_hold(maple, goal, reached):
     """One of them held before: the fridge is closed all the time."""
     assert Progress.of(read_goal(goal, maple), ran(maple, WATCH_TV)).satisfied == reached
+
+
+def test_a_goal_of_more_parts_than_anybody_wants_is_refused(maple):
+    with pytest.raises(HearthError, match="more than 1,000"):
+        read_goal(" and ".join(["ON(plate, table)"] * 1_001), maple)

@@ -110,3 +110,13 @@ def test_an_event_of_another_study_is_named(changed, kind, values, message):
     fault = refused(lambda: changed(kind, **values))
     assert fault.code == Code.BAD_JSON
     assert message in fault.message
+
+
+@pytest.mark.parametrize("line", [0, 1])
+def test_values_too_deep_in_one_another(made, tmp_path, line):
+    folder = shutil.copytree(made.folder, tmp_path / "deep")
+    lines = [json.loads(each) for each in (folder / EVENTS).read_text().splitlines()]
+    (lines[0] if line == 0 else lines[1]["data"])["deep"] = "DEEP"
+    text = "".join(json.dumps(each, separators=(",", ":")) + "\n" for each in lines)
+    (folder / EVENTS).write_text(text.replace('"DEEP"', "[" * 300 + "]" * 300))
+    assert refused(opened, folder, default).code == Code.BAD_JSON

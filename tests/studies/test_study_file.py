@@ -56,6 +56,12 @@ def test_a_fault_has_its_line_and_its_remedy(old, new, line, message, remedy):
     assert remedy in found.suggestion
 
 
+@pytest.mark.parametrize("key", ["²", "9" * 900, "٣", "x", "8"])
+def test_labels_are_of_numbers_of_the_scale(key):
+    found = fault("labels: {1: hurting", f"labels: {{'{key}': hurting")
+    assert "`labels` gives words to numbers of the scale" in found.message
+
+
 def test_every_fault_is_named_at_once_with_its_words():
     found = faults(SMALL.replace("room: play", "room: plya").replace("people: 4", "people: x"))
     assert [each.line for each in found[:2]] == [4, 6]

@@ -13,6 +13,7 @@ import sqlalchemy as sql
 from starlette.responses import FileResponse, Response
 
 from hearth.analysis.ratings import SAID
+from hearth.datasets.damage import using
 from hearth.datasets.dataset import Dataset
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
@@ -52,7 +53,8 @@ def films_of(dataset: Path) -> dict[str, Film]:
     for execution, file, program in opened.rows(query)[1]:
         path = inside(opened.folder, str(file))
         if path.suffix in KINDS and path.is_file():
-            lines = "\n".join(print_lines(opened[program].program.unbound()))
+            with using(opened.folder):  # it may be of a program that there is not
+                lines = "\n".join(print_lines(opened[program].program.unbound()))
             found[execution] = Film(execution, path, lines)
     return found
 

@@ -1,0 +1,92 @@
+"""Checks of formulas that others wrote: each predicate with its terms, no circles, and not too much written out."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+
+from hearth.kb.formula import OPTION, And, Count, Formula, Or, Term, free
+from hearth.kb.loading.source_files import Entry, Faults
+from hearth.kb.records import Action
+from hearth.schemas.literals import Literal
+from hearth.schemas.vocabulary import RELATIONS
+
+Derived = Mapping[str, tuple[Literal[Term], Formula]]
+"""Definitions by predicate."""
+
+TERMS: Mapping[str, tuple[int, ...]] = {
+    **dict.fromkeys(RELATIONS, (2,)),
+    **dict.fromkeys(("state", "property", "class", "class_contains", "came_from", "same"), (2,)),
+    **dict.fromkeys(("affords", "is_room", OPTION), (1,)),
+    "REMEMBERS": (1, 2),
+}
+"""How many terms relations and built-in predicates have; what remembers its place may leave open which it is."""
+
+LIMITS = ("seat_limit", "bed_limit")
+"""Numbers that are known of a thing."""
+
+MOST = 10_000
+"""Predicates of a definition in which those that it uses are written out, as planners need it."""
+
+
+def check_derived(derived: Derived, entries: Mapping[str, Entry], faults: Faults) -> None:
+    """Note definitions that cannot be used; `entries` are by predicate, too."""
+    sizes: dict[str, int] = {}
+    for name, (head, body) in derived.items():
+        entry = entries[name]
+        variables = [term.name for term in head.terms]
+        if any(term.function for term in head.terms) or len({*variables}) < len(variables):
+            faults.at(entry, f"`{head}` has other terms than different variables")
+        _check_formula(body, {*variables}, str(head), derived, entry, faults)
+        if any(part.name == "affords" for part in _asked(body)):
+            faults.at(entry, f"`{head}`: what is afforded depends on an action", "say so in its checks")
+        if _size(name, derived, sizes, ()) > MOST:
+            faults.at(entry, f"`{name}` follows from itself, or stands for more than {MOST:,} predicates")
+
+
+def check_literals(action: Action, derived: Derived, at: Entry, faults: Faults) -> None:
+    """Note predicates that nothing defines or that have other terms, and variables that nothing binds."""
+    bound = {"a", *"os"[: action.arity]}
+    parts: list[tuple[Formula, set[str]]] = [(condition.formula, bound) for condition in action.preconditions]
+    parts += [(part, bound | {*e.variables}) for e in action.effects for part in (e.condition, e.literal.atom)]
+    for part, variables in parts:
+        _check_formula(part, variables, action.name, derived, at, faults)
+
+
+def _check_formula(
+    formula: Formula, variables: set[str], whose: str, derived: Derived, at: Entry, faults: Faults
+) -> None:
+    known = {*TERMS, *derived}
+    for unknown in sorted({part.name for part in _asked(formula)} - known):
+        faults.at(at, f"in `{formula}`: nothing says what `{unknown}` is", "see derived.yaml")
+    for part in _asked(formula):
+        wanted = (len(derived[part.name][0].terms),) if part.name in derived else TERMS.get(part.name, ())
+        if wanted and len(part.terms) not in wanted:
+            faults.at(at, f"`{part}` has {len(part.terms)} terms, not {wanted[-1]}")
+    for limit in sorted({part.limit.function for part in _parts(formula) if isinstance(part, Count)} - {*LIMITS}):
+        faults.at(at, f"in `{formula}`: `{limit}` is not a number of things", f"one of {', '.join(LIMITS)}")
+    for unbound in sorted(free(formula) - variables):
+        faults.at(at, f"in `{formula}`: `{unbound}` is not an argument of {whose} and is not bound")
+
+
+def _parts(formula: Formula) -> Iterator[Formula]:
+    """A formula and all parts of it."""
+    yield formula
+    if not isinstance(formula, Literal):
+        for part in formula.parts if isinstance(formula, And | Or) else (formula.part,):
+            yield from _parts(part)
+
+
+def _asked(formula: Formula) -> Iterator[Literal[Term]]:
+    return (part for part in _parts(formula) if isinstance(part, Literal))
+
+
+def _size(name: str, derived: Derived, sizes: dict[str, int], within: tuple[str, ...]) -> int:
+    """How many predicates a definition stands for; more than `MOST` where it follows from itself."""
+    if name not in derived:
+        return 1
+    if name in within:
+        return MOST + 1
+    if name not in sizes:
+        used = Counter(part.name for part in _asked(derived[name][1]))
+        found = sum(number * _size(each, derived, sizes, (*within, name)) for each, number in used.items())
+        sizes[name] = min(found, MOST + 1)
+    return sizes[name]
