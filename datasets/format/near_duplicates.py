@@ -62,7 +62,7 @@ def _ranks(texts: Iterable[str]) -> dict[str, int]:
 
 
 def _rarest(letters: str, common: int, rank: Mapping[str, int]) -> set[str]:
-    """The rarest letters, of which every text with so many in common has one; a marker for an empty text."""
+    """The rarest letters, of which every text that shares `common` letters has one; a marker for an empty text."""
     return set(sorted(letters, key=rank.__getitem__)[: len(letters) - common + 1]) or {""}
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 SURROGATES = 0xD800, 0x800
-"""The first code point that is no character, and the number of those."""
+"""The first of the code points that stand for no character, and their number."""
 
 
 def letter(number: int) -> str:

@@ -210,8 +210,14 @@ def _runs(job: Job) -> Iterator[Run]:
 
 
 def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:
-    rows = _rows(job, "ingest", columns=["program_id", "parts"])
-    return {row["program_id"]: {each["split"]: each["part"] for each in row["parts"]} for row in rows if row["parts"]}
+    """The parts of originals in splits of their sources' own; many have the same, and share them."""
+    found: dict[str, dict[str, str | None]] = {}
+    different: dict[tuple[tuple[str, str | None], ...], dict[str, str | None]] = {}
+    for row in _rows(job, "ingest", columns=["program_id", "parts"]):
+        if row["parts"]:
+            parts = tuple((each["split"], each["part"]) for each in row["parts"])
+            found[row["program_id"]] = different.setdefault(parts, dict(parts))
+    return found
 
 
 def _copy_pictures(job: Job) -> None:
