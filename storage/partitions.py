@@ -182,16 +182,18 @@ class _File:
 
 def write_table(path: Path, table: pa.Table) -> None:
     """Write a small table whole, in the stages' way."""
-    write_batches(path, table.schema, table.to_batches())
+    write_batches(path, table.schema, table.to_batches(ROW_GROUP))
 
 
 def write_batches(path: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatch]) -> None:
-    """Write a table of which some batches are in memory at a time, in the stages' way."""
+    """Write a table of which some batches are in memory at a time, in the stages' way; each is a row group.
+
+    Until the file is finished its footer is in memory, a kilobyte or so for each group and column.
+    """
     file = _File(path, schema)
     try:
         for batch in batches:
-            for start in range(0, len(batch), ROW_GROUP):
-                file.write(batch.slice(start, ROW_GROUP))
+            file.write(batch)
     except BaseException:
         file.abandon()
         raise

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from array import array
+from bisect import bisect_left
 from collections import Counter, defaultdict
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from math import ceil, inf
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from hearth.datasets.format.texts import Letters, Texts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,43 +24,61 @@ def near_sequences(rows: Sequence[Sequence[Hashable]], least: float) -> Iterator
     """Pairs of indices, the smaller first, of sequences whose LCS is at least the share `least` of the longer one.
 
     Exact, and nearly linear if most elements are rare (prefix filtering, as in set similarity joins): similar sequences
-    share one of their few rarest elements, and only pairs that share one are compared.
+    share one of their few rarest elements, and only pairs that share one are compared. Of these, most differ in classes
+    of elements by more than similar ones can; that is seen from bits.
 
     Args:
-        rows: sequences of hashable elements.
+        rows: sequences of hashable elements; `Texts` are compared as they are, and take least memory.
         least: from 0 to 1.
     """
     from rapidfuzz.distance import LCSseq
 
-    sequences = _numbered(rows)
-    lengths = [len(each) for each in sequences]
-    seen: dict[str, list[int]] = defaultdict(list)
-    for number in sorted(range(len(sequences)), key=lambda place: (lengths[place], place)):
-        mine = sequences[number]
-        rarest = _rarest(mine, least)
-        shortest = least * len(mine) - _ROUNDING
-        for other in sorted({other for token in rarest for other in seen[token] if lengths[other] >= shortest}):
-            if LCSseq.normalized_similarity(mine, sequences[other], score_cutoff=least - _ROUNDING):
-                yield (other, number) if other < number else (number, other)
-        for token in rarest:
-            seen[token].append(number)
+    texts = rows if isinstance(rows, Texts) else Texts(map(Letters().text, rows))
+    rank = _ranks(texts)
+    lengths = np.fromiter(map(len, texts), np.int32, len(texts))
+    order = np.argsort(lengths, kind="stable").astype(np.int32)
+    classes = np.fromiter((_classes(texts[place]) for place in order.data), np.uint64, len(texts))
+    lengths = lengths[order]
+    firsts = np.searchsorted(lengths, least * lengths - _ROUNDING)  # those before the first are too short
+    seen: dict[str, array[int]] = defaultdict(lambda: array("i"))
+    for number, (place, first) in enumerate(zip(order.data, firsts.data, strict=True)):
+        mine = texts[place]
+        common = ceil(least * len(mine) - _ROUNDING)
+        found = set[int]()
+        for others in (seen[token] for token in _rarest(mine, common, rank)):
+            near = np.array(others[bisect_left(others, first) :], np.int32)
+            lone = _ONES[(classes[near] ^ classes[number]).view(np.uint8)].reshape(-1, _BITS // 8).sum(1)
+            found.update(order[near[lone <= lengths[near] + (len(mine) - 2 * common)]].tolist())
+            others.append(number)
+        for other in found:
+            if LCSseq.normalized_similarity(mine, texts[other], score_cutoff=least - _ROUNDING):
+                yield (other, place) if other < place else (place, other)
 
 
-def _numbered(rows: Sequence[Sequence[Hashable]]) -> list[str]:
-    """Sequences as strings, which compare fastest; the rarer an element, the smaller its character."""
-    seen = Counter(element for sequence in rows for element in sequence)
-    letter = {element: chr(_FIRST + place) for place, (element, _) in enumerate(reversed(seen.most_common()))}
-    return ["".join(map(letter.__getitem__, sequence)) for sequence in rows]
+def _ranks(texts: Iterable[str]) -> dict[str, int]:
+    """The rank of each letter; the rarer it is, the smaller."""
+    seen = Counter(chain.from_iterable(texts))
+    return {letter: rank for rank, (letter, _) in enumerate(reversed(seen.most_common()))}
 
 
-_FIRST = 0xE000
-"""First code point after the surrogates, which are not characters; leaves a million different elements."""
+def _rarest(letters: str, common: int, rank: Mapping[str, int]) -> set[str]:
+    """The rarest letters, of which every text that shares `common` letters has one; a marker for an empty text."""
+    return set(sorted(letters, key=rank.__getitem__)[: len(letters) - common + 1]) or {""}
 
 
-def _rarest(letters: str, least: float) -> set[str]:
-    """The rarest elements, of which every similar sequence has at least one; a marker for an empty sequence."""
-    common = ceil(least * len(letters) - _ROUNDING)
-    return set(sorted(letters)[: len(letters) - common + 1]) or {""}
+def _classes(letters: str) -> int:
+    """A bit for each class of letters that a text has: each bit of one of two alone is a letter of it alone."""
+    found = 0
+    for each in letters:
+        found |= 1 << ord(each) % _BITS
+    return found
+
+
+_BITS = 64
+"""Number of classes of letters."""
+
+_ONES = np.array([number.bit_count() for number in range(256)], np.int32)
+"""Number of bits that are set in a byte."""
 
 
 def near_texts(texts: Sequence[str], least: float) -> Iterator[tuple[int, int]]:
@@ -99,6 +122,8 @@ def _edit_bound(counts: NDArray[np.int32], mine: NDArray[np.int32]) -> NDArray[n
 
 def _character_counts(texts: Sequence[str]) -> NDArray[np.int32]:
     """(_KINDS, texts) number of characters of each class in each text."""
-    codes = (np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32) % _KINDS for text in texts)
-    counts = [np.bincount(each, minlength=_KINDS) for each in codes]
-    return np.array(counts, np.int32).reshape(-1, _KINDS).T.copy()
+    counts = np.empty((_KINDS, len(texts)), np.int32)
+    for place, text in enumerate(texts):
+        codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32)
+        counts[:, place] = np.bincount(codes % _KINDS, minlength=_KINDS)
+    return counts

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from array import array
-from bisect import bisect_left
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from heapq import merge
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import NDArray
 
 from hearth.datasets.format.near_duplicates import near_sequences, near_texts
+from hearth.datasets.format.texts import Letters, Texts
 
 NEAR = 0.9
 """Normalised LCS of steps, or similarity of texts, from which two programs are near duplicates."""
@@ -26,12 +26,6 @@ PARTS = ("train", "validation", "test")
 
 NOTHING = -1
 """The number of steps or a text that is not compared, of a part that there is not, and of no parent."""
-
-BATCH = 65_536
-"""Runs that are held as Python values at a time."""
-
-Run = tuple[str, str, str]
-"""Execution id, program id and home of an execution that ran to its end."""
 
 Pairs = Callable[[Sequence[Any], float], Iterable[tuple[int, int]]]
 
@@ -128,7 +122,7 @@ class SplitPrograms:
         steps, texts: near duplicates by steps and by description.
     """
 
-    ids: list[str]
+    ids: Texts
     known: NDArray[np.bool_]
     root: NDArray[np.int32]
     part: NDArray[np.int8]
@@ -137,22 +131,25 @@ class SplitPrograms:
 
     @classmethod
     def of(cls, programs: Iterable[SplitProgram]) -> SplitPrograms:
-        """The columns of programs in any order; they are read once."""
-        ids, parts, parents = list[str](), array("b"), list[str | None]()
-        steps, texts = _Numbers(), _Numbers()
+        """The columns of programs in any order; they are read once. Of programs with one id the first counts."""
+        ids, parts, parents = Texts(), array("b"), _Numbers()
+        letters, steps, texts = Letters(), Texts(), _Numbers()
         for each in programs:
             ids.append(each.program_id)
-            parents.append(each.parent)
+            parents.add(each.parent, each.parent is not None)
             parts.append(PARTS.index(each.part) if each.part else NOTHING)
-            steps.add(each.steps, bool(each.steps))
+            steps.append(letters.text(each.steps))
             text = normalised(each.description)
             texts.add(text, len(text) >= SHORTEST_TEXT)
-        names, order, above = _in_order(ids, parents)
-        near = (
-            Near.of(_sorted(steps.numbers, order), list(steps.known), near_sequences),
-            Near.of(_sorted(texts.numbers, order), list(texts.known), near_texts),
-        )
-        return cls(names, order < len(ids), _roots(above), _sorted(parts, order), *near)
+        names, rows = _in_order(ids, parents.known)
+        root = _roots(_above(names, rows, parents))
+        del ids, parents  # each column goes when it is no longer needed: all together are the most memory that is used
+        numbers, different = _different(steps)
+        del steps
+        near = Near.of(_taken(numbers, rows), different, near_sequences)
+        del different
+        near_by_text = Near.of(_taken(texts.numbers, rows), [*texts.known], near_texts)
+        return cls(names, rows != NOTHING, root, _taken(parts, rows), near, near_by_text)
 
     def place(self, program_id: str) -> int:
         """The place of a program.
@@ -160,35 +157,52 @@ class SplitPrograms:
         Raises:
             KeyError: the program is unknown.
         """
-        found = bisect_left(self.ids, program_id)
-        if found == len(self.ids) or self.ids[found] != program_id:
+        found = self.ids.find(program_id)
+        if found is None:
             raise KeyError(program_id)
         return found
 
-    def places(self) -> NDArray[np.int64]:
-        """The places of all programs."""
-        return np.flatnonzero(self.known)
+
+def _in_order(ids: Texts, parents: Iterable[str]) -> tuple[Texts, NDArray[np.int32]]:
+    """Different ids and parents in order; the first row of each, or `NOTHING`."""
+    names, rows = Texts(), array("i")
+    last = None
+    mine = ((ids[row], row) for row in ids.order().data)
+    for name, row in merge(mine, ((parent, NOTHING) for parent in sorted(parents)), key=itemgetter(0)):
+        if name != last:  # of equal names, `merge` gives those of rows first
+            names.append(name)
+            rows.append(row)
+            last = name
+    return names, np.array(rows, np.int32)
 
 
-def _in_order(ids: list[str], parents: list[str | None]) -> tuple[list[str], NDArray[np.int64], NDArray[np.int32]]:
-    """Ids and parents that are none of them, in order; where each was; the place of each one's parent, or `NOTHING`."""
-    place = {name: number for number, name in enumerate(ids)}
-    for parent in parents:
-        if parent is not None:
-            place.setdefault(parent, len(place))
-    names = list(place)
-    order = np.array(sorted(range(len(names)), key=names.__getitem__), np.int64)
-    at = np.empty(len(names), np.int32)
-    at[order] = np.arange(len(names))
-    above = np.full(len(names), NOTHING, np.int32)
-    above[: len(ids)] = [NOTHING if parent is None else at[place[parent]] for parent in parents]
-    return [names[k] for k in order], order, above[order]
+def _above(names: Texts, rows: NDArray[np.int32], parents: _Numbers) -> NDArray[np.int32]:
+    """The place of the parent of each name, or `NOTHING`."""
+    places = np.array([*map(names.find, parents.known), NOTHING], np.int32)
+    above: NDArray[np.int32] = places[_taken(parents.numbers, rows)]  # the last one is that of the number `NOTHING`
+    return above
 
 
-def _sorted(column: array[int], order: NDArray[np.int64]) -> NDArray[Any]:
-    """A column in an order, with `NOTHING` for what it does not have."""
-    values = np.array(column)
-    return np.concatenate([values, np.full(len(order) - len(values), NOTHING, values.dtype)])[order]
+def _different(texts: Texts) -> tuple[NDArray[np.int32], Texts]:
+    """The number of each text among the different ones, or `NOTHING` for an empty one; and these.
+
+    A table of all of them would take more memory than they do: equal ones follow each other in order.
+    """
+    numbers, different = np.full(len(texts), NOTHING, np.int32), Texts()
+    last = ""
+    for place in texts.order().data:
+        text = texts[place]
+        if text != last:
+            different.append(text)
+            last = text
+        numbers[place] = len(different) - 1
+    return numbers, different
+
+
+def _taken(column: array[int] | NDArray[Any], rows: NDArray[np.int32]) -> NDArray[Any]:
+    """What a column has in some rows, `NOTHING` in the row `NOTHING`."""
+    values = np.append(np.array(column), np.array([NOTHING], np.array(column).dtype))
+    return values[rows]
 
 
 def _roots(above: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -197,25 +211,3 @@ def _roots(above: NDArray[np.int32]) -> NDArray[np.int32]:
     while not np.array_equal(higher := root[root], root):
         root = higher
     return root
-
-
-class Runs(Iterable[Run]):
-    """Executions that ran to their ends, sorted by id, by column; read as often as one likes."""
-
-    def __init__(self, runs: Iterable[Run]) -> None:
-        schema = pa.schema(
-            [("execution_id", pa.large_string()), ("program_id", pa.large_string()), ("home", pa.string())]
-        )
-        found, values = list[pa.RecordBatch](), iter(runs)
-        while some := list(islice(values, BATCH)):
-            columns = [
-                pa.array(column, each.type) for column, each in zip(zip(*some, strict=True), schema, strict=True)
-            ]
-            found.append(pa.record_batch(columns, schema=schema))
-        table = pa.Table.from_batches(found, schema)
-        self._table = table.sort_by([(name, "ascending") for name in schema.names])
-        self.homes: list[str] = sorted(self._table["home"].unique().to_pylist())
-
-    def __iter__(self) -> Iterator[Run]:
-        for batch in self._table.to_batches(BATCH):
-            yield from zip(*(column.to_pylist() for column in batch.columns), strict=True)

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from itertools import groupby
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.datasets.format.split_columns import NEAR, Runs, SplitPrograms
-from hearth.datasets.format.splits import RULES, held_out
-from hearth.schemas.published_rows import SplitRow
+from hearth.datasets.format.split_columns import NEAR, SplitPrograms
+from hearth.datasets.format.split_runs import Runs
+from hearth.datasets.format.splits import RULES, SplitRows, held_out
 from hearth.schemas.rng import derive
 
 OWN = "by program: the parts that its source gives; augmented programs have those of their originals"
@@ -25,7 +24,7 @@ Places = NDArray[np.int64]
 """Places of programs, in order."""
 
 
-def summary(programs: SplitPrograms, runs: Runs, rows: Iterable[SplitRow], seed: int) -> dict[str, Any]:
+def summary(programs: SplitPrograms, runs: Runs, rows: SplitRows, seed: int) -> dict[str, Any]:
     """Homes in order, and for each split rule, counts of runs and programs by part, and leakage, as JSON.
 
     `leakage` counts test programs with a program in train that has the same original (`siblings`), nearly the same
@@ -35,21 +34,16 @@ def summary(programs: SplitPrograms, runs: Runs, rows: Iterable[SplitRow], seed:
     Args:
         programs: all published programs.
         runs: as of `SplitRows`.
-        rows: sorted by split.
+        rows: of these runs.
         seed: of the assignment.
     """
     homes, out = runs.homes, held_out(runs, seed)
     spans = {f"{first}_{last}": ", ".join(homes[first - 1 : last]) or "none here" for first, last in _SPANS}
-    measured = {
-        split: _measured(Members.of(some, programs), programs, seed)
-        for split, some in groupby(rows, lambda row: row["split"])
-    }
-    rules = {**RULES, **dict.fromkeys(sorted(measured.keys() - RULES.keys()), OWN)}
-    nobody = _measured(Members(), programs, seed)
-    described = {
-        split: {"rule": rule.format(held_out=out, **spans), **measured.get(split, nobody)}
-        for split, rule in rules.items()
-    }
+    described = {}
+    for split, rule in {**RULES, **dict.fromkeys(rows.own, OWN)}.items():
+        members = Members.of(rows.parts(split), len(programs.ids))
+        if split in RULES or members.runs:
+            described[split] = {"rule": rule.format(held_out=out, **spans), **_measured(members, programs, seed)}
     return {"seed": seed, "near": NEAR, "homes": homes, "held_out": out, "splits": described}
 
 
@@ -61,16 +55,15 @@ class Members:
     programs: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, rows: Iterable[SplitRow], programs: SplitPrograms) -> Members:
-        """Those of the rows of a split."""
+    def of(cls, runs: Iterable[tuple[str, int, str | None]], programs: int) -> Members:
+        """Those of the runs of a split, as `SplitRows.parts` gives them; `programs` is the number of ids."""
         found = cls()
-        for row in rows:
-            part = row["part"]
+        for _, place, part in runs:
             found.runs[part] += 1
             if part:
                 if part not in found.programs:
-                    found.programs[part] = np.zeros(len(programs.ids), bool)
-                found.programs[part][programs.place(row["program_id"])] = True
+                    found.programs[part] = np.zeros(programs, bool)
+                found.programs[part][place] = True
         return found
 
 
@@ -91,7 +84,7 @@ def _measured(members: Members, programs: SplitPrograms, seed: int) -> dict[str,
 
 
 def _at_random(programs: SplitPrograms, places: Places, tested: int, seed: int) -> tuple[Places, Places]:
-    keys = (derive(seed, "random split", programs.ids[place]) for place in places.tolist())
+    keys = (derive(seed, "random split", programs.ids[place]) for place in places.data)
     shuffled = places[np.argsort(np.fromiter(keys, np.uint64, len(places)), kind="stable")]
     return shuffled[tested:], shuffled[:tested]
 

@@ -14,7 +14,8 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.datasets.format.split_columns import NOTHING, PARTS, Runs, SplitPrograms
+from hearth.datasets.format.split_columns import NOTHING, PARTS, SplitPrograms
+from hearth.datasets.format.split_runs import Runs
 from hearth.schemas.published_rows import SplitRow
 from hearth.schemas.rng import derive
 
@@ -53,14 +54,14 @@ def groups(programs: SplitPrograms) -> NDArray[np.int32]:
 
     for near in (programs.steps, programs.texts):
         first = array("i", [NOTHING]) * near.count
-        for root, number in zip(programs.root.tolist(), near.numbers.tolist(), strict=True):
+        for root, number in zip(programs.root.data, near.numbers.data, strict=True):
             if number != NOTHING:
                 if first[number] == NOTHING:
                     first[number] = root
                 join(first[number], root)
-        for one, other in zip(near.one.tolist(), near.other.tolist(), strict=True):
+        for one, other in zip(near.one.data, near.other.data, strict=True):
             join(first[one], first[other])
-    return np.array([find(root) for root in programs.root.tolist()], np.int32)
+    return np.fromiter(map(find, programs.root.data), np.int32, len(above))
 
 
 def by_activity(programs: SplitPrograms, group: NDArray[np.int32]) -> NDArray[np.int8]:
@@ -86,6 +87,9 @@ def held_out(runs: Runs, seed: int) -> str:
 class SplitRows(Iterable[SplitRow]):
     """A row for each run and split, sorted by `split` and `execution_id`; millions, made anew each time.
 
+    Attributes:
+        own: names of the splits that come with sources, in order.
+
     Args:
         programs: all published programs.
         runs: every execution that ran to its end.
@@ -101,6 +105,7 @@ class SplitRows(Iterable[SplitRow]):
         own: Mapping[str, Mapping[str, str | None]] = _NONE,
     ) -> None:
         self._programs, self._runs, self._own = programs, runs, own
+        self.own = sorted({name for given in own.values() for name in given})
         group = groups(programs)
         self._part = by_activity(programs, group)
         self._decile = {split: _deciles(programs, group, seed, split) for split in _BY_HOME}
@@ -108,13 +113,17 @@ class SplitRows(Iterable[SplitRow]):
         self._number = {home: place for place, home in enumerate(runs.homes, 1)}
 
     def __iter__(self) -> Iterator[SplitRow]:
-        for split in sorted({*RULES, *(name for given in self._own.values() for name in given)}):
-            part_of = self._rule(split)
-            for execution_id, program_id, home in self._runs:
-                place = self._programs.place(program_id)
-                if split in RULES or split in self._own.get(self._original(place), ()):
-                    part = part_of(place, home)
-                    yield {"split": split, "execution_id": execution_id, "program_id": program_id, "part": part}
+        ids = self._programs.ids
+        for split in sorted({*RULES, *self.own}):
+            for execution_id, place, part in self.parts(split):
+                yield {"split": split, "execution_id": execution_id, "program_id": ids[place], "part": part}
+
+    def parts(self, split: str) -> Iterator[tuple[str, int, str | None]]:
+        """For each run in a split its id, the place of its program, and its part; in the order of the ids."""
+        part_of = self._rule(split)
+        for execution_id, place, home in self._runs:
+            if split in RULES or split in self._own.get(self._original(place), ()):
+                yield execution_id, place, part_of(place, home)
 
     def _original(self, place: int) -> str:
         original: int = self._programs.root[place]

@@ -1,9 +1,7 @@
 """The tables that need all cases, the pictures and the catalog, published last."""
 
 import shutil
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -18,11 +16,12 @@ from hearth.datasets.format.card import write_card
 from hearth.datasets.format.catalog import write_catalog
 from hearth.datasets.format.codecs import node_row
 from hearth.datasets.format.croissant import write_croissant
-from hearth.datasets.format.ids import STAMP, activity_id
-from hearth.datasets.format.split_columns import Run, Runs
+from hearth.datasets.format.ids import STAMP
+from hearth.datasets.format.split_runs import Run, Runs
 from hearth.datasets.format.split_summary import summary
 from hearth.datasets.tensors import EDGE_TYPES
 from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.engine.activity_tables import COUNTED, Activities
 from hearth.pipelines.engine.annotated_sketches import inherited_annotations
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.stage import Job
@@ -30,13 +29,14 @@ from hearth.pipelines.engine.stages import RECORDS, STAGES
 from hearth.schemas import published_rows, stage_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import Row, columns_of
+from hearth.schemas.row_types import Row
 from hearth.schemas.tables import TABLES
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
 from hearth.simulation.world.world import World
 from hearth.storage.files import replacing, sync_folder, write_json
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts, part_path, read_rows, write_batches
+from hearth.storage.repeated import repeated
 
 BATCH = 4_096
 
@@ -48,11 +48,9 @@ def finish(job: Job, counts: Counts) -> None:
         HearthError: DUPLICATE, when two rows have one id.
     """
     _check_unique(job.folder)
-    activities = _activities(job)
+    _write_activities(job)
     homes = job.context.homes
     makers: dict[str, Callable[[], Iterable[Row]]] = {
-        "activities": activities.activity_rows,
-        "descriptions": activities.description_rows,
         "homes": lambda: _homes(job, homes),
         "home_nodes": lambda: _home_nodes(job, homes),
         "home_edges": lambda: _home_edges(job, homes),
@@ -89,90 +87,18 @@ _KEYS = {"programs": "program_id", "environments": "environment_id", "executions
 
 
 def _check_unique(folder: Path) -> None:
-    import duckdb
-
-    with duckdb.connect() as connection:
-        for table, key in _KEYS.items():
-            files = str(folder / table / "*.parquet").replace("'", "''")
-            query = f"SELECT {key} FROM read_parquet('{files}') GROUP BY 1 HAVING count(*) > 1 ORDER BY 1 LIMIT 1"
-            twice = connection.execute(query).fetchone()
-            if twice:
-                message = f"two rows of `{table}` have the {key} `{twice[0]}`"
-                raise HearthError.of(Code.DUPLICATE, message, file=str(folder))
+    for table, key in _KEYS.items():
+        twice = repeated(folder / table, key)
+        if twice is not None:
+            message = f"two rows of `{table}` have the {key} `{twice}`"
+            raise HearthError.of(Code.DUPLICATE, message, file=str(folder))
 
 
-@dataclass(slots=True)
-class _Activity:
-    titles: Counter[str] = field(default_factory=Counter)
-    scenes: set[str] = field(default_factory=set)
-    descriptions: int = 0
-    programs: int = 0
-
-
-@dataclass(slots=True)
-class _Activities:
-    """Activities and descriptions, gathered from the ingested records and the published programs."""
-
-    activities: dict[str, _Activity] = field(default_factory=dict)
-    descriptions: dict[str, published_rows.DescriptionRow] = field(default_factory=dict)
-    described: set[str] = field(default_factory=set)
-
-    def describe(self, row: stage_rows.IngestedRow) -> None:
-        """Add an ingested row; a description's own row replaces a copy that came with a program."""
-        name, own = row["description_id"], row["kind"] == "description"
-        if name not in self.descriptions or (own and name not in self.described):
-            words = {**row, "activity_id": activity_id(row["title"]), "programs": 0}
-            self.descriptions[name] = columns_of(published_rows.DescriptionRow, words)
-        if own:
-            self.described.add(name)
-
-    def count(self, program: published_rows.ProgramRow) -> None:
-        """Add a published program."""
-        activity = self.activities.setdefault(program["activity_id"], _Activity())
-        activity.programs += 1
-        activity.titles[program["title"]] += 1
-        if program["parent_id"] is None and program["description_id"] in self.descriptions:
-            self.descriptions[program["description_id"]]["programs"] += 1
-
-    def gather(self) -> None:
-        """Count descriptions under their activities."""
-        for row in self.descriptions.values():
-            activity = self.activities.setdefault(activity_id(row["title"]), _Activity())
-            activity.descriptions += 1
-            activity.titles[row["title"]] += 1
-            if row["scene"]:
-                activity.scenes.add(row["scene"])
-
-    def activity_rows(self) -> Iterator[published_rows.ActivityRow]:
-        for name, activity in sorted(self.activities.items()):
-            title = min(activity.titles, key=lambda title: (-activity.titles[title], title))
-            yield {
-                "activity_id": name,
-                "title": title,
-                "scenes": sorted(activity.scenes),
-                "descriptions": activity.descriptions,
-                "programs": activity.programs,
-            }
-
-    def description_rows(self) -> Iterator[published_rows.DescriptionRow]:
-        yield from (row for _, row in sorted(self.descriptions.items()))
-
-
-_WORDS = [
-    *(name for name in published_rows.DescriptionRow.__annotations__ if name not in ("activity_id", "programs")),
-    "kind",
-]
-
-
-def _activities(job: Job) -> _Activities:
-    found = _Activities()
-    for row in _rows(job, "ingest", columns=_WORDS):
-        if row["kind"] in ("program", "description"):
-            found.describe(row)
-    for row in _programs(job, ["activity_id", "title", "parent_id", "description_id"]):
-        found.count(row)
-    found.gather()
-    return found
+def _write_activities(job: Job) -> None:
+    """Write the activities, and the descriptions, which are in memory no longer than that."""
+    found = Activities(lambda columns: _rows(job, "ingest", columns=columns), _programs(job, COUNTED))
+    for table, rows in (("activities", found.activity_rows()), ("descriptions", found.description_rows())):
+        write_rows(part_path(job.folder, table, 0), TABLES[table], rows)
 
 
 def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
@@ -184,21 +110,25 @@ def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
 def _sketches(job: Job) -> Iterator[stage_rows.SketchRow]:
     """Inferred and inherited sketches, annotated ones, and what augmented programs inherit of these."""
     yield from _rows(job, "augment", "sketches")
-    annotations = list(_annotated(job))
+    annotations = _annotated(job)
     yield from annotations
     of_program = {row["program_id"]: row for row in annotations}
-    yield from inherited_annotations(_programs(job, ["program_id", "parent_id", "steps"]), of_program)
+    if of_program:
+        yield from inherited_annotations(_programs(job, ["program_id", "parent_id", "steps"]), of_program)
 
 
-def _annotated(job: Job) -> Iterator[stage_rows.SketchRow]:
+def _annotated(job: Job) -> list[stage_rows.SketchRow]:
     """Annotated sketches of published programs: their description's id names the program."""
-    published = {row["program_id"] for row in _programs(job, ["program_id"])}
+    found: list[stage_rows.SketchRow] = []
     for row in _rows(job, "ingest", columns=["kind", "description_id", "keep", "text"]):
-        name = str(row["description_id"])
-        if row["kind"] == "sketch" and name in published:
+        if row["kind"] == "sketch":
+            name = str(row["description_id"])
             steps = row["text"].removesuffix("\n").split("\n")
             origin = "written" if name.startswith("written:") else "people"
-            yield {"program_id": name, "origin": origin, "keep": row["keep"], "steps": steps}
+            found.append({"program_id": name, "origin": origin, "keep": row["keep"], "steps": steps})
+    names = {row["program_id"] for row in found}
+    published = {row["program_id"] for row in _programs(job, ["program_id"]) if row["program_id"] in names}
+    return [row for row in found if row["program_id"] in published]
 
 
 def strength_used(job: Job) -> str:
@@ -267,7 +197,7 @@ def _frames(job: Job, kind: str) -> Iterator[Row]:
 
 def _splits(job: Job) -> Iterable[published_rows.SplitRow]:
     programs, seed = job.context.assignment.programs, job.settings.seed
-    runs = Runs(_runs(job))
+    runs = Runs(programs, _runs(job))
     rows = splits.SplitRows(programs, runs, seed, _parts_of_sources(job))
     write_json(job.folder / "splits.json", summary(programs, runs, rows, seed))
     return rows
@@ -280,8 +210,14 @@ def _runs(job: Job) -> Iterator[Run]:
 
 
 def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:
-    rows = _rows(job, "ingest", columns=["program_id", "parts"])
-    return {row["program_id"]: {each["split"]: each["part"] for each in row["parts"]} for row in rows if row["parts"]}
+    """The parts of originals in splits of their sources' own; many have the same, and share them."""
+    found: dict[str, dict[str, str | None]] = {}
+    different: dict[tuple[tuple[str, str | None], ...], dict[str, str | None]] = {}
+    for row in _rows(job, "ingest", columns=["program_id", "parts"]):
+        if row["parts"]:
+            parts = tuple((each["split"], each["part"]) for each in row["parts"])
+            found[row["program_id"]] = different.setdefault(parts, dict(parts))
+    return found
 
 
 def _copy_pictures(job: Job) -> None:

@@ -41,29 +41,25 @@ def assignment(files: list[Path], seed: int) -> Assignment:
 
 
 def programs_of(files: list[Path], seed: int) -> Iterator[SplitProgram]:
-    """Each program of cases once; its steps are a text with a character for each action and its classes.
+    """Each program of cases, once a file; its steps are a text with a character for each action and its classes.
 
     The texts of one call are alike where actions and classes are; those of two calls do not compare.
 
     Args:
         files, seed: as of `assignment`.
     """
-    seen: dict[str, str] = {}
     letters: dict[str, str] = {}
     for path in files:
         with pq.ParquetFile(path) as file:
             table = file.read([*_COLUMNS, "steps"])
-        new: list[int] = []
-        for row, name in enumerate(table["program_id"].to_pylist()):
-            if name not in seen:
-                seen[name] = name
-                new.append(row)
-        table = table.take(pa.array(new, pa.int64()))
+        names = table["program_id"].to_pylist()
+        first = {name: row for row, name in reversed([*enumerate(names)])}
+        table = table.take(pa.array(sorted(first.values()), pa.int64()))
         steps = _steps(table["steps"].combine_chunks(), letters)
         columns = (table[name].to_pylist() for name in _COLUMNS)
         for program_id, parent_id, title, text, mine in zip(*columns, steps, strict=True):
             of = activity_id(title)
-            yield SplitProgram(seen[program_id], of, split_of(of, seed), seen.get(parent_id, parent_id), mine, text)
+            yield SplitProgram(program_id, of, split_of(of, seed), parent_id, mine, text)
 
 
 def _steps(steps: pa.ListArray, letters: dict[str, str]) -> Iterator[str]:

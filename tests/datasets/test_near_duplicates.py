@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import random
 
+from hypothesis import given
+from hypothesis import strategies as st
+
 from hearth.datasets.format.near_duplicates import near_sequences, near_texts
+
+LEAST = (0.5, 0.9, 1.0)
 
 
 def common(one, other):
@@ -41,15 +46,23 @@ def families(elements, longest, count, dropped):
 
 def test_the_index_of_sequences_misses_nothing():
     rows = families(range(9), 14, 70, 0.08)
-    for least in (0.5, 0.9, 1.0):
+    for least in LEAST:
         found = sorted(near_sequences(rows, least))
         assert found == plainly(rows, of_the_longer, least)
         assert len(found) > len(rows)
 
 
+@given(st.lists(st.lists(st.integers(0, 70) | st.integers(0, 4), max_size=12), max_size=12), st.sampled_from(LEAST))
+def test_any_sequences_are_compared_as_each_with_each(rows, least):
+    rows += [row[1:] for row in rows] + [[*row, 1] for row in rows]
+    assert sorted(near_sequences(rows, least)) == plainly(rows, of_the_longer, least)
+    texts = ["".join(map(chr, row)) for row in rows]
+    assert sorted(near_texts(texts, least)) == plainly(texts, of_both, least)
+
+
 def test_lengths_and_counted_characters_keep_no_near_texts_apart():
     rows = ["".join(row) for row in families("abcdef \u00e9\U0001f600", 40, 90, 0.04)]
-    for least in (0.5, 0.9, 1.0):
+    for least in LEAST:
         found = sorted(near_texts(rows, least))
         assert found == plainly(rows, of_both, least)
         assert len(found) > len(rows) / 4

@@ -9,7 +9,8 @@ import orjson
 import pytest
 
 import hearth
-from hearth.datasets.format.split_columns import PARTS, Runs, SplitProgram, SplitPrograms
+from hearth.datasets.format.split_columns import PARTS, SplitProgram, SplitPrograms
+from hearth.datasets.format.split_runs import Runs
 from hearth.datasets.format.split_summary import leakage, summary
 from hearth.datasets.format.splits import RULES, SplitRows, by_activity, groups, part_name
 from hearth.pipelines.engine import split_assignment
@@ -78,7 +79,8 @@ def test_leakage_is_counted_by_kind():
 
 def many():
     programs, runs = rows_of_many()
-    return SplitPrograms.of(programs), Runs(runs)
+    known = SplitPrograms.of(programs)
+    return known, Runs(known, runs)
 
 
 def rows_of_many():
@@ -94,8 +96,8 @@ def rows_of_many():
 
 def test_no_split_leaks_where_random_rows_would():
     programs, runs = many()
-    rows = list(SplitRows(programs, runs, 3))
-    assert len(rows) == len(RULES) * len(list(runs))
+    rows = SplitRows(programs, runs, 3)
+    assert len(list(rows)) == len(RULES) * len(list(runs))
     found = summary(programs, runs, rows, 3)["splits"]
     for split in found.values():
         assert split["leakage"]["programs"] > 0
@@ -121,7 +123,7 @@ def test_homes_are_where_the_rules_say():
 def test_a_source_s_own_splits_are_those_of_originals_and_their_descendants():
     programs, runs = many()
     own = {"p00": {"pairs": "test"}, "p01": {"pairs": None}}
-    rows = list(SplitRows(programs, runs, 3, own))
+    rows = SplitRows(programs, runs, 3, own)
     found = {(row["program_id"], row["part"]) for row in rows if row["split"] == "pairs"}
     assert found == {("p00", "test"), ("p00+1", "test"), ("p01", None), ("p01+1", None)}
     about = summary(programs, runs, rows, 3)["splits"]["pairs"]
@@ -130,7 +132,7 @@ def test_a_source_s_own_splits_are_those_of_originals_and_their_descendants():
 
 def test_homes_are_named():
     programs, runs = many()
-    found = summary(programs, runs, [], 3)
+    found = summary(programs, runs, SplitRows(programs, runs, 3), 3)
     assert found["homes"] == [f"h{number}" for number in range(1, 8)] and found["held_out"] in found["homes"]
     assert "homes 1-5 (h1, h2, h3, h4, h5), tested in 6-7 (h6, h7)" in found["splits"]["homes_1_5"]["rule"]
     assert found["held_out"] in found["splits"]["held_out_home"]["rule"]
@@ -161,8 +163,9 @@ def test_of_near_duplicates_those_in_the_latest_part_stay():
 
 def test_the_deal_does_not_depend_on_order():
     programs, runs = rows_of_many()
-    first = SplitRows(SplitPrograms.of(programs), Runs(runs), 3)
-    assert list(first) == list(SplitRows(SplitPrograms.of(programs[::-1]), Runs(runs[::-1]), 3))
+    one, other = SplitPrograms.of(programs), SplitPrograms.of(programs[::-1])
+    first, second = SplitRows(one, Runs(one, runs), 3), SplitRows(other, Runs(other, runs[::-1]), 3)
+    assert list(first) == list(second)
 
 
 def test_steps_read_by_columns_are_those_of_the_rows(made):
