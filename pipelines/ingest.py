@@ -178,7 +178,7 @@ def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[t
 def _partition(number: int, share: list[tuple[str, Item]]) -> Partition:
     try:
         digest = _digest(share)
-    except TypeError:
+    except (HearthError, TypeError):
         share = [(source, _storable(source, item)) for source, item in share]
         digest = _digest(share)
     return Partition(number, digest, share, len(share))
@@ -197,8 +197,8 @@ def _storable(source: str, item: Item) -> Item:
     """The item, or its refusal if it is not JSON in UTF-8 of at most some 250 levels."""
     try:
         _digest([(source, item)])
-    except TypeError as error:
-        deep = "recursion" in str(error).lower()
+    except (HearthError, TypeError) as error:
+        deep = isinstance(error, HearthError)
         message = "nested deeper than 250 levels" if deep else f"it cannot be stored: {error}"
         fault = Reject.of(
             Code.BAD_JSON, message, file=item.place, line=item.line, suggestion="save it as JSON in UTF-8"

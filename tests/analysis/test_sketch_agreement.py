@@ -15,7 +15,10 @@ from hearth.schemas.syntax import parse_program
 
 
 def drawn(path, **answers):
-    given = [{"title": "t", "descr": "", "prog": ["walk sofa"], "prefix": f"written:{name}"} for name in answers]
+    given = [
+        {"title": "t", "descr": "", "prog": ["walk sofa"] * sum(flags), "prefix": f"written:{name}"}
+        for name, flags in answers.items()
+    ]
     path.write_text(json.dumps({"answer": list(answers.values()), "input": given}))
     return path
 
@@ -37,7 +40,7 @@ def test_kappa_is_0_for_chance_and_1_for_equal_ones():
 
 
 def test_repeated_annotations_in_one_file_are_compared(tmp_path):
-    given = [{"title": "t", "descr": "", "prog": ["walk sofa"], "prefix": "written:P1"}] * 2
+    given = [{"title": "t", "descr": "", "prog": ["walk sofa"] * kept, "prefix": "written:P1"} for kept in (1, 2)]
     (tmp_path / "a.json").write_text(json.dumps({"answer": [[0, 1], [1, 1]], "input": given}))
     assert compare(tmp_path / "a.json", tmp_path / "a.json")["f1"] == pytest.approx(2 / 3, abs=1e-4)
 
@@ -50,7 +53,7 @@ def test_annotations_of_different_programs_are_an_error(tmp_path):
 @pytest.mark.parametrize("lines", [[""], [" ", "walk sofa"]])
 def test_an_annotation_with_empty_lines_is_of_no_program(tmp_path, knowledge, lines):
     given = {"title": "Sit", "descr": "", "prog": lines, "prefix": "b"}
-    (tmp_path / "a.json").write_text(json.dumps({"answer": [[1]], "input": [given]}))
+    (tmp_path / "a.json").write_text(json.dumps({"answer": [[1] * len(lines)], "input": [given]}))
     program, _ = parse_program("Sit\n\n\n\n[Walk] <sofa> (1)\n")
     script = Script("text:a", "a.txt", program)
     assert list(annotated(tmp_path / "a.json", "a.json", [script], knowledge)) == [None]
