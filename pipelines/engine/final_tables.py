@@ -36,7 +36,7 @@ from hearth.simulation.world.world import World
 from hearth.storage.files import replacing, sync_folder, write_json
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts, part_path, read_rows, write_batches
-from hearth.storage.repeated import repeated
+from hearth.storage.repeated_ids import repeated
 
 BATCH = 4_096
 

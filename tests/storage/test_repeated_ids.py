@@ -7,7 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from hearth.storage import repeated as module
-from hearth.storage.repeated import repeated
+from hearth.storage.repeated_ids import repeated
 
 
 def table(folder, *files):
