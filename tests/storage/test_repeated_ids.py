@@ -6,7 +6,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.storage import repeated as module
+from hearth.storage import repeated_ids as module
 from hearth.storage.repeated_ids import repeated
 
 
