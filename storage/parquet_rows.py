@@ -54,8 +54,8 @@ def row_lists(
 
 def _at_once(footer: Any) -> int:
     """How many rows are read at a time: a text that a part has once, all its rows may have."""
-    groups = (footer.row_group(number) for number in range(footer.num_row_groups))
-    sizes = (group.column(column).total_uncompressed_size for group in groups for column in range(group.num_columns))
+    # Of whole row groups: to ask for the parts of a column ends the process if their statistics are damaged.
+    sizes = [footer.row_group(number).total_byte_size for number in range(footer.num_row_groups)]
     return int(max(1, min(BATCH, _HELD // max(1, *sizes, 1))))
 
 

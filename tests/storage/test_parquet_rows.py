@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -46,6 +48,12 @@ def test_a_text_that_all_rows_have_is_read_row_by_row(tmp_path, monkeypatch):
         with pytest.raises(HearthError) as caught:
             list(row_lists(file, path.stat().st_size, "t"))
     assert caught.value.diagnostics[0].code == Code.FILE_TOO_LARGE
+
+
+def test_parts_of_columns_are_not_asked_for_before_they_are_read():
+    """Where their statistics of sizes are damaged, the library ends the process."""
+    group = SimpleNamespace(total_byte_size=1 << 20)  # it has no `column`
+    assert parquet_rows._at_once(SimpleNamespace(num_row_groups=1, row_group=lambda _: group)) == 64
 
 
 def test_a_date_that_no_calendar_has(tmp_path):
