@@ -80,7 +80,7 @@ def figures(dataset: Path) -> dict[str, Any]:
         they run.
 
     Raises:
-        HearthError: MISSING_FILE, if there is no dataset; DAMAGED_FILE.
+        HearthError: MISSING_FILE, without a dataset; DAMAGED_FILE, with a damaged one.
     """
     from hearth.datasets.damage import using
     from hearth.datasets.dataset import Dataset

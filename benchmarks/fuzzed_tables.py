@@ -26,19 +26,12 @@ def _layer(name: str) -> Room:
 
         return layer(name)
 
-    def reader(scratch: Path) -> One:
+    def read(folder: Path) -> Any:
         from attacks_on_knowledge import laid
 
-        folder = scratch / "layer"
-        folder.mkdir()
+        return laid(folder)
 
-        def one(data: bytes) -> Any:
-            (folder / name).write_bytes(data)
-            return laid(folder)
-
-        return one
-
-    return Room(example, reader)
+    return _in_folder(name, example, read)
 
 
 def _facts(name: str) -> Room:
@@ -49,15 +42,24 @@ def _facts(name: str) -> Room:
 
         return json.dumps(FACTS[name]).encode()
 
-    def reader(scratch: Path) -> One:
+    def read(folder: Path) -> Any:
         from attacks_on_knowledge import compared
 
-        folder = scratch / "facts"
+        return compared(folder)
+
+    return _in_folder(name, example, read)
+
+
+def _in_folder(name: str, example: Callable[[], bytes], read: Callable[[Path], Any]) -> Room:
+    """A file of that name, read by its folder."""
+
+    def reader(scratch: Path) -> One:
+        folder = scratch / "read"
         folder.mkdir()
 
         def one(data: bytes) -> Any:
             (folder / name).write_bytes(data)
-            return compared(folder)
+            return read(folder)
 
         return one
 

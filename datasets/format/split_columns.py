@@ -143,7 +143,7 @@ class SplitPrograms:
             texts.add(text, len(text) >= SHORTEST_TEXT)
         names, rows = _in_order(ids, parents.known)
         root = _roots(_above(names, rows, parents))
-        del ids, parents  # each column goes when it is no longer needed: all together are the most memory that is used
+        del ids, parents  # together all columns would be the peak of memory
         numbers, different = _different(steps)
         del steps
         near = Near.of(_taken(numbers, rows), different, near_sequences)
