@@ -163,8 +163,9 @@ def other_forms(folder: Path, table: str, form: str) -> Path:
     (path,) = sorted((folder / table).glob("*.parquet"))[:1]
     found = pq.read_table(path)
     text = next((field.name for field in found.schema if pa.types.is_string(field.type)), found.column_names[0])
-    if form == "garbage":
-        path.write_bytes(b"PAR1" + b"x" * 100 + b"PAR1")
+    written = {"garbage": b"PAR1" + b"x" * 100 + b"PAR1", "sizes": path.read_bytes().replace(*_SIZES)}
+    if form in written:
+        path.write_bytes(written[form])
         return signed(folder)
     forms: dict[str, Callable[[], pa.Table]] = {
         "no rows": lambda: found.slice(0, 0),
@@ -185,8 +186,11 @@ def other_forms(folder: Path, table: str, form: str) -> Path:
 
 FORMS = (
     "garbage", "no rows", "twice", "a column less", "a column twice", "numbers", "dictionary", "bytes", "dates",
-    "backwards",
+    "backwards", "sizes",
 )  # fmt: skip
+
+_SIZES = b"\x15\x0c\x19", b"\x15\x00\x19"
+"""A column of texts in a footer, and one of truth values: its statistics of sizes no longer fit it."""
 
 EVERY = 17
 """Of the changes of one value, attacks are every seventeenth; fuzzing draws from all."""

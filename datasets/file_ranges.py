@@ -5,7 +5,7 @@ from __future__ import annotations
 import glob
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from hearth.datasets.format.catalog import quoted
 from hearth.datasets.steady import version
@@ -13,6 +13,15 @@ from hearth.schemas.tables import KEYS
 
 _LAST = "\U0010ffff"
 """No id is greater."""
+
+
+_FOOTERS = """
+    SELECT file_name, min(stats_min_value), max(stats_max_value), bool_and(
+        coalesce(type = 'BYTE_ARRAY' AND stats_min_value <= stats_max_value, false)
+    )
+    FROM parquet_metadata($paths) WHERE path_in_schema = $key GROUP BY file_name
+"""
+"""Of each file with the column: its least and greatest value, and whether all its row groups say theirs."""
 
 
 class Range(NamedTuple):
@@ -41,20 +50,16 @@ def reading_between(folder: Path, table: str, low: str, high: str) -> str:
 
 @lru_cache(maxsize=16)
 def _ranges(folder: str, table: str, key: str, _: tuple[int, int] | None) -> tuple[Range, ...]:
-    """The ranges of all files; read again once a build has replaced the dataset."""
-    import pyarrow.parquet as pq
+    """The ranges of all files, where one may have all ids if its footer does not say which; read again after a build.
+
+    DuckDB reads the footers, as pyarrow ends the process where one has damaged statistics of sizes.
+    """
+    import duckdb
 
     paths = sorted(str(path) for path in Path(folder, table).glob("*.parquet"))
-    return tuple(Range(*_range(pq.read_metadata(path), key), path) for path in paths)
-
-
-def _range(footer: Any, key: str) -> tuple[str, str]:
-    """The least and the greatest id by a file's footer; all ids where it does not say."""
-    paths = [footer.schema.column(number).path for number in range(len(footer.schema))]
-    if key not in paths:
-        return "", _LAST
-    column = paths.index(key)
-    groups = [footer.row_group(number).column(column).statistics for number in range(footer.num_row_groups)]
-    if not groups or not all(group is not None and group.has_min_max for group in groups):
-        return "", _LAST
-    return min(str(group.min) for group in groups), max(str(group.max) for group in groups)
+    if not paths:
+        return ()
+    with duckdb.connect() as connection:
+        found = connection.execute(_FOOTERS, {"paths": [glob.escape(path) for path in paths], "key": key}).fetchall()
+    ranges = {path: Range(low, high, path) for path, low, high, whole in found if whole}
+    return tuple(ranges.get(path, Range("", _LAST, path)) for path in paths)

@@ -28,6 +28,24 @@ def row_lists(
     """The rows of an opened Parquet file, some at a time.
 
     Args:
+        file: as `row_batches` takes it, and what follows.
+
+    Raises:
+        HearthError: FILE_TOO_LARGE: it unpacks to more than a table of its size does.
+        ValueError: a value is none that Python has, as a date in the year 300,000; or not text.
+        pyarrow.ArrowException: it is damaged.
+    """
+    for batch in row_batches(file, packed, name, columns):
+        try:
+            yield batch.to_pylist()
+        except OverflowError as error:
+            raise ValueError(f"a date or time out of range: {error}") from error
+
+
+def row_batches(file: Any, packed: int, name: str, columns: Sequence[str] | None = None) -> Iterator[Any]:
+    """The rows of an opened Parquet file as `pyarrow.RecordBatch`es.
+
+    Args:
         file: a `pyarrow.parquet.ParquetFile`.
         packed: its size in bytes.
         name: of the file, in errors.
@@ -35,7 +53,6 @@ def row_lists(
 
     Raises:
         HearthError: FILE_TOO_LARGE: it unpacks to more than a table of its size does.
-        ValueError: a value is none that Python has, as a date in the year 300,000; or not text.
         pyarrow.ArrowException: it is damaged.
     """
     rows = file.metadata.num_rows
@@ -46,10 +63,7 @@ def row_lists(
         unpacked += batch.nbytes
         if unpacked > max(LARGEST_TABLE, MOST_PACKED * packed):
             raise _too_large(f"{packed:,} bytes that unpack to more than {unpacked:,}", name)
-        try:
-            yield batch.to_pylist()
-        except OverflowError as error:
-            raise ValueError(f"a date or time out of range: {error}") from error
+        yield batch
 
 
 def _at_once(footer: Any) -> int:

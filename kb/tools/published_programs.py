@@ -6,6 +6,7 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.parquet_rows import row_batches
 
 
 def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
@@ -14,26 +15,33 @@ def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
     Augmented programs are left out: they repeat what their parents say.
 
     Raises:
-        HearthError: there is no programs table, or it has no steps.
+        HearthError: there is no programs table, or it has no steps; FILE_TOO_LARGE: as of
+            `row_batches`.
     """
-    import pyarrow
-    import pyarrow.dataset
+    for path in _files(dataset):
+        yield from _programs_in(path)
 
-    files = _files(dataset)
+
+def _programs_in(path: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
+    """The steps of the programs in a file, but of augmented ones."""
+    import pyarrow
+    import pyarrow.compute as pc
+    import pyarrow.parquet as pq
+
     try:
-        table = pyarrow.dataset.dataset(files, format="parquet")
-    except (pyarrow.ArrowException, OSError, ValueError) as error:
-        raise HearthError.of(Code.BAD_TABLE, f"not Parquet: {error}", file=str(dataset)) from error
-    if "steps" not in table.schema.names:
-        raise HearthError.of(Code.BAD_TABLE, "the programs have no `steps`", file=str(dataset))
-    try:
-        origin = pyarrow.dataset.field("origin") != "augmented" if "origin" in table.schema.names else None
-        for batch in table.to_batches(columns=["steps"], filter=origin):
-            for steps in batch.column("steps").to_pylist():
-                yield [_step(step) for step in steps or ()]
+        # Not as a `pyarrow.dataset`, whose filters end the process where statistics in the file are damaged.
+        with pq.ParquetFile(path) as file:
+            names = file.schema_arrow.names
+            if "steps" not in names:
+                raise HearthError.of(Code.BAD_TABLE, "the programs have no `steps`", file=str(path))
+            columns = [name for name in ("steps", "origin") if name in names]
+            for batch in row_batches(file, path.stat().st_size, str(path), columns):
+                own = batch.filter(pc.field("origin") != "augmented") if "origin" in names else batch
+                for steps in own.column("steps").to_pylist():
+                    yield [_step(step) for step in steps or ()]
     except (pyarrow.ArrowException, OSError, TypeError, ValueError, LookupError, OverflowError) as error:
         message = f"not a table of programs: {type(error).__name__} {error}"
-        raise HearthError.of(Code.BAD_TABLE, message, file=str(dataset)) from error
+        raise HearthError.of(Code.BAD_TABLE, message, file=str(path)) from error
 
 
 def _step(step: Any) -> tuple[str, tuple[str, ...]]:
@@ -48,9 +56,9 @@ def _step(step: Any) -> tuple[str, tuple[str, ...]]:
     return names[0], names[1:]
 
 
-def _files(dataset: Path) -> list[str]:
+def _files(dataset: Path) -> list[Path]:
     if dataset.is_file():
-        return [str(dataset)]
+        return [dataset]
     folders = (dataset, dataset / "publish")
     found = [path for folder in folders for path in sorted(folder.glob("programs*.parquet"))]
     found = found or [path for folder in folders for path in sorted((folder / "programs").glob("*.parquet"))]
@@ -63,4 +71,4 @@ def _files(dataset: Path) -> list[str]:
         )
     if pipe := next((path for path in found if not path.is_file()), None):
         raise HearthError.of(Code.BAD_TABLE, "is not a regular file", file=str(pipe), suggestion="move it elsewhere")
-    return [str(path) for path in found]
+    return found

@@ -74,7 +74,7 @@ def test_a_folder_without_programs_is_bad_input(tmp_path):
     with pytest.raises(HearthError, match="no programs table"):
         list(programs(tmp_path))
     (tmp_path / "programs.parquet").write_bytes(b"PAR1")
-    with pytest.raises(HearthError, match="not Parquet"):
+    with pytest.raises(HearthError, match="not a table of programs"):
         list(programs(tmp_path))
 
 
