@@ -112,9 +112,9 @@ def _asked(folder: Path, aside: Path) -> Iterator[tuple[str, Callable[[], Any]]]
     from hearth.analysis.augment_figures import figures
     from hearth.datasets.diff import compare
     from hearth.datasets.export.formats import FORMATS, export
+    from hearth.datasets.published_programs import programs
     from hearth.datasets.report.write import write_report
     from hearth.datasets.verify import verify
-    from hearth.kb.tools.published_programs import programs
     from hearth.scoring.dataset_scores import score_dataset
 
     dataset = Dataset.open(folder, failures=True)

@@ -174,9 +174,9 @@ def mine(dataset: Path, least: int = 3, confidence: float = 0.3, kb: Path | None
     Example:
       python cli.py kb mine data_out
     """
+    from hearth.datasets.published_programs import programs
     from hearth.kb.tools.mine import as_lines
     from hearth.kb.tools.mine import mine as propose
-    from hearth.kb.tools.published_programs import programs
 
     found = propose(programs(dataset), read_knowledge(kb), least, confidence)
     if as_json:

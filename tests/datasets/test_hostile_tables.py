@@ -16,9 +16,9 @@ from hearth.challenges.challenge_tables import ChallengeData
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.diff import compare
 from hearth.datasets.export.formats import export
+from hearth.datasets.published_programs import programs
 from hearth.datasets.report.write import write_report
 from hearth.datasets.verify import verify
-from hearth.kb.tools.published_programs import programs
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES

@@ -6,9 +6,9 @@ import json
 
 import pytest
 
+from hearth.datasets.published_programs import programs
 from hearth.kb.tools.compare import compare
 from hearth.kb.tools.mine import as_lines, mine
-from hearth.kb.tools.published_programs import programs
 from hearth.schemas.diagnostics import HearthError
 
 READ = [
