@@ -87,7 +87,7 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     if faults:
         return Verdict(files, 0, 0, faults, note, odd)
     rows = sum(_count(dataset, table) for table in TABLES if (dataset.folder / table).is_dir())
-    wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset)]
+    wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset), *_sketches(dataset)]
     wrong = wrong or list(manifest_faults(dataset))
     if wrong:
         return Verdict(files, rows, 0, tuple(wrong), note, odd)
@@ -178,6 +178,15 @@ def _split(dataset: Dataset) -> Iterator[Diagnostic]:
         query = """SELECT DISTINCT execution_id FROM splits JOIN executions USING (execution_id)
             WHERE NOT executable ORDER BY 1"""
         yield from _listed(dataset, Code.BAD_TABLE, "splits", query, "{value} fails, and is in a split")
+
+
+def _sketches(dataset: Dataset) -> Iterator[Diagnostic]:
+    """Check that a sketch says of each step of its program whether it keeps it."""
+    query = """SELECT DISTINCT program_id FROM sketches s JOIN programs p USING (program_id)
+        WHERE len(s.keep) IS DISTINCT FROM len(p.steps) ORDER BY 1"""
+    yield from _listed(
+        dataset, Code.BAD_TABLE, "sketches", query, "that of {value} has not a flag for each of its steps"
+    )
 
 
 def _count(dataset: Dataset, table: str) -> int:

@@ -2,18 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 from hearth.datasets.format.codecs import steps_of
 from hearth.repair.sketch import inherited
+from hearth.schemas.failures import Code
 from hearth.schemas.published_rows import ProgramRow
-from hearth.schemas.stage_rows import SketchRow
+from hearth.schemas.stage_rows import RejectRow, SketchRow
 from hearth.schemas.syntax import print_step
+from hearth.storage.rejects import Reject
 
 PARENT = "_parent"
 """What the origin of an inherited annotation ends with."""
+
+
+ANNOTATED = ("kind", "program_id", "place", "description_id", "keep", "text")
+"""Columns of what `ingest` reads that an annotation has."""
+
+
+class Annotations(NamedTuple):
+    """Annotated sketches of published programs, and faults of those that do not fit their program."""
+
+    rows: list[SketchRow]
+    rejects: list[RejectRow]
+
+
+def fitting(given: Iterable[Mapping[str, Any]], steps_of: Callable[[list[str]], Mapping[str, int]]) -> Annotations:
+    """The annotations of programs that are published; the id of a description names its program.
+
+    Args:
+        given: rows of `ingest`, with the columns `ANNOTATED`.
+        steps_of: how many steps each of these programs has, by id; those that are not published are left out.
+    """
+    found = Annotations([], [])
+    rows = list(given)
+    steps = steps_of(sorted({str(row["description_id"]) for row in rows})) if rows else {}
+    for row in rows:
+        name = str(row["description_id"])
+        if name not in steps:
+            continue
+        if len(row["keep"]) != steps[name]:
+            found.rejects.append(_unfit(row, steps[name]))
+            continue
+        origin = "written" if name.startswith("written:") else "people"
+        kept = row["text"].removesuffix("\n").split("\n")
+        found.rows.append({"program_id": name, "origin": origin, "keep": row["keep"], "steps": kept})
+    return found
+
+
+def _unfit(row: Mapping[str, Any], steps: int) -> RejectRow:
+    """An annotation whose flags are not as many as the steps of its program."""
+    message = f"not a sketch of {row['description_id']}: flags {len(row['keep']):,}, steps of the program {steps:,}"
+    remedy = "set a flag for each step of the program"
+    fault = Reject.of(Code.BAD_JSON, message, file=row["place"], suggestion=remedy)
+    origin = {"stage": "publish", "record_id": row["program_id"], "partial": True, "fault": 0}
+    return cast(RejectRow, {**origin, **fault.rows()[0]})
 
 
 class Marked(NamedTuple):

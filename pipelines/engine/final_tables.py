@@ -22,7 +22,7 @@ from hearth.datasets.format.split_summary import summary
 from hearth.datasets.tensors import EDGE_TYPES
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.activity_tables import COUNTED, Activities
-from hearth.pipelines.engine.annotated_sketches import inherited_annotations
+from hearth.pipelines.engine.annotated_sketches import ANNOTATED, Annotations, fitting, inherited_annotations
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.stage import Job
 from hearth.pipelines.engine.stages import RECORDS, STAGES
@@ -50,18 +50,20 @@ def finish(job: Job, counts: Counts) -> None:
     _check_unique(job.folder)
     _write_activities(job)
     homes = job.context.homes
+    annotated = _annotated(job)
+    counts.partial += len(annotated.rejects)
     makers: dict[str, Callable[[], Iterable[Row]]] = {
         "homes": lambda: _homes(job, homes),
         "home_nodes": lambda: _home_nodes(job, homes),
         "home_edges": lambda: _home_edges(job, homes),
         "splits": lambda: _splits(job),
-        "sketches": lambda: _sketches(job),
+        "sketches": lambda: _sketches(job, annotated.rows),
         "frames": lambda: _frames(job, ""),
         "videos": lambda: _frames(job, "videos"),
         "clips": lambda: _frames(job, "clips"),
         "demonstration_frames": lambda: _frames(job, "demonstration_frames"),
         "vocabulary": lambda: _vocabulary(homes.knowledge),
-        "rejects": lambda: _rejects(job),
+        "rejects": lambda: (*_rejects(job), *annotated.rejects),
         "ledger": lambda: _ledger(job, counts),
     }
     for table, rows in makers.items():
@@ -107,28 +109,28 @@ def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
         yield from read_rows(path, columns)
 
 
-def _sketches(job: Job) -> Iterator[stage_rows.SketchRow]:
+def _sketches(job: Job, annotated: Iterable[stage_rows.SketchRow]) -> Iterator[stage_rows.SketchRow]:
     """Inferred and inherited sketches, annotated ones, and what augmented programs inherit of these."""
     yield from _rows(job, "augment", "sketches")
-    annotations = _annotated(job)
-    yield from annotations
-    of_program = {row["program_id"]: row for row in annotations}
+    yield from annotated
+    of_program = {row["program_id"]: row for row in annotated}
     if of_program:
         yield from inherited_annotations(_programs(job, ["program_id", "parent_id", "steps"]), of_program)
 
 
-def _annotated(job: Job) -> list[stage_rows.SketchRow]:
-    """Annotated sketches of published programs: their description's id names the program."""
-    found: list[stage_rows.SketchRow] = []
-    for row in _rows(job, "ingest", columns=["kind", "description_id", "keep", "text"]):
-        if row["kind"] == "sketch":
-            name = str(row["description_id"])
-            steps = row["text"].removesuffix("\n").split("\n")
-            origin = "written" if name.startswith("written:") else "people"
-            found.append({"program_id": name, "origin": origin, "keep": row["keep"], "steps": steps})
-    names = {row["program_id"] for row in found}
-    published = {row["program_id"] for row in _programs(job, ["program_id"]) if row["program_id"] in names}
-    return [row for row in found if row["program_id"] in published]
+def _annotated(job: Job) -> Annotations:
+    """Annotated sketches of published programs."""
+    given = (row for row in _rows(job, "ingest", columns=list(ANNOTATED)) if row["kind"] == "sketch")
+    return fitting(given, lambda names: _steps_of(job, names))
+
+
+def _steps_of(job: Job, names: list[str]) -> dict[str, int]:
+    """How many steps these programs have, by id, as far as they are published."""
+    found: dict[str, int] = {}
+    for path in sorted((job.folder / "programs").glob("part-*.parquet")):
+        table = pq.read_table(path, columns=["program_id", "steps"], filters=[("program_id", "in", names)])
+        found.update((row["program_id"], len(row["steps"])) for row in table.to_pylist())
+    return found
 
 
 def strength_used(job: Job) -> str:

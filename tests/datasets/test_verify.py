@@ -188,6 +188,17 @@ def test_a_ledger_that_does_not_add_up(copy):
     assert set(codes(copy)) == {"BAD_TABLE"}
 
 
+def test_a_sketch_without_a_flag_for_each_step(copy):
+    def shorter(table):
+        rows = table.to_pylist()
+        rows[0]["keep"] = rows[0]["keep"][:-1]
+        return pa.Table.from_pylist(rows, table.schema)
+
+    rewritten(copy, "sketches", shorter)
+    (fault,) = verify(copy).faults
+    assert (str(fault.code), fault.file) == ("BAD_TABLE", str(copy / "sketches"))
+
+
 def test_a_newer_dataset_is_not_guessed_at(copy):
     text = (copy / "manifest.json").read_text().replace('"format": 2', '"format": 99')
     (copy / "manifest.json").write_text(text)

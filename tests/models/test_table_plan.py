@@ -89,7 +89,10 @@ def test_a_training_that_was_stopped_goes_on_only_by_the_same_recipe(made, tmp_p
     for minutes in (0, 0, 1):
         with pytest.raises(KeyboardInterrupt):
             train(needed, made.out, tmp_path, minutes)
-    assert found == [False, True, False]
+    (state.parent / table_plan.RECIPE).write_text("{")  # another recipe: it cannot be read
+    with pytest.raises(KeyboardInterrupt):
+        train(needed, made.out, tmp_path, 1)
+    assert found == [False, True, False, False]
 
 
 def test_how_long_the_model_before_took_is_not_in_the_recipe(tmp_path):
