@@ -129,13 +129,14 @@ class Used:
 
 
 class Watch:
-    """Samples the descendant processes every half second: memory of the largest, processor time of all.
+    """Samples the descendant processes, every half second unless said: memory of the largest, processor time of all.
 
-    Workers are children of a process that is not waited for, so the system's counters for children miss them. The last
-    half second of a process is not seen.
+    Workers are children of a process that is not waited for, so the system's counters for children miss them. What a
+    process does after its last sample is not seen.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, every: float = 0.5) -> None:
+        self._every = every
         self._looks: list[tuple[float, float, int]] = []
         self._spent: dict[int, float] = {}
         self._over = threading.Event()
@@ -158,7 +159,7 @@ class Watch:
         return Used(last - first, after - before, max(size for _, _, size in looks))
 
     def _watch(self) -> None:
-        while not self._over.wait(0.5):
+        while not self._over.wait(self._every):
             found = below()
             self._spent.update(found)
             largest = max(map(resident, found), default=0)
