@@ -132,7 +132,7 @@ film-tables: .venv/.models  ## tables 4.2, 4.3 and 4.6 with three seeds, of data
 tables: .venv/.models $(call manifest,publish)  ## tables 4.4, 4.5 and 5.2 to 5.4 with three seeds, in data_out/tables: a night
 	@$(HEARTH) corpus synthesize 20000 --seed $(SEED) --out $(OUT)/synthetic.jsonl
 	@$(HEARTH) build $(OUT)/synthetic.jsonl --out $(OUT)/synthetic --seed $(SEED) --workers $(JOBS) --variants 0 --pictures 0 --videos 0 --homes-each 1 >/dev/null
-	@$(HEARTH) model tables $(OUT) $(OUT)/synthetic --out $(OUT)/tables
+	@$(HEARTH) model tables $(OUT) $(OUT)/synthetic --out $(OUT)/tables $(foreach number,4.4 4.5 5.2 5.3 5.4,--table $(number))
 
 test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools"

@@ -110,7 +110,8 @@ def document(found: Mapping[str, Section]) -> str:
         "`undisturbed` adds up the least time of each item of the work, over several passes: what a machine takes, at",
         "the least, whose processors are not taken away meanwhile. What cannot be timed in parts has no such figure.",
         "The plain reference does the heart of the same work in plain Python (`plain.py`, `tests/oracles`), often less",
-        "than we do; ratios compare the least times. One that falls by a third fails `make bench`.",
+        "than we do; ratios compare the least times. One that falls by a third fails `make bench`. `asked` is what we",
+        "aim at; a figure may miss it.",
         "",
         f"- Python {platform.python_version()}, {libraries}",
     ]

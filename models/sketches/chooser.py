@@ -1,6 +1,6 @@
 """The learned chooser on the exact planner: it chooses nodes for a sketch, and steps that the plan may do without.
 
-The planner and the mask see to it that each program runs; the network sees to what people would do (learning.md, 4).
+The planner and the mask see to it that each program runs; the network sees to what people would do.
 """
 
 from __future__ import annotations

@@ -131,6 +131,12 @@ def test_a_missing_stage_is_built_again_with_what_follows(built):
     assert make(built)[1] == ["augment", "render", "publish"]
 
 
+@pytest.mark.parametrize(("target", "tables"), [("tables", "4.4 4.5 5.2 5.3 5.4"), ("film-tables", "4.2 4.3 4.3b 4.6")])
+def test_tables_are_made_that_a_target_names_and_no_others(built, target, tables):
+    shown, _ = make(built, "-n", target)
+    assert re.findall(r"--table (\S+)", shown) == tables.split()
+
+
 @pytest.fixture(scope="module")
 def prerequisites(template):
     """What each stage's manifest depends on, itself or through earlier stages, as make understands it."""

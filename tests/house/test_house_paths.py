@@ -15,6 +15,7 @@ NAMES = ("*.md", "benchmarks/README.md", "data_raw/*.md", "data_raw/homes/*.md",
 DOCUMENTS = sorted(path for name in NAMES for path in ROOT.glob(name))
 SPAN = re.compile(r"`([^`\n]+)`|\]\(([^)\s]+)\)")
 FILE = re.compile(r"[\w.*-]+(?:/[\w.*-]+)*/?")
+PAGE = re.compile(r"\bdocs/[\w/-]+\.md\b")
 SUFFIXES = (".py", ".yaml", ".yml", ".csv", ".md", ".toml", ".lock", ".sh", ".sql", "Makefile", "/")
 WRITTEN = ("data_out/", "build/", "my_programs/", "dist/", "x.yaml", "x.ids.csv", "RESULTS.md")
 """Beginnings of paths that commands or users write."""
@@ -46,6 +47,14 @@ def missing(document: Path, known: frozenset[str]) -> list[str]:
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_every_path_exists(document):
     assert not missing(document, checkout())
+
+
+def test_documents_that_code_names_exist():
+    known = checkout()
+    code = [name for name in known if name.endswith(".py")]
+    named = {(name, page) for name in code for page in PAGE.findall((ROOT / name).read_text("utf-8"))}
+    assert len(named) > 3
+    assert not [each for each in named if each[1] not in known]
 
 
 def test_paths_are_seen(tmp_path):

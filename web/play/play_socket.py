@@ -1,4 +1,4 @@
-"""The socket of a game's page: `hello` and `act` in, the game out (docs/examples/playing.md has all messages)."""
+"""The socket of a game's page: `hello` and `act` in, the game out (docs/playing.md has all messages)."""
 
 from __future__ import annotations
 
