@@ -118,9 +118,9 @@ def memory() -> list[str]:
     (few, small), (many, large) = min(found.items()), max(found.items())
     kept = 1e6 * (large - small) / (many - few)
     return [
-        "Memory of workers does not grow with the dataset. The process that publishes keeps"
-        f"{kept / 1000:.1f} kB a program, {kept * WHOLE / 1e9:.0f} GB for {WHOLE:,} programs: one machine of the cluster",
-        "needs that much.",
+        "Memory of workers does not grow with the dataset. The process that publishes keeps",
+        f"{kept / 1000:.1f} kB a program, {kept * WHOLE / 1e9:.0f} GB for {WHOLE:,} programs: one machine of the",
+        "cluster needs that much.",
         "",
     ]
 
