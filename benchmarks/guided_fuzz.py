@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
 
 ROOT = Path(__file__).resolve().parents[1]
-LIMITS = ("-timeout=20", "-rss_limit_mb=2048", "-max_len=20000")
+LIMITS = ("-timeout=20", "-report_slow_units=20", "-rss_limit_mb=2048", "-max_len=20000")
 
 _TEXT = b"Sleep\nGo to bed.\n\n\n[Walk] <bedroom> (1)\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n[Sleep]\n"
 _GRAPH = (

@@ -32,7 +32,7 @@ def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> No
 
     text = sys.stdin.read() if sql == "-" else sql
     challenge = ChallengeData.found(dataset)
-    opened = Dataset.open(dataset) if challenge is None else challenge
+    opened = Dataset.open(dataset, remembers=False) if challenge is None else challenge
     columns, found = opened.rows(text, rows + 1 if rows and not as_json else None)
     if as_json:
         names = _different(columns)
