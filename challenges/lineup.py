@@ -120,8 +120,11 @@ class Lineup:
             own: Agent = made()
         except (Exception, SystemExit) as error:
             raise HearthError.of(Code.BAD_ARGUMENT, f"{self.helper}: {type(error).__name__}: {error}") from error
-        if not callable(getattr(own, "reset", None)) or not callable(getattr(own, "act", None)):
-            raise HearthError.of(Code.BAD_ARGUMENT, f"{self.helper} has no `reset` and `act`", suggestion="a helper")
+        lacking = [f"`{name}`" for name in ("reset", "act") if not callable(getattr(own, name, None))]
+        if lacking:
+            message = f"{self.helper} has no {' and '.join(lacking)}"
+            suggestion = "write reset(self, observation, goal, seed) and act(self, observation, legal)"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=suggestion)
         return own
 
 

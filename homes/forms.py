@@ -36,7 +36,8 @@ def form(class_name: str, knowledge: Knowledge) -> Form | None:
     known = knowledge.objects.get(class_name)
     if known is None:
         return None
-    found = _table().get(class_name, Form((0.0, 0.0, 0.0)))
+    table = _table()
+    found = table.get(class_name) or table.get(known.same_as or "") or Form((0.0, 0.0, 0.0))
     return found if all(found.size) else replace(found, size=known.size)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from operator import is_
 
 from hearth.schemas.change import Change
@@ -194,7 +195,10 @@ def check(literal: Literal[Name], home: Home) -> LiteralFault | None:
     elif not terms:
         return f"`{literal.name}` is not a known action", Code.UNKNOWN_ACTION, _near(literal.name, home, "action")
     elif literal.name not in (STATE_ID if len(terms) == 1 else RELATED if len(terms) == 2 else ()):
-        return f"{literal.name} is not a known {'state' if len(terms) == 1 else 'relation'}", Code.SYNTAX, ""
+        kind, names = ("state", STATE_ID) if len(terms) == 1 else ("relation", RELATED)
+        near = get_close_matches(literal.name, names, n=1)
+        meant = f"did you mean `{near[0]}`?" if near else ""
+        return f"{literal.name} is not a known {kind}", Code.SYNTAX, meant
     return next((fault for term in terms if (fault := unknown(term, home))), None)
 
 

@@ -41,9 +41,11 @@ def read_columns(text: str) -> dict[str, str]:
 
 
 def shown(place: str, columns: FieldColumns) -> str:
-    """A sentence that names the columns of a table."""
+    """A sentence that names the columns of a table, and which of the usual fields have none."""
     named = ", ".join(f"{field}={name}" for field, name in columns.items())
-    return f"Columns of {place}: {named or 'none is known'}. `--columns` names others."
+    lacking = [field for field in ("program", "title", "description") if field not in columns]
+    none = f"; none for {' and '.join(lacking)}" if named and lacking else ""
+    return f"Columns of {place}: {named or 'none is known'}{none}. `--columns` names others."
 
 
 def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -> dict[str, str]:

@@ -101,6 +101,15 @@ def test_what_is_not_seen_changes_nothing_that_a_helper_is_told_of_places(name, 
     assert helper.places(whole.observe(1)) == true
 
 
+def test_the_method_that_a_helper_lacks_is_named_alone(tmp_path):
+    (tmp_path / "mine.py").write_text("class H:\n    def act(self, observation, legal): return None\n")
+    lineup = Lineup("human_like", f"{tmp_path}/mine.py:H").checked()
+    with pytest.raises(HearthError) as found:
+        played(Job(FEW.tasks[0], 0, lineup, True, None, default))
+    (fault,) = found.value.diagnostics
+    assert fault.message.endswith(":H has no `reset`") and "reset(self, observation, goal, seed)" in fault.suggestion
+
+
 def test_what_cannot_be_inferred_or_learned_is_refused_with_a_code(tmp_path):
     pytest.importorskip("torch")
     from hearth.analysis.online_inference import inference

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hearth.homes import library
+from hearth.homes.forms import form
 from hearth.homes.geometry import bottom, footprint, intrusion, top
 from hearth.homes.plans.floor import stands_on_floor
 from hearth.homes.plans.layout import read
@@ -164,3 +165,7 @@ def test_a_damaged_plan_is_read_or_refused_but_never_breaks(pick):
     except HearthError as error:
         assert error.diagnostics
         assert all(fault.file == "damaged.yaml" for fault in error.diagnostics)
+
+
+def test_a_class_by_another_name_has_its_form():
+    assert form("sofa", default()) == form("couch", default())

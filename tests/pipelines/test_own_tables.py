@@ -14,7 +14,7 @@ from hearth.kb.language.plan_lines import plan_line
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items
 from hearth.pipelines.ingest import read as read_item
-from hearth.pipelines.readers.columns import guessed, read_columns
+from hearth.pipelines.readers.columns import guessed, read_columns, shown
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.rejects import Reject
 
@@ -214,3 +214,10 @@ def test_a_folder_takes_what_can_be_read_and_lists_the_rest(write, tmp_path):
 def test_a_build_of_which_nothing_is_left_says_so(write, tmp_path, text, message):
     result = run("build", write("a.txt", text), "--out", tmp_path / "out", "--home", "maple", "-j", 1, status=1)
     assert message in result.output and not (tmp_path / "out/publish").exists()
+
+
+def test_fields_without_a_column_are_named():
+    columns = guessed(("Activity", "What they said", "Steps"), {})
+    assert shown("mine.csv", columns).startswith(
+        "Columns of mine.csv: program=Steps, title=Activity; none for description."
+    )

@@ -267,3 +267,10 @@ def test_of_alternatives_one_must_begin_to_hold(maple, goal, reached):
 def test_a_goal_of_more_parts_than_anybody_wants_is_refused(maple):
     with pytest.raises(HearthError, match="more than 1,000"):
         read_goal(" and ".join(["ON(plate, table)"] * 1_001), maple)
+
+
+@pytest.mark.parametrize(("text", "meant"), [("HOLD(agent, cup)", "HOLDS"), ("OPENED(fridge)", "OPEN")])
+def test_misspelt_relations_and_states_are_guessed(maple, text, meant):
+    with pytest.raises(HearthError) as caught:
+        read_goal(text, maple)
+    assert caught.value.diagnostics[0].suggestion == f"did you mean `{meant}`?"
