@@ -70,7 +70,7 @@ def lcs(
         table.append([name, *(found[place] for found in means.values()), ""])
     output.table(["id", *(name.replace("_", " ") for name in means), ""], table)
     noted = ", ".join(f"{counts[name]} {words}" for name, words in NOTES.items())
-    print(f"\n{output.counted(len(pairs), 'prediction')}, {noted}")
+    print(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
     print("\n".join(signatures))
 
 
@@ -189,7 +189,9 @@ def _means(group: Summary, columns: Sequence[str]) -> list[float | None]:
 
 
 def _sentence(summary: Summary) -> str:
-    text = f"{output.counted(summary.count, 'prediction')}, {summary.missing} missing, {summary.empty} empty"
+    text = (
+        f"{output.counted(summary.count, 'reference')}; predictions: {summary.missing} missing, {summary.empty} empty"
+    )
     if summary.incomparable:
         text += f"; {summary.incomparable} without F1 and goal, because the reference does not run"
     if summary.inexact:

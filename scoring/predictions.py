@@ -129,7 +129,8 @@ def _unknown_ids(rows: Iterable[Row], known: Mapping[str, Lines], path: Path) ->
     for number, row in enumerate(unknown):
         # Searching similar names is slow among many ids; faults that are not shown need none.
         near = get_close_matches(row.id, known, n=1) if number < SHOWN else []
-        suggestion = f"did you mean `{near[0]}`?" if near else "ids are those of the references"
+        example = f", as `{next(iter(known))}`" if known else ""
+        suggestion = f"did you mean `{near[0]}`?" if near else f"ids are those of the references{example}"
         yield Diagnostic(
             Code.UNKNOWN_ID, f"no reference has the id `{row.id}`", str(path), row.line, suggestion=suggestion
         )

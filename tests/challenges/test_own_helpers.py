@@ -4,7 +4,7 @@ import pytest
 
 from hearth.challenges.challenge_tables import _once, _trajectory
 from hearth.challenges.episodes import Job, again, played
-from hearth.challenges.lineup import Lineup
+from hearth.challenges.lineup import Lineup, load
 from hearth.challenges.result_files import read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
@@ -56,9 +56,8 @@ def test_a_helper_that_was_changed_is_another_helper(tmp_path):
 )
 def test_a_helper_that_cannot_be_made_is_refused_with_a_code(tmp_path, text):
     (tmp_path / "mine.py").write_text(text)
-    lineup = Lineup("human_like", f"{tmp_path}/mine.py:H").checked()
     with pytest.raises(HearthError) as found:
-        played(Job(FEW.tasks[0], 0, lineup, True, None, default))
+        played(Job(FEW.tasks[0], 0, Lineup("human_like", f"{tmp_path}/mine.py:H").checked(), True, None, default))
     assert found.value.diagnostics[0].code == Code.BAD_ARGUMENT
 
 
@@ -108,6 +107,15 @@ def test_the_method_that_a_helper_lacks_is_named_alone(tmp_path):
         played(Job(FEW.tasks[0], 0, lineup, True, None, default))
     (fault,) = found.value.diagnostics
     assert fault.message.endswith(":H has no `reset`") and "reset(self, observation, goal, seed)" in fault.suggestion
+
+
+def test_a_class_that_a_file_lacks_is_named_with_those_it_has(tmp_path):
+    (tmp_path / "mine.py").write_text("from pathlib import Path\nclass Lazy:\n    pass\nOther = 3\n")
+    for name in ("Nope", "Other"):
+        with pytest.raises(HearthError) as found:
+            load(f"{tmp_path}/mine.py:{name}")
+        (fault,) = found.value.diagnostics
+        assert fault.message.endswith(f"has no class `{name}`") and fault.suggestion == "its classes: `Lazy`"
 
 
 def test_what_cannot_be_inferred_or_learned_is_refused_with_a_code(tmp_path):

@@ -91,7 +91,7 @@ def test_an_unknown_id_is_named_with_the_nearest(write):
     path = write({"id": "watch_tv2", "predicted": ""}, {"id": "zzz", "predicted": ""})
     assert faults(path, {"watch_tv": "", "read": ""}) == [
         (Code.UNKNOWN_ID, 1, "no reference has the id `watch_tv2`", "did you mean `watch_tv`?"),
-        (Code.UNKNOWN_ID, 2, "no reference has the id `zzz`", "ids are those of the references"),
+        (Code.UNKNOWN_ID, 2, "no reference has the id `zzz`", "ids are those of the references, as `watch_tv`"),
     ]
 
 
