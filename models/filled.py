@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import torch
+from torch.overrides import TorchFunctionMode
 
 Network = TypeVar("Network", bound=torch.nn.Module)
 
@@ -19,7 +20,7 @@ def filled(make: Callable[[], Network], weights: Mapping[str, np.ndarray]) -> Ne
     Raises:
         ValueError: its weights have other names or shapes, or are not numbers.
     """
-    with torch.device("meta"):
+    with torch.device("meta"), _Uninitialised():
         wanted = {name: _shape(value) for name, value in make().state_dict().items()}
     given = {name: _shape(value) for name, value in weights.items()}
     if wanted != given:
@@ -31,6 +32,19 @@ def filled(make: Callable[[], Network], weights: Mapping[str, np.ndarray]) -> Ne
     network.load_state_dict({name: torch.tensor(value) for name, value in weights.items()})
     network.eval()
     return network
+
+
+class _Uninitialised(TorchFunctionMode):
+    """Leaves weights as they are where a network would draw them.
+
+    Without memory there is nothing to draw, and PyTorch would import its compiler for it, which takes seconds.
+    """
+
+    def __torch_function__(self, function: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
+        given = kwargs or {}
+        if getattr(function, "__module__", "") == "torch.nn.init":
+            return args[0] if args else given["tensor"]
+        return function(*args, **given)
 
 
 def _shape(array: np.ndarray | torch.Tensor) -> tuple[int, ...]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -233,3 +235,13 @@ def test_values_too_deep_in_one_another(folder, part):
     document[part]["deep"] = "DEEP"
     (folder / NAME).write_text(json.dumps(document).replace('"DEEP"', "[" * 300 + "]" * 300))
     assert code(folder) == Code.DAMAGED_FILE
+
+
+def test_a_model_is_restored_without_the_compiler_of_pytorch():
+    """Its import takes longer than everything else that reading with a model does."""
+    asked = (
+        "import sys; from hearth.models.model_registry import TRAINED, restore_any; "
+        "restore_any(TRAINED / 'goal-inference'); print('torch._dynamo' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
