@@ -162,8 +162,11 @@ def load(place: str) -> Any:
         raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {type(error).__name__}: {error}") from error
     found = getattr(module, name, None)
     if not callable(found):
-        own = (value for value in vars(module).values() if getattr(value, "__module__", "") == module.__name__)
-        classes = ", ".join(f"`{value.__name__}`" for value in own if isinstance(value, type))
+        classes = ", ".join(
+            f"`{value.__name__}`"
+            for value in vars(module).values()
+            if isinstance(value, type) and value.__module__ == module.__name__
+        )
         suggestion = f"its classes: {classes}" if classes else "write a class in it"
         raise HearthError.of(Code.BAD_ARGUMENT, f"`{file}` has no class `{name}`", suggestion=suggestion)
     return found

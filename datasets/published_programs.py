@@ -15,8 +15,8 @@ def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
     Augmented programs are left out: they repeat what their parents say.
 
     Raises:
-        HearthError: there is no programs table, or it has no steps; FILE_TOO_LARGE: as of
-            `row_batches`.
+        HearthError: MISSING_FILE: no programs table is there. BAD_TABLE: it has no steps, or is damaged.
+            FILE_TOO_LARGE: it unpacks to more than a table of its size does.
     """
     for path in _files(dataset):
         yield from _programs_in(path)

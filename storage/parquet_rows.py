@@ -28,7 +28,7 @@ def row_lists(
     """The rows of an opened Parquet file, some at a time.
 
     Args:
-        file: as `row_batches` takes it, and what follows.
+        file, packed, name, columns: those of `row_batches`.
 
     Raises:
         HearthError: FILE_TOO_LARGE: it unpacks to more than a table of its size does.

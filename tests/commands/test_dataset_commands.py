@@ -46,6 +46,10 @@ def test_a_limited_number_of_rows_is_printed_with_a_note(dataset):
     assert "more than" not in run("query", dataset, SQL, "--rows", "0").stdout
 
 
+def test_nothing_of_the_files_is_kept_for_a_query_that_will_not_come(dataset):
+    assert answer("query", dataset, "SELECT current_setting('parquet_metadata_cache') AS kept") == [{"kept": False}]
+
+
 @pytest.mark.parametrize(
     ("sql", "why"), [("SELECT nothing FROM programs", "nothing"), ("COPY programs TO '{}'", "can only be read")]
 )

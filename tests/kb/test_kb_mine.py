@@ -78,6 +78,20 @@ def test_a_folder_without_programs_is_bad_input(tmp_path):
         list(programs(tmp_path))
 
 
+def test_programs_are_read_where_statistics_of_sizes_are_damaged(tmp_path):
+    """A filter of `pyarrow.dataset` over such a file ends the process."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = tmp_path / "programs.parquet"
+    steps = [[{"action": "Grab", "objects": [{"name": "cup", "instance": 1}]}]]
+    pq.write_table(pa.table({"steps": steps, "origin": ["crowd"]}), path)
+    texts, truths = b"\x15\x0c\x19", b"\x15\x00\x19"  # the type of a column's part, and its encodings
+    assert texts in path.read_bytes()
+    path.write_bytes(path.read_bytes().replace(texts, truths))
+    assert list(programs(path)) == [[("Grab", ("cup",))]]
+
+
 def test_the_comparison_tells_held_corrected_and_missing_facts_apart(knowledge, tmp_path):
     write = {
         "properties_data.json": {"cup": ["GRABBABLE", "EATABLE"], "sofa": ["SITTABLE"], "teeth": []},
