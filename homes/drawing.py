@@ -71,17 +71,17 @@ def shapes(layout: Layout) -> Iterator[Shape]:
     things = layout.things
     yield from (Shape("rect", footprint(t.box), COLOURS["mat"]) for t in things if t.mount == "flat")
     yield from _shell(things)
-    for thing in things:
-        if thing.mount in ("floor", "wall") and thing.class_name != "wall":
-            yield from _furniture(thing)
+    furniture = [thing for thing in things if thing.mount in ("floor", "wall") and thing.class_name != "wall"]
+    for thing in furniture:
+        yield from _furniture(thing)
     for thing in things:
         if thing.mount in ("item", "sunk"):
             yield Shape("rect", footprint(thing.box), SMALL if thing.on else "#7f7f7f", "#ffffff")
     yield from _furniture(layout.character, PERSON)
+    covered = [footprint(thing.box) for thing in (*furniture, layout.character)]
     for room in layout.plan.rooms:
-        yield Shape("text", room.rect, "#00000077", text=room.name, size=0.24)
-    named = (thing for thing in things if thing.mount == "floor" and thing.class_name != "wall")
-    yield from map(_label, (*named, layout.character))
+        yield _room_label(room.name, room.rect, covered)
+    yield from map(_label, (*(thing for thing in furniture if thing.mount == "floor"), layout.character))
 
 
 def _shell(things: tuple[Thing, ...]) -> Iterator[Shape]:
@@ -102,6 +102,27 @@ def _furniture(thing: Thing, colour: str = "") -> Iterator[Shape]:
     if thing.yaw is not None:
         edge = before(rect, thing.yaw, -min(0.05, rect.width / 3, rect.depth / 3))
         yield Shape("rect", edge, "#6b5535")
+
+
+_LETTER = 0.24
+"""Height of the letters of a room's name, metres, in rooms that have as much space."""
+
+_STEPS = 6
+"""Places tried from the middle of a room to each side."""
+
+
+def _room_label(name: str, room: Rect, furniture: Sequence[Rect]) -> Shape:
+    """The name of a room, where it covers least furniture, as near to the middle as that allows."""
+    depth = min(_LETTER, 0.95 * room.width / (0.6 * max(len(name), 1)))
+    width = 0.6 * depth * len(name)
+    spare = room.width - width, room.depth - depth
+    places = [(across, up) for across in range(-_STEPS, _STEPS + 1) for up in range(-_STEPS, _STEPS + 1)]
+    found = []
+    for across, up in sorted(places, key=lambda place: place[0] ** 2 + place[1] ** 2):
+        x, z = room.x0 + spare[0] * (0.5 + 0.45 * across / _STEPS), room.z0 + spare[1] * (0.5 + 0.45 * up / _STEPS)
+        found.append(Rect(x, z, x + width, z + depth))
+    best = min(found, key=lambda rect: sum(rect.overlap(thing) for thing in furniture))
+    return Shape("text", best, "#00000077", text=name, size=depth)
 
 
 def _label(thing: Thing) -> Shape:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from hearth.homes import drawing, library
+from hearth.homes.geometry import footprint
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 
@@ -47,6 +48,19 @@ def test_names_of_furniture_are_written_over_what_stands_on_it():
     last = max(number for number, shape in enumerate(drawn) if shape.kind == "rect")
     assert all(number > last for number, shape in enumerate(drawn) if shape.kind == "text")
     assert {"character", "bed", "fridge"} <= {shape.text for shape in drawn if shape.kind == "text" and shape.edge}
+
+
+@pytest.mark.parametrize("name", library.names())
+def test_the_name_of_a_room_lies_on_its_floor(name):
+    layout = library.load_layout(name, default())
+    names = [shape for shape in drawing.shapes(layout) if shape.kind == "text" and not shape.edge]
+    assert [shape.text for shape in names] == [room.name for room in layout.plan.rooms]
+    standing = [
+        footprint(thing.box) for thing in layout.things if thing.mount == "floor" and thing.class_name != "wall"
+    ]
+    for shape, room in zip(names, layout.plan.rooms, strict=True):
+        assert room.rect.contains(shape.rect)
+        assert sum(shape.rect.overlap(each) for each in standing) < 0.1 * shape.rect.width * shape.rect.depth
 
 
 def test_blinds_are_drawn_as_curtains():
