@@ -33,6 +33,7 @@ if __name__ == "__main__":
 import typer
 from typer.core import TyperGroup
 
+from hearth.commands.program_name import program_name, show_name
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
@@ -116,13 +117,15 @@ def load(name: str) -> Any:
         for each in target.registered_commands:
             described(each.callback)
         target.rich_markup_mode = None
-        command = typer.main.get_group(target)
+        command: Any = typer.main.get_group(target)
         command.name = name
-        return command
-    described(target)
-    single = typer.Typer(add_completion=False, rich_markup_mode=None)
-    single.command(name)(target)
-    return typer.main.get_command(single)
+    else:
+        described(target)
+        single = typer.Typer(add_completion=False, rich_markup_mode=None)
+        single.command(name)(target)
+        command = typer.main.get_command(single)
+    show_name(command)
+    return command
 
 
 class Commands(TyperGroup):
@@ -272,8 +275,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # half characters, and terminals that have few
-    script = Path(sys.argv[0]).name == "cli.py"
-    app(prog_name="python cli.py" if script else "hearth")
+    command = typer.main.get_command(app)
+    show_name(command)
+    command(prog_name=program_name())
 
 
 if __name__ == "__main__":

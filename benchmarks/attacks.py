@@ -362,6 +362,9 @@ def main() -> int:
                     with contextlib.suppress(BrokenPipeError):
                         print(f"{attack.group:10} {attack.name!a:66} {done or 'nothing'}", flush=True)
     print(f"{count} attacks, {worked} worked")
+    if not count:
+        print(f"no attack is of the group {asked.only!a}; {__file__} without --only prints them all", file=sys.stderr)
+        return 2
     return int(worked > 0)
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from hearth.commands import output
+from hearth.commands.program_name import program_name
 
 if TYPE_CHECKING:
     from hearth.pipelines.build import Funnel
@@ -280,11 +281,9 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
     head = ("records in", "passed", "rejected", "parts rejected", "rows out", "records are", "reasons")
     output.table(("stage", *head), rows)
     if whole and found.dataset:
-        command = Path(sys.argv[0]).name
-        program = "python cli.py" if command == "cli.py" else "hearth"
         print(f"\nThe dataset is in {found.dataset}. Try next:")
         for line in _NEXT:
-            print(f"  {program} {line.format(out=out)}")
+            print(f"  {program_name()} {line.format(out=out)}")
 
 
 _NEXT = (

@@ -8,19 +8,13 @@ from typing import TypeVar
 from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.groups import groups, relation_of, state_of, tool_of
 from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
+from hearth.kb.spelling import key_of, near_names
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import STATES
 
 K = TypeVar("K")
 V = TypeVar("V")
-
-_DROPPED = {ord(letter): None for letter in " _-"}
-
-
-def key_of(name: str) -> str:
-    """A name for comparison: case, spaces, hyphens and underscores left out."""
-    return name.lower().translate(_DROPPED)
 
 
 def grouped(pairs: Iterable[tuple[K, V]]) -> dict[K, tuple[V, ...]]:
@@ -296,11 +290,7 @@ class Knowledge:
 
     def suggest(self, name: str, kind: str = "object") -> tuple[str, ...]:
         """The known names nearest to one that is not known, best first; `kind` is `object` or `action`."""
-        from rapidfuzz import process, utils
-
-        names = self.action_spellings if kind == "action" else self.object_spellings
-        close = process.extract(key_of(name), names, processor=utils.default_process, limit=5, score_cutoff=65)
-        return tuple(dict.fromkeys(names[key] for _, _, key in close))[:3]
+        return near_names(name, self.action_spellings if kind == "action" else self.object_spellings)
 
     @cached_property
     def action_spellings(self) -> dict[str, str]:

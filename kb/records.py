@@ -51,10 +51,10 @@ class Requirement:
         parts = sorted(self.any_of)
         if self.all_of:
             parts.append(" and ".join(sorted(self.all_of)))
-        parts += [f"a {name}" for name in sorted(self.classes | self.also)]
+        parts += [f"`{name}`" for name in sorted(self.classes | self.also)]
         parts += [f"a class named *{part}*" for part in self.contains]
         text = " or ".join(parts) or "nothing"
-        return f"{text}, not {', '.join(sorted(self.never))}" if self.never else text
+        return f"{text}, not {', '.join(f'`{name}`' for name in sorted(self.never))}" if self.never else text
 
 
 class Condition(NamedTuple):

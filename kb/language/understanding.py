@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-from hearth.kb.knowledge import Knowledge, key_of
+from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.phrases import Parse, parses
 from hearth.kb.records import Action
+from hearth.kb.spelling import key_of
 
 ACCEPTED = 0.75
 """The similarity from which the nearest valid instruction is accepted as the meaning."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from hearth.kb.knowledge import Knowledge, key_of
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.spelling import key_of
 
 LONGEST = 3
 """Words of the longest name that is looked for."""

@@ -5,7 +5,8 @@ from collections.abc import Iterator, Mapping
 from difflib import unified_diff
 
 from hearth.kb import grammar
-from hearth.kb.knowledge import Knowledge, key_of
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.spelling import key_of
 from hearth.pipelines.checks import programs, special
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code

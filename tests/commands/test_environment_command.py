@@ -78,7 +78,7 @@ def test_realism_reads_a_release_and_draws_heat_maps(real_data, tmp_path):
 
 def test_each_help_has_an_example():
     for command in ("conditions", "realism", "diversity", "preconditions"):
-        assert f"python cli.py environment {command}" in run(command, "--help").stdout
+        assert f"hearth environment {command}" in run(command, "--help").stdout
 
 
 def test_one_environment_is_drawn_for_a_program_a_goal_or_nothing(watching, tmp_path):

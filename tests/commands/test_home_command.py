@@ -83,7 +83,7 @@ def test_a_generated_plan_is_a_home_like_others(tmp_path):
 
 def test_each_help_has_an_example():
     for command in ("list", "show", "lint", "convert", "edit", "generate", "stats"):
-        assert f"python cli.py home {command}" in run(command, "--help").stdout
+        assert f"hearth home {command}" in run(command, "--help").stdout
 
 
 def test_things_are_added_moved_removed_and_set(tmp_path):

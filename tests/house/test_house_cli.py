@@ -37,11 +37,23 @@ DOCUMENTS = {("kb", "export"), ("render-program",), ("render-sheet",)}
 """Commands whose output is a document or pictures in a format of their own."""
 
 
+@pytest.mark.parametrize("words", [("check",), ("kb", "find"), ()], ids=" ".join)
+@pytest.mark.parametrize(("script", "name"), [("cli.py", "python cli.py"), ("/usr/bin/hearth", "hearth")])
+def test_help_shows_the_name_that_was_typed(monkeypatch, capsys, words, script, name):
+    monkeypatch.setattr("sys.argv", [script, *words, "--help"])
+    with pytest.raises(SystemExit):
+        cli.main()
+    shown = capsys.readouterr().out
+    assert f"Usage: {' '.join((name, *words))} [OPTIONS]" in shown
+    assert f"  {' '.join((name, *words))} " in shown.partition("Example")[2]
+    assert name == "python cli.py" or "cli.py" not in shown
+
+
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
 def test_help_shows_an_example_and_json(words):
     result = call(*words, "--help")
     assert result.exit_code == 0, result.output
-    assert f"python cli.py {' '.join(words)}" in result.output.partition("Example")[2], "no example of this command"
+    assert f"hearth {' '.join(words)}" in result.output.partition("Example")[2], "no example of this command"
     assert "--json" in result.output or words in DOCUMENTS
     assert "\b" not in result.output
 

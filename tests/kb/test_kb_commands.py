@@ -95,4 +95,4 @@ def test_a_form_that_there_is_not_is_wrong_usage():
 
 @pytest.mark.parametrize("command", ["show", "action", "find", "path", "lint", "diff", "mine", "export"])
 def test_every_command_shows_an_example(command):
-    assert f"python cli.py kb {command}" in run(command, "--help")
+    assert f"hearth kb {command}" in run(command, "--help")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.kb.knowledge import key_of
+from hearth.kb.spelling import key_of, near_names
 from hearth.schemas.failures import Code
 from hearth.schemas.vocabulary import OPPOSITE, PROPERTIES, STATES
 from hearth.simulation.actions.registry import ACTIONS
@@ -81,6 +81,20 @@ def test_unknown_names_are_none_and_get_suggestions(knowledge):
     assert knowledge.suggest("televison")[0] == "television"
     assert knowledge.suggest("Swichon", "action")[0] == "SwitchOn"
     assert knowledge.suggest("xqzzw") == ()
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "near"),
+    [
+        ("action", "Wlak", ("WakeUp", "Walk")), ("action", "Listen", ()), ("action", "Use", ()),
+        ("action", "PutBak", ("PutBack", "PutObjBack")), ("object", "televison", ("television",)),
+        ("object", "garden_table", ("table",)), ("object", "laptop computer", ("computer", "laptop")),
+        ("object", "remote", ("remote_control",)), ("object", "tv", ()), ("object", "s", ()), ("object", "", ()),
+    ],
+)  # fmt: skip
+def test_names_are_suggested_that_are_alike_or_of_the_same_words(knowledge, kind, name, near):
+    spellings = knowledge.action_spellings if kind == "action" else knowledge.object_spellings
+    assert near_names(name, {key: known for key, known in spellings.items() if key != "tv"}) == near
 
 
 @pytest.mark.parametrize(

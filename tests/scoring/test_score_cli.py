@@ -137,7 +137,7 @@ def test_a_row_may_have_a_goal_of_its_own(score, tmp_path):
 def test_help_shows_an_example(score, command):
     found = score(command, "--help")
     assert found.exit_code == 0
-    assert f"python cli.py score {command}" in found.output
+    assert f"hearth score {command}" in found.output
 
 
 @pytest.mark.skipif("HEARTH_REFRESH" in os.environ, reason="golden files are being written")
