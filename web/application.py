@@ -14,7 +14,7 @@ from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection, Request
-from starlette.responses import HTMLResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
@@ -32,7 +32,7 @@ from hearth.web.security import Security
 from hearth.web.sessions import Session
 from hearth.web.store import Store
 from hearth.web.third_party_scripts import FETCHED
-from hearth.web.visit import Visit, Web, json_answer, render
+from hearth.web.visit import Visit, Web, by_browser, json_answer, render
 from hearth.web.web_errors import WebError
 
 HERE = Path(__file__).resolve().parent
@@ -198,8 +198,10 @@ async def _refused(web: Web, asked: Request, error: Exception) -> Response:
     """The answer to a request that is refused: a page for browsers, else JSON."""
     fault = _fault_of(error)
     status = error.status_code if isinstance(error, HTTPException) else fault.status
-    if "text/html" not in asked.headers.get("accept", ""):
+    if not by_browser(asked):
         return json_answer(fault.as_json(), status)
+    if fault.instead:
+        return RedirectResponse(fault.instead, 303)
     begins = fault.code is Code.NO_SESSION
     page = render(web, "fault.html", None, fault=fault, begins=begins, back=asked.url.path if begins else "/")
     return HTMLResponse(page, status)

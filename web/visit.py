@@ -124,6 +124,11 @@ class Visit:
         return RedirectResponse(address, 303)
 
 
+def by_browser(asked: Request) -> bool:
+    """Whether who asks takes a page; programs, which do not, get JSON."""
+    return "text/html" in asked.headers.get("accept", "")
+
+
 Handler = Callable[[Visit], Response]
 """A plain function; it runs in a thread, so that it may wait for the store."""
 

@@ -13,6 +13,7 @@ STATUS: Mapping[Code, int] = {
     Code.NOT_ALLOWED: 403,
     Code.UNKNOWN_ID: 404,
     Code.LOCKED: 409,
+    Code.CONFLICT: 409,
     Code.OUT_OF_ORDER: 409,
     Code.FILE_TOO_LARGE: 413,
     Code.TOO_FAST: 429,
@@ -31,12 +32,14 @@ class WebError(Exception):
         place: the field, address or message at fault.
         expected: what had to come.
         actual: what came instead.
+        instead: an address of ours to which browsers are sent, where its page says why; "" for the page of a fault.
     """
 
     code: Code
     place: str = ""
     expected: str = ""
     actual: str = ""
+    instead: str = ""
 
     @property
     def status(self) -> int:

@@ -188,8 +188,8 @@ def test_one_answers_what_is_asked_and_nothing_else(playing):
     person = playing.person()
     assert person.post("/study/answer", data={"answer-helpful": "6"}).status_code == 404
     at_trial(person)
-    assert person.post("/study/answer", data={"answer-helpful": "6"}).headers["location"] == "/study/"
-    assert person.post("/study/understood").status_code == 400
+    for post in ("agree", "understood", "answer"):
+        assert person.post(f"/study/{post}", data={"agree": "yes", "answer-helpful": "6"}).status_code == 409
     assert person.get("/study/film/0").status_code == 404
 
 

@@ -32,7 +32,8 @@ from hearth.studies.study_folder import FILMS
 from hearth.web import play
 from hearth.web.study.study_store import FOLDER, conducted
 from hearth.web.study.study_trial_games import begun, gone_on
-from hearth.web.visit import Visit, Web
+from hearth.web.study.study_turns import UNASKED, check_answers, in_turn, unasked_line
+from hearth.web.visit import Visit, Web, by_browser
 from hearth.web.web_errors import WebError
 
 TEMPLATES = {
@@ -41,6 +42,9 @@ TEMPLATES = {
 }  # fmt: skip
 """The page of every stage; films have their own."""
 
+
+ANSWER = "answer-"
+"""How the field of an answer begins; the name of its question follows."""
 
 MEDIA = {FILM: "video/webm", REPLAY: "application/json"}
 """The type of a film's file, by how it is shown."""
@@ -76,12 +80,15 @@ def way(visit: Visit) -> Response:
     if study_here(visit.web) is None:
         return visit.page("study/none.html")
     conduct = conduct_here(visit.web)
-    standing = _standing(conduct, visit.person)
+    standing = _here(visit, conduct)
     if standing is None:
-        return visit.page("study/consent.html", study=conduct.study)
-    if standing.stage in (PRACTICE, TRIAL) and conduct.study.room != JUDGE:
-        standing = gone_on(visit.web, conduct, standing)
+        return visit.page("study/consent.html", study=conduct.study, note=_note(visit, conduct.study, None))
     return shown(visit, conduct, standing)
+
+
+def _note(visit: Visit, study: Study, standing: Standing | None) -> str:
+    """What the page says of a post that was not asked for and led here; "" where none did."""
+    return unasked_line(study, standing) if UNASKED in visit.fields else ""
 
 
 def shown(
@@ -89,9 +96,11 @@ def shown(
 ) -> Response:
     """The page of a stage; with what was wrong with answers, if anything was."""
     study = conduct.study
+    note = _note(visit, study, standing)
     values: dict[str, Any] = {
         "study": study,
         "standing": standing,
+        "note": note,
         "fault": fault,
         "given": given or {},
         "total": len(conduct.slots[standing.place]),
@@ -103,7 +112,7 @@ def shown(
         planned = conduct.condition(standing)
         return visit.page("study/film.html", status, film=film, questions=study.asked(planned), **values)
     if standing.stage == CONSENT:
-        return visit.page("study/consent.html", study=study)
+        return visit.page("study/consent.html", study=study, note=note)
     helped = standing.stage == TRIAL and conduct.condition(standing).helped
     questions = conduct.questions(standing)
     return visit.page(TEMPLATES[standing.stage], status, questions=questions, helped=helped, **values)
@@ -116,44 +125,58 @@ def _standing(conduct: Conduct, person: str) -> Standing | None:
         return None
 
 
+def _here(visit: Visit, conduct: Conduct) -> Standing | None:
+    """Where a person is, once a game that is over is recorded; None of somebody who does not take part."""
+    standing = _standing(conduct, visit.person)
+    if standing is not None and standing.stage in (PRACTICE, TRIAL) and conduct.study.room != JUDGE:
+        return gone_on(visit.web, conduct, standing)
+    return standing
+
+
 def agree(visit: Visit) -> Response:
     """A person agrees to take part, and gets a place."""
     conduct = conduct_here(visit.web)
     if visit.field("agree", 10) != "yes":
         raise WebError(Code.BAD_ARGUMENT, "agree", "that you agree, or nothing is begun", "no answer")
-    standing = conduct.join(visit.person)
-    if standing.stage == CONSENT:
-        conduct.consent(visit.person)
+    in_turn(conduct.study, conduct.join(visit.person), "agree")
+    conduct.consent(visit.person)
     return visit.go("/study/")
 
 
 def understood(visit: Visit) -> Response:
     """A person has read the tutorial."""
-    conduct_here(visit.web).read(visit.person)
+    conduct = conduct_here(visit.web)
+    in_turn(conduct.study, _here(visit, conduct), "understood")
+    conduct.read(visit.person)
     return visit.go("/study/")
 
 
 def begin(visit: Visit) -> Response:
     """Begin a trial or a practice, or go on with it."""
     conduct = conduct_here(visit.web)
-    standing = conduct.standing(visit.person)
-    if conduct.study.room == JUDGE or standing.stage not in (PRACTICE, TRIAL):
-        return visit.go("/study/")
+    standing = in_turn(conduct.study, _here(visit, conduct), "begin")
     return visit.go(play.trial_address(begun(visit.web, conduct, standing)))
 
 
 def answer(visit: Visit) -> Response:
-    """Answers to the questions of now; those about a film are also the word that it was watched."""
+    """Answers to the questions of now; those about a film are also the word that it was watched.
+
+    Raises:
+        WebError: those of `in_turn` and `check_answers`; BAD_ARGUMENT: an answer of a program is not of its question.
+    """
     conduct = conduct_here(visit.web)
-    standing = conduct.standing(visit.person)
-    judged = conduct.study.room == JUDGE and standing.stage == TRIAL
-    if standing.stage not in (QUESTIONS, EXIT) and not judged:
-        return visit.go("/study/")
+    standing = in_turn(conduct.study, _here(visit, conduct), "answer")
+    judged = standing.stage == TRIAL
     asked = conduct.study.asked(conduct.condition(standing)) if judged else conduct.questions(standing)
+    answered = [name.removeprefix(ANSWER) for name in visit.fields if name.startswith(ANSWER)]
+    check_answers(standing, [each.name for each in asked], answered, visit.field("trial", 10))
     given = {each.name: _given(visit, each) for each in asked}
-    faults = [f"{each.text} – {fault}" for each in asked if (fault := each.fault(given[each.name]))]
+    faults = [(each, fault) for each in asked if (fault := each.fault(given[each.name]))]
+    if faults and not by_browser(visit.request):
+        name, fault = faults[0][0].name, faults[0][1]
+        raise WebError(Code.BAD_ARGUMENT, ANSWER + name, fault, str(given[name] or "no answer")[:40])
     if faults:
-        return shown(visit, conduct, standing, "; ".join(faults), given)
+        return shown(visit, conduct, standing, "; ".join(f"{each.text} – {fault}" for each, fault in faults), given)
     if judged:
         since = conduct.clock() - max(each.at for each in standing.events)
         conduct.watched(visit.person, round(since, 1))
@@ -163,7 +186,7 @@ def answer(visit: Visit) -> Response:
 
 def _given(visit: Visit, question: Question) -> Any:
     """The answer to a question that came with the form; None if there is none."""
-    text = visit.field(f"answer-{question.name}", MOST_TEXT + 1).strip()
+    text = visit.field(ANSWER + question.name, MOST_TEXT + 1).strip()
     if question.kind == "scale" and text.isascii() and text.isdigit() and len(text) < 4:
         return int(text)
     return text or None
@@ -171,7 +194,9 @@ def _given(visit: Visit, question: Question) -> Any:
 
 def leave(visit: Visit) -> Response:
     """A person leaves the study; what was done is kept, and the place goes to somebody else."""
-    conduct_here(visit.web).leave(visit.person)
+    conduct = conduct_here(visit.web)
+    in_turn(conduct.study, _standing(conduct, visit.person), "leave")
+    conduct.leave(visit.person)
     return visit.go("/study/")
 
 

@@ -1,0 +1,93 @@
+"""Whose turn it is: the stages of a study at which a post is asked for, and what is said of one that is not."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from hearth.schemas.failures import Code
+from hearth.studies.conduct import (
+    CONSENT,
+    DONE,
+    EXIT,
+    LEFT,
+    PRACTICE,
+    QUESTIONS,
+    STAGES,
+    TRIAL,
+    TUTORIAL,
+    Standing,
+)  # fmt: skip
+from hearth.studies.study import JUDGE, PLAY, Study
+from hearth.web.web_errors import WebError
+
+UNASKED = "unasked"
+"""The field of the address of a person's page that makes it say that what was posted is not asked for."""
+
+HERE = f"/study/?{UNASKED}=1"
+"""Where browsers are sent then."""
+
+BOTH = {"agree": (CONSENT,), "understood": (TUTORIAL,), "leave": tuple(each for each in STAGES if each != DONE)}
+
+TURNS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    PLAY: {**BOTH, "begin": (PRACTICE, TRIAL), "answer": (QUESTIONS, EXIT)},
+    JUDGE: {**BOTH, "begin": (), "answer": (TRIAL, QUESTIONS, EXIT)},
+}
+"""By what a study asks people to do: the stages at which each post is asked for."""
+
+FIRST = {
+    CONSENT: "First you are asked whether you take part.",
+    TUTORIAL: "First read how it works.",
+    PRACTICE: "First do the practice.",
+    QUESTIONS: "First answer these questions.",
+    EXIT: "These last questions are what is left to do.",
+    DONE: "You have finished the study.",
+    LEFT: "You have stopped taking part.",
+}
+"""What the page says, by stage; of trials it depends on what is done in them."""
+
+TRIALS = {PLAY: "First do this task: begin it, or go on with it.", JUDGE: "First judge what is shown here."}
+
+
+def in_turn(study: Study, standing: Standing | None, post: str) -> Standing:
+    """Where a person is, if a post is asked for there.
+
+    Args:
+        study: the study.
+        standing: where the person is; None of somebody who has not agreed to take part.
+        post: the last part of its address, such as `answer`.
+
+    Raises:
+        WebError: OUT_OF_ORDER: it is asked for at other stages; UNKNOWN_ID: the person has not agreed.
+    """
+    if standing is None:
+        raise WebError(Code.UNKNOWN_ID, "person", "somebody who agreed to take part", "somebody who did not", HERE)
+    asked = TURNS[study.room][post]
+    if standing.stage not in asked:
+        raise WebError(Code.OUT_OF_ORDER, "stage", " or ".join(asked) or "no stage of this study", standing.stage, HERE)
+    return standing
+
+
+def check_answers(standing: Standing, asked: Collection[str], given: Collection[str], trial: str) -> None:
+    """Refuse answers to other questions, and those of the page of another trial, such as a form that is sent twice.
+
+    Args:
+        standing: where the person is.
+        asked: names of the questions that are asked there.
+        given: names of those that were answered.
+        trial: the number of the trial on the page that they come from; "" where it is not said.
+
+    Raises:
+        WebError: OUT_OF_ORDER.
+    """
+    if trial and trial != str(standing.number):
+        raise WebError(Code.OUT_OF_ORDER, "trial", str(standing.number), trial, HERE)
+    other = [name for name in given if name not in asked]
+    if other:
+        raise WebError(Code.OUT_OF_ORDER, "answer", " or ".join(asked) or "no answers", other[0][:40], HERE)
+
+
+def unasked_line(study: Study, standing: Standing | None) -> str:
+    """What the page of a person's stage says of something that was posted and is not asked for there."""
+    stage = standing.stage if standing else CONSENT
+    comes = TRIALS[study.room] if stage == TRIAL else FIRST[stage]
+    return f"What you sent last is not asked for now, and changed nothing. {comes}"
