@@ -35,8 +35,8 @@ def check(
     All faults of all files are reported: lines that are not steps, instances that are not numbers, unknown actions and
     objects, a wrong number of objects, objects that do not afford the action or are given twice, plans that are not
     understood. A file may hold several programs, in any form that `build` reads. The status is 1 if there is a fault.
-    --fix corrects program text. With --lint: states set twice, objects used without a walk to them, programs without an
-    effect.
+    --fix corrects program text. With --lint: states set twice, actions that no simulation runs, objects used without a
+    walk to them, programs without an effect.
 
     \b
     Examples:

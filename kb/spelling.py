@@ -23,12 +23,6 @@ def near_names(name: str, spellings: Mapping[str, str]) -> tuple[str, ...]:
     Args:
         name: as it was written.
         spellings: every known spelling, as `key_of` gives it -> the name it stands for.
-
-    Example:
-        >>> near_names("garden_tabel", {"table": "table", "tablecloth": "table_cloth"})
-        ()
-        >>> near_names("garden_table", {"table": "table", "tablecloth": "table_cloth"})
-        ('table',)
     """
     found = (*_alike(name, spellings), *_begun(name, spellings), *_words(name, spellings))
     return tuple(dict.fromkeys(found))[:3]

@@ -80,7 +80,8 @@ def checked(
     program = replace(program, lines=lines)
     if faults:
         return program, faults, ()
-    return program, (), (*_replaced(expanded, place), *_warnings(program, known, lines, place))
+    unexecuted = (programs.diagnostic(each, program, place) for each in programs.never_executed(program, known))
+    return program, (), (*_replaced(expanded, place), *unexecuted)
 
 
 def _replaced(expanded: special.Expanded, place: str) -> Iterator[Diagnostic]:
@@ -95,17 +96,11 @@ def checked_natural_language(
     """`checked` for natural-language steps; a fuzzy match is a warning with its similarity."""
     parse = parse_steps(text, before, place, known)
     faults = parse.faults or grammar.affordances(parse.program, known, place)
+    if faults:
+        return parse.program, faults, ()
     # Natural language loses instances: two lamps may look like one switched on twice, so this is only a warning.
-    twice = (programs.diagnostic(each, parse.program, place) for each in programs.contradictions(parse.program, known))
-    warnings = (*parse.warnings, *_warnings(parse.program, known, parse.program.lines, place), *twice)
-    return parse.program, faults, () if faults else warnings
-
-
-def _warnings(program: Program, known: Knowledge, lines: tuple[int, ...], place: str) -> Iterator[Diagnostic]:
-    for number, step in enumerate(program.steps):
-        if not known.actions[step.action].executed:
-            message = f"[{step.action}] is valid to write, but never executed"
-            yield Diagnostic(Code.NOT_SIMULATED, message, place, lines[number], found=step.action)
+    found = (*programs.never_executed(parse.program, known), *programs.contradictions(parse.program, known))
+    return parse.program, (), (*parse.warnings, *(programs.diagnostic(each, parse.program, place) for each in found))
 
 
 def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge, check: Check) -> GroundingRow | Reject:

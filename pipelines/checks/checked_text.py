@@ -60,6 +60,13 @@ def check_program(
 
 
 def warnings_of(program: Program, knowledge: Knowledge, file: str, source: list[str]) -> list[Diagnostic]:
-    """Warnings about the meaning of a program in canonical names: contradictions, objects out of reach, no effect."""
-    found = [*programs.contradictions(program, knowledge), *programs.findings(program, knowledge)]
+    """Warnings about the meaning of a program in canonical names.
+
+    They are contradictions, actions that no simulation runs, objects out of reach, steps without an effect.
+    """
+    found = [
+        *programs.contradictions(program, knowledge),
+        *programs.never_executed(program, knowledge),
+        *programs.findings(program, knowledge),
+    ]
     return [programs.diagnostic(each, program, file, source) for each in found]

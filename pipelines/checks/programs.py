@@ -173,6 +173,14 @@ def _used(program: Program, known: Knowledge) -> dict[str, int]:
     return {name: len(found) for name, found in instances.items()}
 
 
+def never_executed(program: Program, known: Knowledge) -> Iterator[Finding]:
+    """Steps whose action no simulation runs: they can be written, and the program fails there."""
+    for number, step in enumerate(program.steps):
+        if not known.actions[step.action].executed:
+            message = f"[{step.action}] is valid to write, but never executed"
+            yield Finding(Code.NOT_SIMULATED, number, message, found=step.action)
+
+
 def diagnostic(finding: Finding, program: Program, place: str, source: Sequence[str] = ()) -> Diagnostic:
     """A finding as a diagnostic with its place.
 
