@@ -263,7 +263,7 @@ def served_films(ground: Ground, file: Any, program: str = "") -> Any:
             next(iter(Dataset.open(folder).rows("SELECT execution_id FROM executions")[1]))[0],
             folder / "films",
         )
-        films.mkdir()
+        films.mkdir(exist_ok=True)
         (films / "true.webm").write_bytes(b"x")
         os.mkfifo(films / "pipe.webm")
         (films / "loop.webm").symlink_to("loop.webm")

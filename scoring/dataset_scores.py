@@ -30,6 +30,9 @@ from hearth.storage.parallel import Seen, spread, unseen
 PART = 250
 """References in memory at a time, the unit of a worker's work."""
 
+_ID = "execution_id::VARCHAR AS execution_id"
+"""As text: a stranger's table may have ids of another type, which then are no reference's."""
+
 Job = tuple[str, list[Pair], Options]
 """A dataset's folder, pairs without their references, and how to score them."""
 
@@ -145,7 +148,7 @@ def _named(dataset: Dataset) -> Named:
     """A function from a row without `id` to its executions."""
     of_program: dict[str, list[str]] = {}
     there: dict[tuple[str, str], list[str]] = {}
-    query = f"SELECT execution_id, program_id, home FROM executions WHERE {dataset.included} ORDER BY 1"
+    query = f"SELECT {_ID}, program_id::VARCHAR, home::VARCHAR FROM executions WHERE {dataset.included} ORDER BY 1"
     for execution_id, program_id, home in dataset.rows(query)[1]:
         of_program.setdefault(program_id, []).append(execution_id)
         there.setdefault((program_id, home), []).append(execution_id)
@@ -164,7 +167,7 @@ def _named(dataset: Dataset) -> Named:
 
 
 def _every(dataset: Dataset) -> list[str]:
-    return [name for (name,) in dataset.rows("SELECT execution_id FROM executions")[1]]
+    return [name for (name,) in dataset.rows(f"SELECT {_ID} FROM executions")[1]]
 
 
 def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
@@ -177,9 +180,9 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
         message = f"the part `{part}` without its split"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name the split that has it")
     if not split:
-        query = f"SELECT execution_id FROM executions WHERE {dataset.included} ORDER BY 1"
+        query = f"SELECT {_ID} FROM executions WHERE {dataset.included} ORDER BY 1"
         return [name for (name,) in dataset.rows(query)[1]]
-    query = """SELECT execution_id FROM splits SEMI JOIN (SELECT execution_id FROM executions WHERE executable)
+    query = f"""SELECT {_ID} FROM splits SEMI JOIN (SELECT execution_id FROM executions WHERE executable)
         USING (execution_id) WHERE split = $split AND starts_with(part, $part) ORDER BY 1"""
     found = [name for (name,) in dataset.rows(query, split=split, part=part)[1]]
     if not found:
