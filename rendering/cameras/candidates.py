@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera, point_of
-from hearth.rendering.cameras.sight import ENOUGH, FILL, Obstacles, Target, unobstructed
+from hearth.rendering.cameras.sight import ENOUGH, FILL, Obstacles, Target, ahead
 from hearth.rendering.people.acting import Actor
 from hearth.schemas.graph import Box
 
@@ -196,7 +196,7 @@ def preference(cameras: Sequence[Camera], actor: Actor) -> NDArray[np.float64]:
     return np.array(found)
 
 
-def free(cameras: Sequence[Camera], obstacles: Obstacles) -> list[Camera]:
-    """The cameras with nothing close in front of them."""
-    kept = unobstructed(cameras, obstacles)
-    return [camera for camera, good in zip(cameras, kept.tolist(), strict=True) if good]
+def free(cameras: Sequence[Camera], obstacles: Obstacles) -> tuple[list[Camera], NDArray[np.float64]]:
+    """The cameras with nothing close in front of them, and what each loses by what is near (see `Ahead`)."""
+    found = ahead(cameras, obstacles)
+    return [cameras[number] for number in np.flatnonzero(found.free).tolist()], found.loss[found.free]

@@ -46,6 +46,12 @@ GRID = (12, 9)
 FREE = 0.06
 """Share of these that may hit something close."""
 
+REACH, BEFORE = 1.6, 0.75
+"""Metres, and share of the way to what a camera looks at, nearer than which things crowd its picture."""
+
+CROWDED = 5.0
+"""What a picture would lose of its worth that things at the lens fill; it is less the farther they are."""
+
 Coordinates = NDArray[np.float64]
 
 
@@ -196,10 +202,34 @@ def _areas(eyes: Coordinates, target: Target) -> Coordinates:
     return FILL * np.asarray(np.abs(way) @ np.array((y * z, x * z, x * y)))
 
 
-def unobstructed(cameras: Sequence[Camera], obstacles: Obstacles) -> NDArray[np.bool_]:
-    """(cameras,) whether nothing is close in front of them."""
+class Ahead(NamedTuple):
+    """What stands before some cameras, whatever it is: furniture, doors, or what a step is about, seen from behind.
+
+    Attributes:
+        free: (cameras,) whether nothing is close in front of them.
+        loss: (cameras,) of their worth, by the share of the picture that near things fill, and by how near these are.
+    """
+
+    free: NDArray[np.bool_]
+    loss: Coordinates
+
+
+def ahead(cameras: Sequence[Camera], obstacles: Obstacles) -> Ahead:
+    """What stands before cameras, by a few rays."""
     if not cameras:
-        return np.zeros(0, np.bool_)
+        return Ahead(np.zeros(0, np.bool_), np.zeros(0))
+    cast = _grids(cameras)
+    far, _ = obstacles.cast(cast)
+    cast[:, 3:] *= CLOSE + 0.1
+    close = (far < CLOSE + 0.1) | obstacles.behind_people(cast, -1)
+    whole = np.linalg.norm([np.subtract(camera.target, camera.eye) for camera in cameras], axis=1)
+    reach = np.minimum(BEFORE * whole, REACH)[:, None]
+    near = np.clip(1 - far.reshape(len(cameras), -1) / reach, 0, 1)
+    return Ahead(close.reshape(len(cameras), -1).mean(axis=1) < FREE, CROWDED * near.mean(axis=1))
+
+
+def _grids(cameras: Sequence[Camera]) -> Floats:
+    """(cameras * rays, 6) rays all over the pictures of cameras; directions have camera-space z = 1."""
     across, down = np.meshgrid(*((np.arange(n) + 0.5) / n * 2 - 1 for n in GRID))
     rays = []
     for camera in cameras:
@@ -207,11 +237,14 @@ def unobstructed(cameras: Sequence[Camera], obstacles: Obstacles) -> NDArray[np.
         flat = np.stack((across * half * camera.width / camera.height, down * half, np.ones_like(across)), axis=-1)
         ways = flat.reshape(-1, 3) @ camera.pose[:3, :3].T
         rays.append(np.concatenate((np.broadcast_to(np.array(camera.eye), ways.shape), ways), axis=1))
-    cast = np.concatenate(rays).astype(np.float32)
-    far, _ = obstacles.cast(cast)
-    cast[:, 3:] *= CLOSE + 0.1
-    close = (far < CLOSE + 0.1) | obstacles.behind_people(cast, -1)
-    return np.asarray(close.reshape(len(cameras), -1).mean(axis=1) < FREE)
+    return np.concatenate(rays).astype(np.float32)
+
+
+def too_near(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:
+    """(cameras,) whether a person is so near that it fills the picture."""
+    eyes = np.array([camera.eye for camera in cameras])
+    near = np.linalg.norm(eyes[:, None] - who.points[None], axis=2).min(axis=1)
+    return np.asarray(near < CLOSE + 0.15)
 
 
 class Worth(NamedTuple):

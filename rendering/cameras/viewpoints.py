@@ -84,9 +84,10 @@ def best_view(
     who, targets = person(actor), [thing(scene, node) for node in dict.fromkeys(named) if node != actor.node.id]
     objects = [target for target in targets if target is not None]
     obstacles = Obstacles.exact(scene)
-    cameras = free([*around(actor, who, objects, room, size, "near", closer=True), *fixed], obstacles)
-    cameras = cameras or [*fixed] or [follow("follow", actor.position, actor.yaw, *size)]
-    worth = values(cameras, who, objects, obstacles).total * preference(cameras, actor)
+    cameras, loss = free([*around(actor, who, objects, room, size, "near", closer=True), *fixed], obstacles)
+    if not cameras:
+        cameras, loss = [*fixed] or [follow("follow", actor.position, actor.yaw, *size)], np.zeros(1)
+    worth = (values(cameras, who, objects, obstacles).total - loss) * preference(cameras, actor)
     best: list[Camera] = [cameras[number] for number in np.argsort(-worth, kind="stable")[:LOOKED_AT].tolist()]
     return next((camera for camera in best if _shows(scene, camera, actor, objects)), best[0])
 

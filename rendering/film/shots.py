@@ -9,12 +9,11 @@ from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.candidates import around, free, preference
-from hearth.rendering.cameras.recognition import CLOSE, in_the_way, shows
-from hearth.rendering.cameras.sight import Obstacles, Target, Worth, person, thing, values
+from hearth.rendering.cameras.recognition import in_the_way, shows
+from hearth.rendering.cameras.sight import Obstacles, Target, Worth, ahead, person, thing, too_near, values
 from hearth.rendering.cameras.visibility import objects_of
 from hearth.rendering.film.cuts import Acts, States, Worths, best_cut
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
@@ -102,6 +101,7 @@ class Planner:
         self.rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY and node.box}
         self.keyframes = {keyframe.tick: keyframe for keyframe in trajectory.keyframes}
         self.obstacles: dict[int, Obstacles] = {}
+        self.losses: dict[int, dict[Camera, float]] = {}
         self.pictures = StillCameras()
         self.moments = list(self._moments())
         self.ticks = [moment.frame.tick for moment in self.moments]
@@ -157,7 +157,7 @@ class Planner:
         found: list[set[int]] = [set() for _ in views]
         for tick in sorted({moment.frame.tick for moment in self.moments}):
             within = [n for n, known in enumerate(self.moments) if known.frame.tick == tick and room in known.rooms]
-            good = free(views, self._obstacles(self.moments[within[0]].frame)) if within else ()
+            good = free(views, self._obstacles(self.moments[within[0]].frame))[0] if within else ()
             for camera, moments in zip(views, found, strict=True):
                 moments.update(within if camera in good else ())
         return [frozenset(moments) for moments in found]
@@ -215,8 +215,8 @@ class Planner:
     def _best(self, cameras: Sequence[Camera], moments: Sequence[int], agent: int) -> list[Camera]:
         """Those of some cameras that show an agent best at some moments, with nothing in their way."""
         moved = [self.trajectory.variation.moved(camera) for camera in cameras]
-        found = free(moved, self._obstacles(self.moments[moments[0]].frame))
-        worth = sum((self._exact(found, number, agent) for number in dict.fromkeys(moments)), np.zeros(len(found)))
+        found, loss = free(moved, self._obstacles(self.moments[moments[0]].frame))
+        worth = sum((self._exact(found, number, agent) - loss for number in dict.fromkeys(moments)), 0 * loss)
         return _distinct([found[number] for number in np.argsort(-worth, kind="stable").tolist()], KEPT)
 
     def _exact(self, cameras: Sequence[Camera], number: int, agent: int) -> Worths:
@@ -233,8 +233,9 @@ class Planner:
         actor, room = moment.frame.actors[agent], self.rooms.get(moment.rooms[agent])
         name = f"near.{moment.frame.tick}.{agent}.{number}"
         found = around(actor, *self._targets(moment.frame, agent), room, self.size, name, closer=True, dense=True)
-        moved = free([self.trajectory.variation.moved(camera) for camera in found], Obstacles.exact(moment.frame.scene))
-        worth = self._exact(moved, number, agent)
+        every = [self.trajectory.variation.moved(camera) for camera in found]
+        moved, loss = free(every, Obstacles.exact(moment.frame.scene))
+        worth = self._exact(moved, number, agent) - loss
         return _distinct([moved[k] for k in np.argsort(-worth, kind="stable").tolist()], LOOKED_AT)
 
     def _values(self, cameras: Sequence[Camera], number: int) -> tuple[Worths, States]:
@@ -247,8 +248,15 @@ class Planner:
             if agent in self.agents:
                 shown |= found.enough.astype(np.int64) << self.agents.index(agent)
         for actor in frame.actors:
-            total -= IN_THE_WAY * _too_near(cameras, person(actor))
-        return total, shown
+            total -= IN_THE_WAY * too_near(cameras, person(actor))
+        return total - self._loss(cameras, frame), shown
+
+    def _loss(self, cameras: Sequence[Camera], frame: Frame) -> Worths:
+        """(cameras,) what near things take of their values; looked at once a tick."""
+        known = self.losses.setdefault(frame.tick, {})
+        new = [camera for camera in cameras if camera not in known]
+        known.update(zip(new, ahead(new, self._obstacles(frame)).loss.tolist(), strict=True))
+        return np.array([known[camera] for camera in cameras])
 
     def shows(self, camera: Camera, number: int, agent: int) -> bool:
         """Whether a camera's picture at a moment shows the act of an agent, by its pixels."""
@@ -367,13 +375,6 @@ class Verified:
         for row, number, bit in good:
             self.shown[row, number] |= 1 << bit
         return len(new) > 0
-
-
-def _too_near(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:
-    """(cameras,) whether a person is so near that it fills the picture."""
-    eyes = np.array([camera.eye for camera in cameras])
-    near = np.linalg.norm(eyes[:, None] - who.points[None], axis=2).min(axis=1)
-    return np.asarray(near < CLOSE + 0.15)
 
 
 def _together(found: Sequence[Target]) -> Target:

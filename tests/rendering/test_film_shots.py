@@ -97,6 +97,20 @@ def test_a_film_shows_every_step_in_shots_of_three_seconds(filmed):
     assert found.blocked <= 0.05 * found.pictures
 
 
+def test_no_door_fills_a_side_of_a_film_before_what_it_shows():
+    """An open door stood before the camera in a quarter of the last picture."""
+    graph = library.load_graph("maple", default())
+    steps = ("[Walk] <television> (1)", "[SwitchOn] <television> (1)", *PROGRAM.splitlines()[4:7])
+    program = parse_program("\n".join(("Watch TV", "It.", "", "", *steps, "")))[0]
+    trajectory = trajectory_of(attempt(program, Home.from_graph(graph, "maple", default())).execution, graph, default())
+    planner = Planner(trajectory, graph, room_views(graph, 160, 120), (160, 120))
+    for moment, camera in zip(planner.moments, planner.shots().cameras, strict=True):
+        shot = shoot(moment.frame.scene, camera)
+        doors = [thing.class_name == "door" for thing in shot.geometry.things]
+        near = np.array([*doors, False])[shot.owner] & (shot.distance < 1.2)
+        assert near.mean() < 0.1, f"{moment.frame.tick}: {camera.name}"
+
+
 def test_cuts_rely_on_pictures_where_estimates_are_mistaken(filmed):
     graph, trajectory = filmed
     views = room_views(graph, 160, 120)
