@@ -38,6 +38,7 @@ def test_one_error_lists_every_fault_of_every_file(tmp_path):
         "cup,UPON,table,,3,ours\n"
         "cup,ON,bed,,9,ours\n"
         "cup,ON\n"
+        "cup,ON,,,3,ours\n"
     )
     assert lines(faults(tmp_path)) == [
         "affordances.yaml:1: BAD_TABLE: `CUTABLE` is not a known property",
@@ -50,6 +51,7 @@ def test_one_error_lists_every_fault_of_every_file(tmp_path):
         "placements.csv:4: BAD_TABLE: `UPON` is not a known relation",
         "placements.csv:5: BAD_TABLE: `9` is not a weight",
         "placements.csv:6: BAD_TABLE: 2 cells",
+        "placements.csv:7: UNKNOWN_OBJECT: `` is not a known object",
     ]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -133,6 +134,19 @@ def test_an_unknown_id_is_named_with_its_line(ds, tmp_path):
     with pytest.raises(HearthError, match="no reference has the id `nobody`") as caught:
         score_dataset(ds, written(tmp_path / "mine.jsonl", [{"id": "nobody", "predicted": []}]))
     assert (str(caught.value.diagnostics[0].code), caught.value.diagnostics[0].line) == ("UNKNOWN_ID", 1)
+
+
+@pytest.mark.parametrize("kind", [pa.binary(), pa.int64()])
+def test_ids_of_another_type_are_refused(made, tmp_path, kind):
+    """A stranger's manifest may fit a table whose ids are no text; such an id is no reference's."""
+    folder = tmp_path / "theirs"
+    shutil.copytree(made.out, folder)
+    for path in folder.rglob("executions/*.parquet"):
+        found = pq.read_table(path)
+        ids = found["execution_id"].cast(kind) if kind == pa.binary() else pa.array(range(len(found)), kind)
+        pq.write_table(found.set_column(found.column_names.index("execution_id"), "execution_id", ids), path)
+    with pytest.raises(HearthError):
+        score_dataset(hearth.load(folder), written(tmp_path / "mine.jsonl", [{"program_id": "x", "predicted": []}]))
 
 
 def test_lines_as_programs_and_as_sentences():
