@@ -138,7 +138,7 @@ def test_an_unknown_id_is_named_with_its_line(ds, tmp_path):
 
 @pytest.mark.parametrize("kind", [pa.binary(), pa.int64()])
 def test_ids_of_another_type_are_refused(made, tmp_path, kind):
-    """A stranger's manifest may fit a table whose ids are no text; such an id is no reference's."""
+    """A stranger's manifest may fit a table whose ids are numbers or bytes; no reference has such an id."""
     folder = tmp_path / "theirs"
     shutil.copytree(made.out, folder)
     for path in folder.rglob("executions/*.parquet"):
