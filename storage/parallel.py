@@ -50,8 +50,8 @@ def uninterrupted() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler or signal.SIG_DFL)
-    for stopped in waiting:
-        signal.raise_signal(stopped)
+        for stopped in waiting:  # an error, too: the same interrupt may have ended the workers
+            signal.raise_signal(stopped)
 
 
 def end(pool: ProcessPoolExecutor) -> None:
