@@ -149,7 +149,7 @@ def load_placements(layers: Layers, known: Container[str], faults: Faults) -> li
     result = []
     for entry in csv_rows(layers, ("placements.csv",), columns, (0, 1, 2, 3), faults).values():
         thing, relation, destination, room, weight, evidence = entry.value
-        for name in (thing, destination, *filter(None, (room,))):
+        for name in (thing, destination, *([room] if room else [])):
             if name not in known:
                 faults.at(entry, f"`{name}` is not a known object", code=Code.UNKNOWN_OBJECT)
         if relation not in EDGES:

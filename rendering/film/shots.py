@@ -216,7 +216,7 @@ class Planner:
         """Those of some cameras that show an agent best at some moments, with nothing in their way."""
         moved = [self.trajectory.variation.moved(camera) for camera in cameras]
         found, loss = free(moved, self._obstacles(self.moments[moments[0]].frame))
-        worth = sum((self._exact(found, number, agent) - loss for number in dict.fromkeys(moments)), 0 * loss)
+        worth = np.sum([self._exact(found, number, agent) - loss for number in dict.fromkeys(moments)], axis=0)
         return _distinct([found[number] for number in np.argsort(-worth, kind="stable").tolist()], KEPT)
 
     def _exact(self, cameras: Sequence[Camera], number: int, agent: int) -> Worths:
