@@ -62,9 +62,10 @@ def end(pool: ProcessPoolExecutor) -> None:
 
 def begin() -> None:
     """Let a worker end with its build: without a word when that is stopped at the keyboard, since the build itself says
-    what to do, and at once when it is killed.
+    what to do, and at once when it is killed. Where a shell has started the build with `&`, both ignore the keyboard.
     """
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
     if sys.platform != "win32":
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -57,3 +58,11 @@ def module():
         return loaded
 
     return load
+
+
+@pytest.fixture
+def interruptible():
+    """Jobs in the background of a shell ignore interrupts, and what they start inherits that."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -251,14 +251,6 @@ if __name__ == "__main__":
 """
 
 
-@pytest.fixture
-def interruptible():
-    """Jobs in the background of a shell ignore interrupts, and what they start inherits that."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("after", [0.3, 0.8, 1.5])
 def test_an_interrupt_while_workers_start_prints_no_traceback(tmp_path, after):

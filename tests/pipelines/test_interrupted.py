@@ -95,6 +95,7 @@ def alive(process):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("interruptible")
 def test_a_build_stopped_at_the_keyboard_goes_on(made, module, tmp_path):
     homes = ["--homes", made.settings.homes_folder, "--home", "cabin"]
     options = [*homes, "--out", str(tmp_path), "--pictures", "0", "--videos", "0", "--workers", "2"]
