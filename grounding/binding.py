@@ -53,7 +53,7 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
 
 
 def bind_far(program: Program, world: World, rules: Rules = DEFAULT) -> tuple[Binding, Failure | None]:
-    """Return `bind` with the nodes of the furthest step reached, where not every step runs, and why it goes no further."""
+    """Return the binding of `bind`, or that of the furthest step reached and why it goes no further."""
     search = _Search(program, rules)
     fixed = {ref.key: ref.node for ref in program.objects() if ref.node is not None}
     if not program.steps:
