@@ -202,7 +202,7 @@ def _titled(program: Program, row: IngestedRow) -> Program:
 
 
 def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
-    """The home of that name, or that of a graph file.
+    """The home of that name, or that of a graph file; a name that is the path of a file is that file.
 
     Raises:
         HearthError: UNKNOWN_HOME, or a fault of the file.
@@ -210,6 +210,7 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     from hearth.homes import library
     from hearth.simulation.world.home import Home
 
+    graph = graph or library.given_file(name)
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)

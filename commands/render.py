@@ -22,6 +22,7 @@ def program(
     file: Path,
     out: Path,
     home: str = "maple",
+    graph: Path | None = None,
     homes: Path | None = None,
     mode: Literal["snapshots", "video"] = "snapshots",
     cameras: str = "auto",
@@ -51,8 +52,12 @@ def program(
 
     _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
     known = default()
-    execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, homes, seed, known)
-    place = with_geometry(library.load_graph(home, known, homes), home, known)
+    if graph is not None:
+        home, scene = graph.stem, library.graph_of(graph, known)
+    else:
+        home, scene = library.named_graph(home, known, homes)
+    execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, scene, seed, known)
+    place = with_geometry(scene, home, known)
     out.mkdir(parents=True, exist_ok=True)
     title, size = f"{execution.program.title}, in {home}", (width, _height(width, mode))
     shooting = Shooting(execution, place.graph, known, out, size, seed, hour, title, vary)
@@ -286,12 +291,13 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
         yield execution, list(tick_visibilities(trajectory_of(execution, graph, known, seed=seed), graph))
 
 
-def _execution(program: Program, home: str, homes: Path | None, seed: int, known: Knowledge) -> Execution:
+def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
     from hearth.grounding.trial import attempt
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Failure
+    from hearth.simulation.world.home import Home
 
-    trial = attempt(program, inputs.read_home(home, None, homes, known), seed)
+    trial = attempt(program, Home.from_graph(graph, home, known), seed)
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, trial.message())
     return trial.execution

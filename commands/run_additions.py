@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
+from hearth.schemas.literals import HANDS
+from hearth.schemas.vocabulary import ROOM_CATEGORY
+
 if TYPE_CHECKING:
+    from hearth.schemas.change import Change
     from hearth.schemas.graph import EnvironmentGraph, Node
 
 _QUIET = frozenset({"CLOSE", "FACING"})
@@ -13,7 +17,7 @@ _QUIET = frozenset({"CLOSE", "FACING"})
 
 
 class NewObject(NamedTuple):
-    """An object that was added, and where: `fridge (137)`."""
+    """An object that was added, and where: `INSIDE fridge (137)`."""
 
     id: int
     class_name: str
@@ -37,7 +41,7 @@ class Additions(NamedTuple):
         """Yield one line for each kind of change: its number, and all of it."""
         from hearth.commands import output
 
-        added = (f"{name} ({number}) in {place}" for number, name, place in self.objects)
+        added = (f"{name} ({number}) {place}" for number, name, place in self.objects)
         for word, noun, items in (
             ("added", "object", tuple(added)),
             ("changed", "state", self.states),
@@ -54,7 +58,6 @@ def additions(before: EnvironmentGraph, after: EnvironmentGraph) -> Additions:
 
     change = encode(before, after)
     nodes = {node.id: node for node in (*before.nodes, *after.nodes)}
-    new = {node.id for node in change.added_nodes}
     states = [f"{_name(nodes, node)} is {state}" for node, state in change.set_states]
     now = set(change.set_states)
     states += [
@@ -62,17 +65,34 @@ def additions(before: EnvironmentGraph, after: EnvironmentGraph) -> Additions:
         for node, state in change.cleared_states
         if (node, OPPOSITE.get(state, "")) not in now
     ]
-    moved = [edge for edge in change.added if edge.source not in new and edge.relation not in _QUIET]
-    places: dict[int, str] = {}
-    for edge in change.added:
-        if edge.source in new and edge.relation in ("ON", "INSIDE"):
-            is_room = nodes[edge.target].category == "Rooms"
-            if edge.source not in places or not is_room:
-                places[edge.source] = _name(nodes, edge.target)
     return Additions(
-        tuple(NewObject(node.id, node.class_name, places.get(node.id, "no place")) for node in change.added_nodes),
+        tuple(NewObject(node.id, node.class_name, _place(node.id, change, nodes)) for node in change.added_nodes),
         tuple(states),
-        tuple(f"{_name(nodes, e.source)} {e.relation} {_name(nodes, e.target)}" for e in moved),
+        tuple(_relations(change, nodes, {node.id for node in change.added_nodes})),
+    )
+
+
+def _relations(change: Change, nodes: dict[int, Node], new: set[int]) -> Iterator[str]:
+    """Yield where objects that were there are now; for those that are nowhere else, where they are no more."""
+    moved = {edge.source for edge in change.added if edge.relation not in _QUIET}
+    for edge in change.added:
+        if edge.source not in new and edge.target not in new and edge.relation not in _QUIET:
+            yield f"{_name(nodes, edge.source)} {edge.relation} {_name(nodes, edge.target)}"
+    for edge in change.removed:
+        if edge.source not in moved and edge.relation not in _QUIET:
+            yield f"{_name(nodes, edge.source)} no longer {edge.relation} {_name(nodes, edge.target)}"
+
+
+def _place(new: int, change: Change, nodes: dict[int, Node]) -> str:
+    """Return where an added object is: in whose hand, on or in what, else in which room."""
+    held = (e for e in change.added if e.target == new and e.relation in HANDS)
+    placed = [e for e in change.added if e.source == new and e.relation in ("ON", "INSIDE")]
+    thing = (e for e in placed if nodes[e.target].category != ROOM_CATEGORY)
+    edge = next(held, None) or next(thing, None) or next(iter(placed), None)
+    if edge is None:
+        return "in no room"
+    return (
+        f"held by {_name(nodes, edge.source)}" if edge.target == new else f"{edge.relation} {_name(nodes, edge.target)}"
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 
 from hearth.grounding.binding import Binding, bind, bind_far
-from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.environments.default_state import need_somebody, prepared
 from hearth.grounding.environments.multi_agent import sample_together
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample
 from hearth.schemas.failures import Code, Failure
@@ -44,7 +44,11 @@ def as_given(program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT
         home: nothing is added to it but characters that it lacks, which stand in random rooms.
         seed: of those rooms.
         rules: how actions are read.
+
+    Raises:
+        HearthError: BAD_GRAPH: nobody is in the home.
     """
+    need_somebody(home)
     rules = suited(program, home.knowledge, rules)
     world = with_agents(World.start(home), _characters(program), seed)
     program, failure = _bound_far(program, world, rules)
