@@ -46,16 +46,12 @@ def program(
       python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
       python cli.py render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
     """
-    from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.rendering.scene.with_geometry import with_geometry
 
     _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
     known = default()
-    if graph is not None:
-        home, scene = graph.stem, library.graph_of(graph, known)
-    else:
-        home, scene = library.named_graph(home, known, homes)
+    home, scene = _scene(home, graph, homes, known)
     execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, scene, seed, known)
     place = with_geometry(scene, home, known)
     out.mkdir(parents=True, exist_ok=True)
@@ -80,6 +76,15 @@ def program(
         if failure:
             print(f"Stopped: {failure}")
     output.status(failure is not None, strict=True)
+
+
+def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) -> tuple[str, EnvironmentGraph]:
+    """The name and the scene graph of where a program is pictured."""
+    from hearth.homes import library
+
+    if graph is not None:
+        return graph.stem, library.graph_of(graph, known)
+    return library.named_graph(home, known, homes)
 
 
 def _check(mode: str, width: int, given: Mapping[str, bool]) -> None:

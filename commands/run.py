@@ -96,7 +96,7 @@ def _refuse_faults(given: Given, skip: bool) -> None:
 def _outcome(program: Program, place: Home, seed: int, sample: bool) -> Outcome:
     """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
     from hearth.grounding.trial import LEAST, as_given, attempt
-    from hearth.repair.remedies import told
+    from hearth.repair.remedies import stop_reason
     from hearth.schemas.failures import Failure
 
     trial = as_given(program, place, seed)
@@ -105,7 +105,7 @@ def _outcome(program: Program, place: Home, seed: int, sample: bool) -> Outcome:
     found = attempt(program.unbound(), place, seed, size=LEAST)
     if isinstance(found, Failure):
         return Outcome(program, place, trial, unsampled=failed(found, program))
-    return Outcome(program, place, found, as_it_is=told(trial.execution))
+    return Outcome(program, place, found, as_it_is=stop_reason(trial.execution))
 
 
 def _progress(goal: list[str], outcome: Outcome) -> Progress:

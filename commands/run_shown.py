@@ -46,7 +46,7 @@ class Outcome(NamedTuple):
 
 def show(outcome: Outcome, explain: bool) -> None:
     """Print a run: the binding, each step with its changes, and at the end why it stopped."""
-    from hearth.repair.remedies import told
+    from hearth.repair.remedies import stop_reason
 
     print(f"{outcome.program.title or 'A program'}, in {outcome.place.name}")
     execution = outcome.trial.execution
@@ -60,10 +60,10 @@ def show(outcome: Outcome, explain: bool) -> None:
     if execution.failure is None:
         print(f"Done: {output.counted(done, 'step')}.")
         return
-    print(told(execution))
+    print(stop_reason(execution))
     if outcome.unsampled:
         print(f"Sampling does not help: {outcome.unsampled}")
-    left = len(execution.program.steps) - done - 1
+    left = len(execution.program.steps) - len(_reached(execution))
     if left > 0:
         print(f"{output.counted(left, 'later step')} {'was' if left == 1 else 'were'} not run.")
 
@@ -94,14 +94,14 @@ def document(outcome: Outcome, explain: bool) -> dict[str, Any]:
 
 
 def _failure(execution: Execution) -> dict[str, Any] | None:
-    from hearth.repair.remedies import remedy, told
+    from hearth.repair.remedies import remedy, stop_reason
     from hearth.schemas.failure_words import step_number, why
 
     failure = execution.failure
     if failure is None:
         return None
     number = step_number(execution.program, failure)
-    words = {"message": told(execution), "why": why(failure), "remedy": remedy(execution) or None}
+    words = {"message": stop_reason(execution), "why": why(failure), "remedy": remedy(execution) or None}
     return {"code": failure.code, "step": number, **asdict(failure), **words}
 
 
@@ -119,9 +119,14 @@ def _ticks(execution: Execution) -> list[tuple[Step, ...]]:
     return list(execution.program.ticks())
 
 
+def _reached(execution: Execution) -> list[Step]:
+    """The steps that were done, and those of the tick that failed."""
+    return [step for steps in _ticks(execution)[: len(execution.worlds)] for step in steps]
+
+
 def _print_binding(execution: Execution) -> None:
     home = execution.worlds[0].home
-    for ref in execution.program.objects():
+    for ref in execution.program.with_steps(_reached(execution)).objects():
         index = home.index.get(ref.node or -1, -1)
         what = f"{home.classes[index]} ({ref.node})" if index >= 0 else "not bound"
         print(f"  <{ref.name}> ({ref.instance}) is {what}")

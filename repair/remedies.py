@@ -15,14 +15,14 @@ MOST_STEPS = 4
 """Steps that a remedy names; longer ones are described as the knowledge does."""
 
 
-def told(execution: Execution) -> str:
+def stop_reason(execution: Execution) -> str:
     """Return why an execution stopped and what would fix it, as one sentence; "" where it did not stop."""
     failure = execution.failure
     if failure is None:
         return ""
     number = step_number(execution.program, failure)
     steps = execution.program.steps
-    step = print_step(steps[number - 1], show_agent=execution.program.agents() > 1) if number <= len(steps) else ""
+    step = print_step(steps[number - 1]) if number <= len(steps) else ""
     return sentence(failure, number, step, remedy(execution))
 
 

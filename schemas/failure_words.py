@@ -19,11 +19,6 @@ def sentence(failure: Failure, number: int = 0, step: str = "", remedy: str = ""
         number: of the step, from 1; 0 where the failure is about no step.
         step: as the program has it.
         remedy: what would fix it here; else what usually does.
-
-    Examples:
-        >>> from hearth.schemas.failures import Code, Failure
-        >>> print(sentence(Failure(Code.IS_OPEN, names=("fridge",)), 2, "[Open] <fridge> (1.5)", "leave this step out"))
-        step 2 failed: [Open] <fridge> (1.5): the fridge is open; leave this step out (IS_OPEN)
     """
     said = "; ".join(filter(None, (why(failure), remedy or REMEDIES.get(failure.code, ""))))
     begin = f"step {number} failed" if number else ""
@@ -210,7 +205,7 @@ WHY: Mapping[Code, Words] = {
     Code.IS_UNPLUGGED: "the {0} is unplugged",
     Code.NOT_OPENABLE_STATE: "the {0} is neither open nor closed",
     Code.NOT_WORN: "the character does not wear the {0}",
-    Code.NOTHING_TO_EAT: "the {0} is no food, and there is none on it",
+    Code.NOTHING_TO_EAT: "the {0} is not food, and there is no food on it",
     # Several agents
     Code.CONFLICT: _conflict,
     Code.UNKNOWN_AGENT: _agent,
@@ -253,7 +248,7 @@ WHY: Mapping[Code, Words] = {
 """Why something failed, in words, for every code."""
 
 REMEDIES: Mapping[Code, str] = {
-    Code.UNBOUND: "use another object or home, or add it to this one (`--sample` does)",
+    Code.UNBOUND: "use another object or home, or `--sample` to add it",
     Code.NOT_AFFORDED: "use another object or action",
     Code.NOT_SIMULATED: "use an action that is executed",
     Code.UNKNOWN_ACTION: "use an action of the grammar",
