@@ -117,20 +117,25 @@ def knowledge(overlay: str | None = None) -> Knowledge:
 
 @explained
 def home(name: str, knowledge: Knowledge | None = None) -> Home:
-    """One of our homes by name (`homes.library.names()` lists them), by default with our knowledge.
+    """One of our homes by name (`homes.library.names()` lists them), or that of a file; by default with our knowledge.
+
+    Args:
+        name: or the path of a scene graph (`.json`, see `schemas.graph`) or of a plan (`.yaml`).
+        knowledge: what its classes are.
 
     Raises:
-        HearthError: UNKNOWN_HOME.
+        HearthError: UNKNOWN_HOME, or every fault of the file.
 
     Examples:
         >>> hearth.home("maple")
         Home('maple', 367 nodes)
     """
-    from hearth.homes.library import load_graph
+    from hearth.homes.library import named_graph
     from hearth.simulation.world.home import Home
 
     known = _or_ours(knowledge)
-    return Home.from_graph(load_graph(name, known), name, known)
+    title, graph = named_graph(str(name), known)
+    return Home.from_graph(graph, title, known)
 
 
 @explained

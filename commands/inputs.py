@@ -104,6 +104,25 @@ def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = Fal
     """
     from hearth.commands import output
     from hearth.schemas.diagnostics import HearthError
+
+    given = choose_given(file, known, number, columns)
+    if given.faults and (strict or not given.program.steps):
+        raise HearthError(given.faults)
+    output.report((*given.faults, *given.warnings), kind="warning")
+    if given.faults:
+        lines = output.counted(len({fault.line for fault in given.faults}), "line")
+        output.note(f"Left out: {lines}; with `--strict` such a program is refused.")
+    return given
+
+
+def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "") -> Given:
+    """Return a program of an input with its faults; nothing is said of them yet. See `read_given`.
+
+    Raises:
+        HearthError: the input has no such program, or cannot be read.
+    """
+    from hearth.commands import output
+    from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
     from hearth.storage.input_files import placed
     from hearth.storage.rejects import Reject
@@ -122,14 +141,7 @@ def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = Fal
     if len(programs) < number:
         message = f"it holds {output.counted(len(programs), 'program')}" if programs else "no program in it"
         raise HearthError(refused or HearthError.of(Code.EMPTY, message, file=str(file)).diagnostics)
-    given = programs[number - 1]
-    if given.faults and (strict or not given.program.steps):
-        raise HearthError(given.faults)
-    output.report((*given.faults, *given.warnings), kind="warning")
-    if given.faults:
-        lines = output.counted(len({fault.line for fault in given.faults}), "line")
-        output.note(f"Left out: {lines}; with `--strict` such a program is refused.")
-    return given
+    return programs[number - 1]
 
 
 def read_programs(path: Path, known: Knowledge, name: str, columns: str = "") -> Iterator[Given | Reject]:
@@ -190,7 +202,7 @@ def _titled(program: Program, row: IngestedRow) -> Program:
 
 
 def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
-    """The home of that name, or that of a graph file.
+    """The home of that name, or that of a graph file; a name that is the path of a file is that file.
 
     Raises:
         HearthError: UNKNOWN_HOME, or a fault of the file.
@@ -198,6 +210,7 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     from hearth.homes import library
     from hearth.simulation.world.home import Home
 
+    graph = graph or library.given_file(name)
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)

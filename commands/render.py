@@ -22,6 +22,7 @@ def program(
     file: Path,
     out: Path,
     home: str = "maple",
+    graph: Path | None = None,
     homes: Path | None = None,
     mode: Literal["snapshots", "video"] = "snapshots",
     cameras: str = "auto",
@@ -45,14 +46,14 @@ def program(
       python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
       python cli.py render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
     """
-    from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.rendering.scene.with_geometry import with_geometry
 
     _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
     known = default()
-    execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, homes, seed, known)
-    place = with_geometry(library.load_graph(home, known, homes), home, known)
+    home, scene = _scene(home, graph, homes, known)
+    execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, scene, seed, known)
+    place = with_geometry(scene, home, known)
     out.mkdir(parents=True, exist_ok=True)
     title, size = f"{execution.program.title}, in {home}", (width, _height(width, mode))
     shooting = Shooting(execution, place.graph, known, out, size, seed, hour, title, vary)
@@ -75,6 +76,15 @@ def program(
         if failure:
             print(f"Stopped: {failure}")
     output.status(failure is not None, strict=True)
+
+
+def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) -> tuple[str, EnvironmentGraph]:
+    """The name and the scene graph of where a program is pictured."""
+    from hearth.homes import library
+
+    if graph is not None:
+        return graph.stem, library.graph_of(graph, known)
+    return library.named_graph(home, known, homes)
 
 
 def _check(mode: str, width: int, given: Mapping[str, bool]) -> None:
@@ -286,12 +296,13 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
         yield execution, list(tick_visibilities(trajectory_of(execution, graph, known, seed=seed), graph))
 
 
-def _execution(program: Program, home: str, homes: Path | None, seed: int, known: Knowledge) -> Execution:
+def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
     from hearth.grounding.trial import attempt
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Failure
+    from hearth.simulation.world.home import Home
 
-    trial = attempt(program, inputs.read_home(home, None, homes, known), seed)
+    trial = attempt(program, Home.from_graph(graph, home, known), seed)
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, trial.message())
     return trial.execution

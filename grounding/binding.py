@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import product
-from operator import and_
+from operator import and_, or_
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
@@ -48,20 +48,26 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
         >>> hearth.bind(program, world).nodes
         {('fridge', 1): 137, ('milk', 1): 142}
     """
+    found, failure = bind_far(program, world, rules)
+    return failure or found
+
+
+def bind_far(program: Program, world: World, rules: Rules = DEFAULT) -> tuple[Binding, Failure | None]:
+    """Return the binding of `bind`, or that of the furthest step reached and why it goes no further."""
     search = _Search(program, rules)
     fixed = {ref.key: ref.node for ref in program.objects() if ref.node is not None}
     if not program.steps:
-        return Binding({}, 0)
+        return Binding({}, 0), None
     stack = [search.options(0, ready(world, program), fixed)]
     while stack and search.tried < MAX_ACTS:
         option = next(stack[-1], None)
         if option is None:
             stack.pop()
         elif len(stack) == len(search.ticks):
-            return Binding(option[0], search.tried)
+            return Binding(option[0], search.tried), None
         else:
             stack.append(search.options(len(stack), option[1], option[0]))
-    return search.furthest
+    return Binding(search.nodes, search.tried), search.furthest
 
 
 def bind_stored(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
@@ -99,6 +105,7 @@ class _Search:
         self.rules = rules
         self.tried = 0
         self.furthest = Failure(Code.UNBOUND, expected="a step", actual="none")
+        self.nodes: dict[Key, int] = {}
         self.reached = -1
         self.uses: dict[Key, set[tuple[str, int]]] = {}
         # Several nodes of a class may be named by their ids alone: `fixed` of `bind` has but one of them.
@@ -112,7 +119,7 @@ class _Search:
         """Every way to do tick `number` from a world: the binding with its new objects, and the world after."""
         steps = self.ticks[number]
         if (failure := next(filter(None, (unfit(world, step) for step in steps)), None)) is not None:
-            self._fail(number, failure)
+            self._fail(number, failure, nodes)
             return
         new: dict[Key, Step] = {}
         for step in steps:
@@ -122,7 +129,7 @@ class _Search:
         choices = [self._ordered(key, world, step.agent, nodes) for key, step in new.items()]
         for (key, step), found in zip(new.items(), choices, strict=True):
             if not found:
-                self._fail(number, self._nothing(step, key, world))
+                self._fail(number, self._nothing(step, key, world), nodes)
         for chosen in product(*choices):
             if len({(node, _room(key, world)) for key, node in zip(new, chosen, strict=True)}) < len(chosen):
                 continue
@@ -130,7 +137,7 @@ class _Search:
             self.tried += 1
             after = self._done(world, steps, bound)
             if isinstance(after, Failure):
-                self._fail(number, after)
+                self._fail(number, after, bound)
             else:
                 yield bound, after
 
@@ -139,9 +146,9 @@ class _Search:
             return act(world, _bound(steps[0], bound), self.rules)
         return together(world, [_bound(step, bound) for step in steps], self.rules)
 
-    def _fail(self, number: int, failure: Failure) -> None:
+    def _fail(self, number: int, failure: Failure, nodes: dict[Key, int]) -> None:
         if number >= self.reached:
-            self.reached = number
+            self.reached, self.nodes = number, nodes
             self.furthest = replace(failure, tick=number)
 
     def _ordered(self, key: Key, world: World, agent_number: int, nodes: dict[Key, int]) -> list[int]:
@@ -173,16 +180,35 @@ class _Search:
 
     def _nothing(self, step: Step, key: Key, world: World) -> Failure:
         names = world.home.knowledge.same_class(key[0])
-        present = any(world.home.by_class.get(name) for name in names)
-        actual = "it has some, but none affords what the program does with it, or all are taken"
+        present = reduce(or_, (world.home.by_class.get(name, 0) for name in names))
         return Failure(
             Code.UNBOUND,
             action=step.action,
             agent=step.agent,
             names=(key[0],),
             expected=f"a {' or '.join(names[:3])} in the home",
-            actual=actual if present else "it has none",
+            actual=self._why_none(key, world, present) if present else "it has none",
         )
+
+    def _why_none(self, key: Key, world: World, present: int) -> str:
+        """Return why none of the nodes of a class serves as an object of the program."""
+        uses = sorted(self.uses[key])
+        unfit = [action for action, position in uses if not present & _able(world, action, position)]
+        if unfit:
+            return f"{_actions(unfit)} {_works(present)}"
+        if not self.candidates[key]:
+            return f"{_actions([action for action, _ in uses])} together {_works(present)}"
+        count = self.candidates[key].bit_count()
+        return f"other objects of the program take {'the only one' if count == 1 else f'all {count}'}"
+
+
+def _works(present: int) -> str:
+    count = present.bit_count()
+    return "does not work with the only one" if count == 1 else f"works with none of the {count}"
+
+
+def _actions(names: list[str]) -> str:
+    return ", ".join(f"[{name}]" for name in dict.fromkeys(names))
 
 
 def _able(world: World, action: str, position: int) -> int:

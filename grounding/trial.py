@@ -1,11 +1,12 @@
 """Running a program in a home: bound to the home's own objects if it can run, else in an environment sampled for it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import islice
 
-from hearth.grounding.binding import Binding, bind
-from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.binding import Binding, bind, bind_far
+from hearth.grounding.environments.default_state import need_somebody, prepared
 from hearth.grounding.environments.multi_agent import sample_together
-from hearth.grounding.environments.sampling import Environment, sample
+from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -31,8 +32,56 @@ class Trial:
     refused: Failure | None = None
 
 
+LEAST = Size(0, 0, 0)
+"""Of an environment to which nothing is added but what the program needs."""
+
+
+def as_given(program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT) -> Trial:
+    """Run a program in a home as it is, as far as its steps can be done with any of the home's objects.
+
+    Args:
+        program: instances that carry node ids keep them.
+        home: nothing is added to it but characters that it lacks, which stand in random rooms.
+        seed: of those rooms.
+        rules: how actions are read.
+
+    Raises:
+        HearthError: BAD_GRAPH: nobody is in the home.
+    """
+    need_somebody(home)
+    rules = suited(program, home.knowledge, rules)
+    world = with_agents(World.start(home), _characters(program), seed)
+    program, failure = _bound_far(program, world, rules)
+    execution = run(world, program, rules)
+    if failure is not None and failure.tick == len(execution.worlds) - 1:
+        execution = replace(execution, failure=failure)
+    return Trial(execution)
+
+
+def _bound_far(program: Program, world: World, rules: Rules) -> tuple[Program, Failure | None]:
+    """Return the program bound as far as it runs, and why it goes no further.
+
+    No object fits that a later step misuses; then the steps before that one are bound without it, so that it fails.
+    """
+    found, failure = bind_far(program, world, rules)
+    while failure is not None and failure.code is Code.UNBOUND:
+        before = [step for steps in islice(program.ticks(), failure.tick + 1) for step in steps]
+        part, stopped = bind_far(program.with_steps(before), world, rules)
+        if stopped is not None:
+            break
+        program = part.apply(program)
+        found, failure = bind_far(program, world, rules)
+    return found.apply(program), failure
+
+
 def attempt(
-    program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT, default_state: bool = True, add: bool = True
+    program: Program,
+    home: Home,
+    seed: int = 0,
+    rules: Rules = DEFAULT,
+    default_state: bool = True,
+    add: bool = True,
+    size: Size = USUAL,
 ) -> Trial | Failure:
     """Ground and run a program.
 
@@ -43,6 +92,7 @@ def attempt(
         rules: how actions are read.
         default_state: begin with the home in its default state; else as it is given.
         add: sample an environment when the home alone has no binding that runs.
+        size: of what is sampled for one character; `LEAST` adds only what the program needs.
 
     Returns:
         The trial, or why the program can be grounded neither way. Where the program has or names more characters than
@@ -60,7 +110,7 @@ def attempt(
     if any(named) or not add:
         return found  # where some objects have no node, a run would end at the first of them, whatever is amiss
     sampled = (
-        sample(program, home, seed, program.title, rules=rules)
+        sample(program, home, seed, program.title, size=size, rules=rules)
         if wanted == 1
         else sample_together(program, home, wanted, seed, rules)
     )

@@ -87,13 +87,36 @@ def graph_of(path: Path | str, knowledge: Knowledge) -> EnvironmentGraph:
     return _graph(found) if found.suffix == ".json" else _scene(found, knowledge)
 
 
+FILES = (".json", ".yaml")
+"""How the names of scene graphs and plans end."""
+
+
+def given_file(home: str) -> Path | None:
+    """Return the file of a home that is given by its path, `scenes/mine.json`; None where it is given by its name."""
+    path = Path(home)
+    return path if home.endswith(FILES) and path.is_file() else None
+
+
+def named_graph(home: str, knowledge: Knowledge, directory: Path | str | None = None) -> tuple[str, EnvironmentGraph]:
+    """Return the name and the scene graph of a home that is given by its name, or by its file's path.
+
+    Raises:
+        HearthError: as `load_graph`.
+    """
+    path = given_file(home)
+    if path is not None:
+        return path.stem, graph_of(path, knowledge)
+    return home, load_graph(home, knowledge, directory)
+
+
 def _file(name: str, directory: Path | str | None) -> Path:
     known = _files(directory, _own())
     if name not in known:
         near = get_close_matches(name, known, 1)
         hint = f"did you mean `{near[0]}`?" if near else f"homes are {', '.join(sorted(known))}"
-        if name.endswith((".json", ".yaml")):
-            hint = "a file is not a name: give a scene graph by --graph, a folder of homes by --homes"
+        if name.endswith(FILES):
+            there = f"`--homes FOLDER --home {Path(name).stem}` takes a home of a folder"
+            hint = f"there is no file of that name; {hint}" if given_file(name) is None else there
         raise HearthError.of(Code.UNKNOWN_HOME, f"there is no home `{name}`", suggestion=hint)
     return known[name]
 

@@ -10,6 +10,7 @@ from hearth.repair import trim
 from hearth.repair.circumstances import Lost, lost
 from hearth.repair.handlers.common import Edit, Handler, RepairContext
 from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
+from hearth.schemas.failure_words import step_number
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
@@ -178,7 +179,7 @@ def _context(revision: _Revision, task: _Task) -> RepairContext | None:
     """The first thing wrong with a program: a step that fails or is done in other circumstances, or a missed goal."""
     execution = revision.execution
     if execution.failure is not None:
-        at = _failing(revision.program, execution.failure)
+        at = step_number(revision.program, execution.failure) - 1
         return _at(revision, task, at, execution.failure, execution.final)
     odd = task.lost(execution, revision.sources)
     if odd is not None:
@@ -206,17 +207,6 @@ def _at(
         revision.program, at, failure, world, task.knowledge, task.rules,
         task.goal, task.nodes, missed, wanted, revision.execution.worlds,
     )  # fmt: skip
-
-
-def _failing(program: Program, failure: Failure) -> int:
-    """Number of the step that a failure is about: in its tick, that of its agent."""
-    number = 0
-    for tick, steps in enumerate(program.ticks()):
-        if tick == failure.tick:
-            mine = (place for place, step in enumerate(steps) if step.agent == failure.agent)
-            return number + next(mine, 0)
-        number += len(steps)
-    return number
 
 
 def _consult(handlers: Mapping[Code, Handler], context: RepairContext) -> tuple[str, Edit | None, str]:

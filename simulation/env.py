@@ -91,7 +91,7 @@ class Env:
         """Begin anew. In a home with geometry every character stands at a place (see `motion.positions`).
 
         Args:
-            home: where, or its name; a world is taken up as it stands.
+            home: where, or its name, or the path of its file; a world is taken up as it stands.
             agents: how many are wanted at least. Those the home lacks are added, each in a random room.
             seed: decides the rooms, and the places in them of characters that are added.
 
@@ -202,12 +202,13 @@ class Env:
         return given if isinstance(given, Step) else instruction_of(given, self.world.home)
 
     def _home(self, name: str) -> Home:
-        from hearth.homes.library import load_graph
+        from hearth.homes.library import named_graph
 
         if self.knowledge is None:
             message, remedy = f"no knowledge to read the home `{name}` with", "hearth.Env(), or Env(knowledge=...)"
             raise HearthError.of(Code.UNKNOWN_HOME, message, suggestion=remedy)
-        return Home.from_graph(load_graph(name, self.knowledge), name, self.knowledge)
+        title, graph = named_graph(name, self.knowledge)
+        return Home.from_graph(graph, title, self.knowledge)
 
 
 def with_agents(world: World, count: int, seed: int = 0) -> World:

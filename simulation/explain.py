@@ -1,9 +1,11 @@
-"""Why a step could be done: each check of its action, and the edges or states by which it held."""
+"""Why a step could be done or not: each check of its action, and the edges or states by which it held."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from hearth.kb.formula import And, Formula, Or, Some, Term
+from hearth.kb.formula import And, Formula, Or, Some, Term, free
+from hearth.kb.records import Condition
+from hearth.schemas.failures import Failure
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID, STATES
@@ -17,10 +19,11 @@ from hearth.simulation.world.world import World
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One check before a step: the literal as the knowledge writes it, and what it held by."""
+    """One check before a step: the literal as the knowledge writes it, what it held by, and whether it held."""
 
     literal: str
     by: str
+    held: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +64,75 @@ def checks(world: World, step: Step, rules: Rules) -> Iterator[Check]:
     index = [home.index[ref.node] for ref in step.objects if ref.node is not None]
     o, s = [*index, -1, -1][:2]
     cast = _Cast(world, world.agents[step.agent], o, s, rules.made_bed)
-    for condition in home.knowledge.actions[step.action].preconditions:
-        if condition.option and not getattr(rules, condition.option, False):
-            continue
+    for condition in _conditions(world, step, rules):
         yield Check(str(condition.formula), _witness(condition.formula, cast))
+
+
+def checks_until(world: World, step: Step, rules: Rules, failure: Failure) -> Iterator[Check]:
+    """Yield the checks of a step that fails, in the order they are made: those that hold, then the one that does not.
+
+    There is none where the failure is not one of the checks: nothing has to be bound, or the action is not executed.
+    """
+    conditions = list(_conditions(world, step, rules))
+    at = _failing(conditions, world, step, failure)
+    if at is None:
+        return
+    for number, check in enumerate(checks(world, step, rules)):
+        if number == at:
+            yield Check(check.literal, "", held=False)
+            return
+        yield check
+
+
+def facts(world: World, agent: int, nodes: Iterable[int]) -> Iterator[str]:
+    """Yield what holds of a character and of some nodes: states and places, what it is close to, faces and holds."""
+    home = world.home
+    cast = _Cast(world, world.agents[agent], -1, -1, made_bed=True)
+    for i in dict.fromkeys(home.index[node] for node in nodes if node in home.index):
+        if not home.characters >> i & 1:
+            yield f"{cast.name(i)}: {'; '.join(filter(None, (' '.join(states_of(i, world.states)), _place(cast, i))))}"
+    me = cast.agent
+    shown = {"CLOSE": me.close, "FACING": me.facing, "ON": me.on, "holding": me.held}
+    posture = " ".join(states_of(me.index, world.states)) or "standing"
+    related = (f"{word} {_some(cast, mask)}" for word, mask in shown.items() if mask)
+    yield f"{cast.name(me.index)}: {'; '.join((f'{posture} in {cast.name(rows.agent_room(world, me))}', *related))}"
+
+
+def _place(cast: _Cast, i: int) -> str:
+    world = cast.world
+    holders = [cast.name(agent.index) for agent in world.agents if agent.held >> i & 1]
+    around = rows.inside(world, i) & ~world.home.rooms
+    places = [f"held by {name}" for name in holders]
+    places += [f"{word} {_some(cast, mask)}" for word, mask in (("ON", rows.on(world, i)), ("INSIDE", around)) if mask]
+    room = rows.room_of(world, i)
+    return ", ".join((*places, f"in {cast.name(room)}" if room >= 0 else "in no room"))
+
+
+def _some(cast: _Cast, mask: int) -> str:
+    names = [cast.name(i) for i in indices(mask) if not cast.world.home.properties["BODY_PART"] >> i & 1]
+    rest = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return (", ".join(names[:MOST_NAMED]) or "only itself") + rest
+
+
+MOST_NAMED = 4
+"""Things that a fact names."""
+
+
+def _conditions(world: World, step: Step, rules: Rules) -> Iterator[Condition]:
+    """The checks of an action that these rules make."""
+    action = world.home.knowledge.actions.get(step.action)
+    for condition in action.preconditions if action is not None else ():
+        if not condition.option or getattr(rules, condition.option, False):
+            yield condition
+
+
+def _failing(conditions: list[Condition], world: World, step: Step, failure: Failure) -> int | None:
+    """Which check a failure is about: of several of its code the one about the object that it names first."""
+    found = [number for number, condition in enumerate(conditions) if condition.code is failure.code]
+    node = next(iter(failure.objects), None)
+    variable = next((name for name, ref in zip("os", step.objects, strict=False) if ref.node == node), "")
+    about = (number for number in found if variable in free(conditions[number].formula))
+    return next(about, next(iter(found), None))
 
 
 def _witness(formula: Formula, cast: _Cast) -> str:

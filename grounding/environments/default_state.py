@@ -147,6 +147,17 @@ def _weighted(spots: Iterable[tuple[tuple[str, int, str], int]]) -> Spots:
     return Spots(tuple(spot for spot, _ in pairs), tuple(accumulate(each)), each)
 
 
+def need_somebody(home: Home) -> None:
+    """Refuse a home without a character.
+
+    Raises:
+        HearthError: BAD_GRAPH.
+    """
+    if not home.agents:
+        remedy = "`home edit HOME --add character:inside:ROOM` adds one"
+        raise HearthError.of(Code.BAD_GRAPH, f"nobody is in the home `{home.name}`", suggestion=remedy)
+
+
 def _in_default_state(home: Home) -> Home:
     """The home with default states, its (first) character standing in the room it is in, if it has rooms.
 
@@ -159,9 +170,7 @@ def _in_default_state(home: Home) -> Home:
         if wanted != states_of(i, home.states):
             states[node_id] = wanted
     start = World.start(home)
-    if not start.agents:
-        remedy = "`home edit HOME --add character:inside:ROOM` adds one"
-        raise HearthError.of(Code.BAD_GRAPH, f"nobody is in the home `{home.name}`", suggestion=remedy)
+    need_somebody(home)
     if not home.rooms:
         return extended(home, (), (), (), states)
     (agent, *_) = start.agents

@@ -60,20 +60,26 @@ def test_a_folder_is_a_source_and_a_file_is_no_home(tmp_path):
     assert call("check", tmp_path).stdout.startswith("1 source, 2 programs, 4 steps")
     assert call("check", tmp_path / "a.txt").stdout.startswith("1 file, 1 program")
     refused = call("run", tmp_path / "a.txt", "--home", "scene.json", status=2)
-    assert "give a scene graph by --graph" in refused.output
+    assert "there is no file of that name; homes are" in refused.output
 
 
-def test_one_bad_step_does_not_sink_the_rest(tmp_path):
+def test_a_program_with_a_bad_step_is_run_only_when_that_is_asked_for(tmp_path):
     file = tmp_path / "plan.md"
     file.write_text(PLAN)
-    result = call("run", file, "--json")
-    assert len(json.loads(result.stdout)["steps"]) == 2
-    assert "warning[NOT_UNDERSTOOD]" in result.stderr and "plan.md:5:4" in result.stderr and "1 line" in result.stderr
-    assert "NOT_UNDERSTOOD" in call("run", file, "--strict", status=1).output
+    refused = call("run", file, status=1)
+    assert not refused.stdout and "error[NOT_UNDERSTOOD]" in refused.stderr and "plan.md:5:4" in refused.stderr
+    assert "Nothing was run; `--skip-faults` leaves these lines out and runs the 2 other steps." in refused.stderr
+    skipped = call("run", file, "--skip-faults", "--json", status=1)
+    found = json.loads(skipped.stdout)
+    assert len(found["steps"]) == 2 and found["executable"]
+    assert [(fault["line"], fault["code"]) for fault in found["skipped"]] == [(5, "NOT_UNDERSTOOD")]
+    assert "warning[NOT_UNDERSTOOD]" in skipped.stderr and "1 line" in skipped.stderr
     assert "1 program, 2 steps: 1 fault" in call("check", file, status=1).output
     file.write_text(TEXT.replace("[SwitchOn]", "[Fly] <television> (1)\n[SwitchOn]"))
-    assert len(json.loads(call("run", file, "--json").stdout)["steps"]) == 2
-    assert "UNKNOWN_ACTION" in call("run", file, "--strict", status=1).output
+    assert len(json.loads(call("run", file, "--skip-faults", "--json", status=1).stdout)["steps"]) == 2
+    for strict in ((), ("--strict",)):
+        assert "UNKNOWN_ACTION" in call("run", file, *strict, status=1).output
+    assert "leave one of the two out" in call("run", file, "--strict", "--skip-faults", status=2).output
 
 
 def test_a_repeated_plan_is_no_fault(tmp_path):
@@ -87,7 +93,7 @@ def test_all_plans_of_the_papers_are_checked_and_run(real_data):
     file = real_data / "language_planner_examples.json"
     found = json.loads(call("check", file, "--no-affordances", "--json").stdout)
     assert (found["faults"], found["files"][0]["programs"], found["files"][0]["steps"]) == (0, 574, 5_969)
-    ran = call("run", file, "--program", 2, "--json")
+    ran = call("run", file, "--program", 2, "--sample", "--json")
     assert json.loads(ran.stdout)["executable"]
 
 

@@ -32,7 +32,7 @@ def test_run_prints_the_binding_and_what_each_step_changed(tmp_path):
     assert result.exit_code == 0, result.output
     assert "<sofa> (1) is couch" in result.output
     assert "is ON" in result.output and "character" in result.output and "is SITTING" in result.output
-    assert "Done: 5 ticks." in result.output
+    assert "Done: 5 steps." in result.output
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,10 @@ def test_a_program_that_contradicts_itself_ends_with_status_1(tmp_path):
     file.write_text(WATCH.replace("[Walk] <sofa> (1)", "[SwitchOn] <television> (1)"))
     result = call("run", file, "--json")
     found = json.loads(result.stdout)
-    assert result.exit_code == 1 and found["failure"]["code"] == Code.CONTRADICTION
+    assert result.exit_code == 1 and found["failure"]["code"] == Code.IS_ON and found["failure"]["step"] == 3
+    result = call("run", file, "--sample")
+    assert result.exit_code == 1 and "Sampling does not help: step 3 failed" in result.output
+    assert "(CONTRADICTION)" in result.output
 
 
 @pytest.mark.parametrize(
@@ -176,7 +179,7 @@ def test_run_says_what_is_in_the_way_of_a_move(tmp_path):
     file = tmp_path / "blocked.txt"
     file.write_text("Move\nAbout.\n\n\n[Walk] <fridge> (1)\n[Walkforward]\n")
     result = call("run", file, "--home", "maple")
-    assert result.exit_code == 1 and "NO_PATH: tick 2, [Walkforward]" in result.output, result.output
+    assert result.exit_code == 1 and "step 2 failed: [Walkforward]" in result.output, result.output
 
 
 def test_run_takes_with_the_hand_that_is_said(tmp_path):
