@@ -23,14 +23,14 @@ class Pair:
     Attributes:
         id: as in the file.
         predicted: the lines of the prediction; None if it is missing.
-        reference: the lines of the reference.
+        reference: the lines of the reference; None without one.
         line: the prediction's line (or row of a Parquet file), from 1; 0 if it is missing.
         more: the other fields of the prediction's row.
     """
 
     id: str
     predicted: Lines | None
-    reference: Lines
+    reference: Lines | None
     line: int = 0
     more: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
