@@ -9,9 +9,12 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
 from hearth.scoring.bootstrap import Interval, intervals
 from hearth.scoring.environments import Environments
+from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.lines import Lines
 from hearth.scoring.metrics import executability as running
 from hearth.scoring.metrics.executability import ErrorClass, Executability, executability
@@ -33,8 +36,8 @@ GOALS = ("goal", "tl_goal", "vh_goal")
 
 NO_LCS = LcsScore(0.0, 0.0, 0.0)
 
-BothLcs = tuple[LcsScore | None, LcsScore | None]
-"""Similarity by class, or as the options say, and by instance; None without a reference."""
+BothLcs = tuple[LcsScore, LcsScore]
+"""Similarity by class, or as the options say, and by instance; 0 without a reference."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +65,7 @@ class Scored:
 
     Attributes:
         pair: the prediction and its reference.
-        lcs: similarity of the programs, by class unless the options say otherwise; None without a reference.
+        lcs: similarity of the programs, by class unless the options say otherwise; 0 without a reference.
         by_instance: similarity where each object is an instance, as in tables 5.2 to 5.5.
         parse: None for a missing prediction.
         execution: None without an environment, and for a missing prediction.
@@ -73,8 +76,8 @@ class Scored:
     """
 
     pair: Pair
-    lcs: LcsScore | None
-    by_instance: LcsScore | None
+    lcs: LcsScore
+    by_instance: LcsScore
     parse: Parsability | None = None
     execution: Executability | None = None
     graph: GraphScore | None = None
@@ -102,8 +105,12 @@ def _whole(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
     return float(value(scored.goal)) if scored.goal else None
 
 
-def _lcs(scored: LcsScore | None, level: str) -> float | None:
-    return getattr(scored, level) if scored else None
+def _lcs(level: str, by_instance: bool = False) -> Callable[[Scored], float | None]:
+    def value(scored: Scored) -> float | None:
+        found: float = getattr(scored.by_instance if by_instance else scored.lcs, level)
+        return found if scored.pair.referenced else None
+
+    return value
 
 
 def given_goal(pair: Pair) -> Any:
@@ -130,12 +137,12 @@ def _executable(scored: Scored) -> float | None:
 
 
 METRICS: dict[str, Callable[[Scored], float | None]] = {
-    "lcs_step": lambda s: _lcs(s.lcs, "step"),
-    "lcs_action": lambda s: _lcs(s.lcs, "action"),
-    "lcs_object": lambda s: _lcs(s.lcs, "object"),
-    "lcs_mean": lambda s: _lcs(s.lcs, "mean"),
-    "lcs_step_instances": lambda s: _lcs(s.by_instance, "step"),
-    "lcs_object_instances": lambda s: _lcs(s.by_instance, "object"),
+    "lcs_step": _lcs("step"),
+    "lcs_action": _lcs("action"),
+    "lcs_object": _lcs("object"),
+    "lcs_mean": _lcs("mean"),
+    "lcs_step_instances": _lcs("step", by_instance=True),
+    "lcs_object_instances": _lcs("object", by_instance=True),
     "parsable": lambda s: float(s.parse is not None and s.parse.parsable),
     "parsable_names": lambda s: float(s.parse is not None and s.parse.named),
     "executable": _executable,
@@ -166,6 +173,7 @@ class Summary:
         inexact: number of predictions whose F1 is a lower bound.
         means: each score's mean and interval.
         errors: first failures by class.
+        codes: first failures by code.
         failed_at: number of first failures at each line, from 0.
     """
 
@@ -178,6 +186,7 @@ class Summary:
     inexact: int
     means: Mapping[str, Interval]
     errors: Mapping[ErrorClass, int]
+    codes: Mapping[Code, int]
     failed_at: Mapping[int, int]
 
 
@@ -194,19 +203,20 @@ def signatures(options: Options, own: int = 0) -> dict[str, str]:
 
 
 def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[BothLcs]:
-    """The similarity of each prediction to its reference, and that by instance; 0 for a missing one."""
-    lines = [(pair.predicted or (), pair.reference) for pair in pairs if pair.reference is not None]
+    """The similarity of each prediction to its reference, and that by instance; 0 if one of the two is missing."""
+    lines = [(pair.predicted or (), pair.reference) for pair in pairs]
     distinct = score_pairs(lines, instances=True)
     both = zip(distinct if instances else score_pairs(lines), distinct, strict=True)
-    return [_both(pair, (None, None) if pair.reference is None else next(both)) for pair in pairs]
-
-
-def _both(pair: Pair, found: BothLcs) -> BothLcs:
-    return (NO_LCS, NO_LCS) if pair.predicted is None and pair.reference is not None else found
+    there = [pair.predicted is not None and pair.referenced for pair in pairs]
+    return [found if whole else (NO_LCS, NO_LCS) for whole, found in zip(there, both, strict=True)]
 
 
 def evaluate(
-    pairs: Sequence[Pair], knowledge: Knowledge, environments: Environments | None = None, options: Options = Options()
+    pairs: Sequence[Pair],
+    knowledge: Knowledge,
+    environments: Environments | None = None,
+    options: Options = Options(),
+    rejects: FirstFaults | None = None,
 ) -> list[Scored]:
     """Score every prediction, in order (thesis 4.3, 5.6.1).
 
@@ -215,6 +225,10 @@ def evaluate(
         knowledge: the grammar.
         environments: where programs run; without it only LCS and parsability are scored.
         options: how.
+        rejects: gets the faults of rows whose environment or goal can't be read, which are left out.
+
+    Raises:
+        HearthError: such a fault, without `rejects`, or if no row is left.
 
     Examples:
         >>> row = '{"id": 1, "predicted": "[Sit] <sofa> (1)", "reference": "[Lie] <sofa> (1)"}'
@@ -223,10 +237,17 @@ def evaluate(
         >>> scored.lcs.step, scored.lcs.object, scored.parse.parsable
         (0.0, 1.0, True)
     """
-    return [
-        scored(pair, lcs, knowledge, environments(pair) if environments else None, options)
-        for pair, lcs in zip(pairs, lcs_of(pairs, options.instances), strict=True)
-    ]
+    found = []
+    for pair, lcs in zip(pairs, lcs_of(pairs, options.instances), strict=True):
+        try:
+            found.append(scored(pair, lcs, knowledge, environments(pair) if environments else None, options))
+        except HearthError as error:
+            if rejects is None:
+                raise
+            rejects.reject(error.diagnostics, pair.id, pair.line)
+    if rejects and not found:
+        raise HearthError(rejects)
+    return found
 
 
 def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
@@ -237,12 +258,13 @@ def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
         count=len(every),
         missing=sum(each.missing for each in every),
         empty=sum(each.empty for each in every),
-        unreferenced=sum(each.pair.reference is None for each in every),
+        unreferenced=sum(not each.pair.referenced for each in every),
         reached_before=sum(each.goal is not None and not each.goal.left for each in every),
         incomparable=sum(each.comparable is False for each in every),
         inexact=sum(each.graph is not None and not each.graph.exact for each in every),
         means=intervals(columns, seed),
         errors=dict(sorted(Counter(each.error for each in failures if each.error).items())),
+        codes=dict(sorted(Counter(each.code for each in failures if each.code).items())),
         failed_at=dict(sorted(Counter(each.failed_line for each in failures if each.failed_line is not None).items())),
     )
 
@@ -304,7 +326,7 @@ def scored(
     if world is None:
         return Scored(pair, *lcs, parsed)
     reference = known
-    if reference is None and pair.reference is not None:
+    if reference is None and pair.referenced:
         reference = reference_of(pair.reference, world, options.rules)
     program = reference.program if reference else None
     ran = None if pair.predicted is None else executability(pair.predicted, world, program, options.rules)

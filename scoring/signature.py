@@ -1,7 +1,7 @@
 """Signatures: a short string with every option that changes a score's value."""
 
 
-def signature(name: str, version: int = 1, **options: object) -> str:
+def signature(name: str, version: int = 1, /, **options: object) -> str:
     """Return a score's signature: `signature("lcs", norm="max", level="step")` is `lcs|norm:max|level:step|v1`.
 
     Args:

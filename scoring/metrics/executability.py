@@ -129,7 +129,7 @@ def executability(
     unfit = [line for line, step in steps if line not in faults and not _fits(step, knowledge)]
     sound = sum(line < min(faults, default=len(lines)) for line in place)
     execution = run(world, program.with_steps(program.steps[:sound]), rules)
-    failures: list[First] = [(line, STATIC[code], code) for line, code in sorted(faults.items())]
+    failures: list[First] = [(line, STATIC.get(code, ErrorClass.SYNTAX), code) for line, code in sorted(faults.items())]
     failures += [(line, ErrorClass.AFFORDANCE, Code.NOT_AFFORDED) for line in unfit]
     if execution.failure is not None:
         failed = _failed_step(program.steps, execution.failure)

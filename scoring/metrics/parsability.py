@@ -7,7 +7,7 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.lines import Line, Lines
+from hearth.scoring.lines import Line, Lines, Refused
 from hearth.scoring.signature import signature
 
 SIGNATURE = signature("parsable", 2, level="program", empty=0)
@@ -65,7 +65,7 @@ def parsability(lines: Lines, knowledge: Knowledge) -> Parsability:
 def _first(line: Line, number: int, knowledge: Knowledge) -> Iterator[Fault]:
     """The gravest fault of a line, if any."""
     if isinstance(line, str):
-        yield Fault(number, Code.SYNTAX, line[:200])
+        yield Fault(number, line.code if isinstance(line, Refused) else Code.SYNTAX, line[:200])
         return
     fault = _fault(line.action, tuple([ref.name for ref in line.objects]), knowledge)
     if fault:
