@@ -63,6 +63,7 @@ class Result(NamedTuple):
     goal_fraction: float | None = None
     executable: float | None = None
     parsable: float | None = None
+    goal_whole: float | None = None
     source: str = "thesis"
 
 
