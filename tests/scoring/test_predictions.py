@@ -153,7 +153,7 @@ def test_rows_without_a_reference_or_an_id(write):
         ("", False),
     ],
 )
-def test_files_with_predictions_are_told_from_programs(tmp_path, text, rows):
+def test_files_with_predictions_are_distinguished_from_programs(tmp_path, text, rows):
     (tmp_path / "f").write_text(text)
     assert has_predictions(tmp_path / "f") is rows
 
