@@ -1,11 +1,29 @@
 """Input of scorers: a program, a text or a list of steps, read as a sequence of lines."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from hearth.kb.language.plan_lines import plan_line
 from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import parse_steps
+
+
+class Refused(str):
+    """A line that another reader refused, with the code of its fault."""
+
+    __slots__ = ("code",)
+
+    code: Code
+
+    def __new__(cls, text: str, code: Code) -> Refused:
+        """Return the line with its code."""
+        line = super().__new__(cls, text)
+        line.code = code
+        return line
+
 
 Line = Step | str
 """A step, or text that does not parse."""
