@@ -186,13 +186,16 @@ class Knowledge:
         return known
 
     def _names_of(self, name: str) -> tuple[str, ...]:
-        """A class's own name, its twins' and the aliases of them all."""
+        """A class's own name, its twins' and the aliases of them all; then all as VirtualHome 2.x writes them,
+        `washingmachine`.
+        """
         thing = self.objects.get(name)
         if thing is None:
             return (name,)
         root = thing.same_as or name
         family = dict.fromkeys((name, root, *self._twins.get(root, ())))
-        return (*family, *(alias for one in family for alias in self._aliases.get(one, ())))
+        names = (*family, *(alias for one in family for alias in self._aliases.get(one, ())))
+        return (*names, *(run_together for one in names if (run_together := one.replace("_", "")) not in names))
 
     def ancestors(self, name: str) -> tuple[str, ...]:
         """What it is a kind of, nearest first: `fridge` -> appliance, device, artefact, thing."""
