@@ -59,27 +59,45 @@ class Given(NamedTuple):
 
         if name or graph or not self.grounding or not self.grounding["start"]:
             place = read_home(name or DEFAULT_HOME, graph, homes, known)
-            return _of_home(self.program, place), place, False
+            return _of_home(self.program, place, self.place), place, False
         place = Home.from_graph(graph_of(self.grounding["start"]), self.grounding["home"], known)
         found = bind_stored(self.program, World.start(place))
         return found.apply(self.program) if isinstance(found, Binding) else self.program, place, True
 
 
-def _of_home(program: Program, home: Home) -> Program:
-    """The program, without its node ids if one of them is nothing, or something else, in the home."""
+def _of_home(program: Program, home: Home, file: str) -> Program:
+    """The program with the nodes of the home that it names; says which, and which the home lacks.
+
+    Raises:
+        HearthError: UNBOUND: a node that it names is a thing of another class.
+    """
     from hearth.commands import output
+    from hearth.grounding.node_ids import read_ids
+    from hearth.schemas.diagnostics import HearthError
 
-    for ref in program.objects():
-        if ref.node is None:
-            continue
-        index = home.index.get(ref.node, -1)
-        names = home.knowledge.same_class(ref.name)
-        if index < 0 or (home.classes[index] not in names and not home.instances(ref.name) >> index & 1):
-            found = f"{home.classes[index]} there" if index >= 0 else "nothing there"
-            output.note(f"The program's nodes are not those of {home.name} ({ref.node} is {found}): it is bound anew.")
-            return program.unbound()
-    return program
+    found = read_ids(program, home, file)
+    if found.faults:
+        raise HearthError(found.faults)
+    if found.named:
+        shown = (f"<{ref.name}> to node {ref.node} ({home.classes[home.index[ref.node or 0]]})" for ref in found.named)
+        output.note(f"By their numbers these are bound: {_some(shown, len(found.named))}.")
+    if found.lacking:
+        shown = (f"{ref.node} (<{ref.name}>)" for ref in found.lacking)
+        count = output.counted(len(found.lacking), "node")
+        output.note(f"{home.name} lacks {count} that the program names: {_some(shown, len(found.lacking))}; bound anew.")
+    return found.program
 
+
+def _some(names: Iterable[str], count: int) -> str:
+    """The first names of a list, and how many more there are."""
+    from itertools import islice
+
+    rest = count - MOST_NAMED
+    return ", ".join(islice(names, MOST_NAMED)) + (f" and {rest} more" if rest > 0 else "")
+
+
+MOST_NAMED = 6
+"""Objects of a program that a note names."""
 
 DEFAULT_HOME = "maple"
 

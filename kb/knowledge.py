@@ -163,6 +163,18 @@ class Knowledge:
         found = self.object_class(name)
         return (name,) if found is None else self._same_class(found.name)
 
+    def found_as(self, name: str) -> tuple[str, ...]:
+        """`same_class`, and after each name the name as VirtualHome 2.x writes it: `washing_machine`, `washingmachine`."""
+        known = self._found_as.get(name)
+        if known is None:
+            pairs = ((each, each.replace("_", "")) for each in self.same_class(name))
+            known = self._found_as[name] = tuple(dict.fromkeys(each for pair in pairs for each in pair))
+        return known
+
+    @cached_property
+    def _found_as(self) -> dict[str, tuple[str, ...]]:
+        return {}
+
     def stand_ins(self, name: str) -> tuple[str, ...]:
         """The classes whose things may take its place in a home, best first."""
         thing = self.object_class(name)
@@ -186,16 +198,13 @@ class Knowledge:
         return known
 
     def _names_of(self, name: str) -> tuple[str, ...]:
-        """A class's own name, its twins' and the aliases of them all; then all as VirtualHome 2.x writes them,
-        `washingmachine`.
-        """
+        """A class's own name, its twins' and the aliases of them all."""
         thing = self.objects.get(name)
         if thing is None:
             return (name,)
         root = thing.same_as or name
         family = dict.fromkeys((name, root, *self._twins.get(root, ())))
-        names = (*family, *(alias for one in family for alias in self._aliases.get(one, ())))
-        return (*names, *(run_together for one in names if (run_together := one.replace("_", "")) not in names))
+        return (*family, *(alias for one in family for alias in self._aliases.get(one, ())))
 
     def ancestors(self, name: str) -> tuple[str, ...]:
         """What it is a kind of, nearest first: `fridge` -> appliance, device, artefact, thing."""
