@@ -24,15 +24,30 @@ def paths(sources: Sequence[Path] | None) -> list[str]:
     return [str(path) for path in sources or corpus()]
 
 
-def read_knowledge(overlay: Path | None) -> Knowledge:
-    """Our knowledge, with a user's own files laid over it.
+def read_knowledge(
+    overlay: Path | None, name: str = "", graph: Path | None = None, homes: Path | None = None
+) -> Knowledge:
+    """Our knowledge, with a user's own files laid over it, and with the classes of the graph that a program is for.
+
+    Args:
+        overlay: a folder of files of knowledge.
+        name, graph, homes: the home, as for `read_home`; without a name and a graph the knowledge stays as it is.
 
     Raises:
-        HearthError: every fault of the user's files.
+        HearthError: every fault of the user's files, or of the graph.
     """
     from hearth.kb.loading.load import overlaid
 
-    return overlaid(overlay)
+    known = overlaid(overlay)
+    return _with_classes(known, name, graph, homes) if name or graph else known
+
+
+def _with_classes(known: Knowledge, name: str, graph: Path | None, homes: Path | None) -> Knowledge:
+    from hearth.homes import library
+    from hearth.kb.graph_classes import with_classes
+
+    found = library.graph_of(graph, known) if graph is not None else library.load_graph(name, known, homes)
+    return with_classes(known, found.nodes)
 
 
 class Given(NamedTuple):
@@ -208,7 +223,7 @@ def _titled(program: Program, row: IngestedRow) -> Program:
 
 
 def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
-    """The home of that name, or that of a graph file.
+    """The home of that name, or that of a graph file; says which nodes the knowledge had to complete.
 
     Raises:
         HearthError: UNKNOWN_HOME, or a fault of the file.
@@ -216,9 +231,20 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     from hearth.homes import library
     from hearth.simulation.world.home import Home
 
+    note_filled(library.filled_nodes(graph or name, known, homes))
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)
+
+
+def note_filled(nodes: Sequence[str]) -> None:
+    """Say which nodes of a graph have a category, properties or states only from the knowledge of their class."""
+    from hearth.commands import output
+
+    if nodes:
+        count = output.counted(len(nodes), "node")
+        named = _some(iter(nodes), len(nodes))
+        output.note(f"{count} without category, properties or states: from the knowledge of the class: {named}.")
 
 
 def read_goals(goals: Sequence[str], home: Home) -> Goal:

@@ -53,7 +53,7 @@ def run(
     from hearth.schemas.failures import Failure
     from hearth.simulation.rules import DEFAULT
 
-    known = read_knowledge(kb)
+    known = read_knowledge(kb, home, graph, homes)
     given = read_given(file, known, which, strict, columns)
     program, place, is_own = given.at_home(home, graph, homes, known)
     trial = attempt(program, place, seed, DEFAULT, default_state=not (as_is or is_own), add=not (as_is or is_own))

@@ -16,20 +16,16 @@ from hearth.schemas.graph import Node
 def with_classes(knowledge: Knowledge, nodes: Iterable[Node]) -> Knowledge:
     """The knowledge with the classes of these nodes; itself where it has all of them by these names.
 
-    A class that is known by another name becomes a name of its own that says `same_as`, as `sofa` is of `couch`; one
-    that is not known has the category and all the properties of its nodes.
+    A class that is known by another name becomes a class of its own that says `same_as`, as `sofa` does of `couch`; one
+    that is not known has the category of its first node. Both have the properties of all their nodes, too.
     """
     new: dict[str, ObjectClass] = {}
     for node in nodes:
         name = node.class_name
         if name in knowledge.objects:
             continue
-        known = knowledge.object_class(name)
-        if known is not None:
-            new.setdefault(name, replace(known, name=name, same_as=known.same_as or known.name, synonyms=()))
-            continue
-        first = new.get(name) or ObjectClass(name, 0, node.category)
-        new[name] = replace(first, properties=first.properties | set(node.properties), source="graph")
+        first = new.get(name) or _called(name, node, knowledge)
+        new[name] = replace(first, properties=first.properties | set(node.properties))
     if not new:
         return knowledge
     after = max(thing.id for thing in knowledge.objects.values()) + 1
@@ -40,3 +36,10 @@ def with_classes(knowledge: Knowledge, nodes: Iterable[Node]) -> Knowledge:
         objects={**knowledge.objects, **found},
         _object_names={**knowledge._object_names, **spellings},
     )
+
+
+def _called(name: str, node: Node, knowledge: Knowledge) -> ObjectClass:
+    known = knowledge.object_class(name)
+    if known is None:
+        return ObjectClass(name, 0, node.category, source="graph")
+    return replace(known, name=name, same_as=known.same_as or known.name, synonyms=())
