@@ -95,7 +95,7 @@ def program(
     references: Path | None = None,
     graph: Path | None = None,
     homes: Path | None = None,
-    rules: Literal["default", "replay"] = "default",
+    rules: Literal["default", "replay", "evolving_graph"] = "default",
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
@@ -119,9 +119,9 @@ def program(
     from hearth.scoring.dataset_scores import read_line
     from hearth.scoring.evaluate import Options, evaluate
     from hearth.scoring.predictions import read_pairs
-    from hearth.simulation.rules import RULES
+    from hearth.simulation.rules import CHOICES
 
-    how = Options(RULES[rules], match, scope, instances, seed)
+    how = Options(CHOICES[rules], match, scope, instances, seed)
     known = inputs.read_knowledge(None)
     pairs = read_pairs(file, references, partial(read_line, known))
     scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes), how)
