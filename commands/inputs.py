@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from hearth.schemas.goals import Goal
     from hearth.schemas.program import Program
     from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
+    from hearth.simulation.rules import Rules
     from hearth.simulation.world.home import Home
     from hearth.storage.rejects import Reject
 
@@ -99,7 +100,9 @@ def _of_home(program: Program, home: Home, file: str) -> Program:
     if found.lacking:
         shown = (f"{ref.node} (<{ref.name}>)" for ref in found.lacking)
         count = output.counted(len(found.lacking), "node")
-        output.note(f"{home.name} lacks {count} that the program names: {_some(shown, len(found.lacking))}; bound anew.")
+        output.note(
+            f"{home.name} lacks {count} that the program names: {_some(shown, len(found.lacking))}; bound anew."
+        )
     return found.program
 
 
@@ -235,6 +238,26 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)
+
+
+def read_rules(name: str, home: Home) -> Rules:
+    """The rules of that name (see `simulation.rules.CHOICES`); of `auto` those that fit the home, said if not ours.
+
+    A graph of VirtualHome 2.x says of no two things that they are CLOSE: its simulator knows what is near by what stands
+    ON and INSIDE what, and so do the rules `evolving_graph`.
+    """
+    from hearth.commands import output
+    from hearth.simulation.rules import CHOICES, EVOLVING_GRAPH
+
+    if name != "auto":
+        return CHOICES[name]
+    if any(home.close) or not home.able("Grab"):
+        return CHOICES["default"]
+    output.note(
+        f"No two things of {home.name} are CLOSE, as in graphs of VirtualHome 2.x: read by the rules `evolving_graph`; "
+        "`--rules default` takes ours."
+    )
+    return EVOLVING_GRAPH
 
 
 def note_filled(nodes: Sequence[str]) -> None:

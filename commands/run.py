@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from hearth.commands import output
-from hearth.commands.inputs import read_given, read_goals, read_knowledge
+from hearth.commands.inputs import read_given, read_goals, read_knowledge, read_rules
 
 if TYPE_CHECKING:
     from hearth.grounding.trial import Trial
@@ -36,6 +36,7 @@ def run(
     which: int = 1,
     columns: str = "",
     strict: bool = False,
+    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
     as_json: bool = False,
 ) -> None:
     """Run a program in a home and print the changes of each step.
@@ -44,6 +45,10 @@ def run(
     objects added. Prints the binding and the changes of each step. The status is 1 if a step fails, or if a goal is
     not reached: what holds at the end, what was done (`WATCH(television)`), in which order (`then`), or alternatives.
 
+    Actions are read by --rules: ours (default), those of the release of 2018 (replay), or those of VirtualHome 2.x
+    (evolving_graph: what is in an opened thing that one stands at is within reach, a room only walked into is not). By
+    `auto` a graph in which no two things are CLOSE is read by the last, any other home by ours.
+
     \b
     Examples:
       python cli.py run watch_tv.txt --home maple --explain
@@ -51,12 +56,12 @@ def run(
     """
     from hearth.grounding.trial import attempt
     from hearth.schemas.failures import Failure
-    from hearth.simulation.rules import DEFAULT
 
     known = read_knowledge(kb, home, graph, homes)
     given = read_given(file, known, which, strict, columns)
     program, place, is_own = given.at_home(home, graph, homes, known)
-    trial = attempt(program, place, seed, DEFAULT, default_state=not (as_is or is_own), add=not (as_is or is_own))
+    by = read_rules(rules, place)
+    trial = attempt(program, place, seed, by, default_state=not (as_is or is_own), add=not (as_is or is_own))
     failure = trial if isinstance(trial, Failure) else trial.execution.failure
     progress = None if isinstance(trial, Failure) or not goal else _progress(goal, trial)
     if as_json:

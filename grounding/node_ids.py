@@ -15,7 +15,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Key
-from hearth.schemas.program import ObjectRef, Program
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.world.home import Home
 
 
@@ -48,16 +48,25 @@ def read_ids(program: Program, home: Home, place: str = "") -> NodeIds:
         >>> [(ref.name, ref.node) for ref in read_ids(program, world.home).named]
         []
     """
-    objects = program.objects()
+    objects = tuple(dict.fromkeys(ref for step in program.steps for ref in step.objects))
     given = [ref for ref in objects if ref.node is not None]
     lacking = tuple(ref for ref in given if ref.node not in home.index)
     wrong = [ref for ref in given if ref.node in home.index and not _is_of_class(home, ref)]
     faults = tuple(_fault(ref, program, home, place) for ref in wrong)
-    nodes = {ref.key: ref.node for ref in given if ref.node in home.index}
-    numbers = by_number([ref for ref in objects if ref.node is None], classes_of(home), home.knowledge)
+    said = {ref.key: ref.node for ref in reversed(given) if ref.node in home.index}
+    free = [ref for ref in objects if ref.node is None and ref.key not in said]
+    nodes = said | by_number(free, classes_of(home), home.knowledge)
     numbered = program.numbered() if any(not ref.instance for ref in lacking) else program
-    bound = numbered.bound({**{key: node for key, node in nodes.items() if node is not None}, **numbers})
-    return NodeIds(bound, tuple(ref for ref in bound.objects() if ref.node is not None), lacking, faults)
+    bound = numbered.with_steps(_bound(step, nodes, home) for step in numbered.steps)
+    bound = replace(bound, lines=program.lines)
+    named = dict.fromkeys(ref for step in bound.steps for ref in step.objects if ref.node is not None)
+    return NodeIds(bound, tuple(named), lacking, faults)
+
+
+def _bound(step: Step, nodes: Mapping[Key, int | None], home: Home) -> Step:
+    """A step in which what names a node of the home keeps it, and other objects have that of `nodes`, or none."""
+    objects = (ref if ref.node in home.index else replace(ref, node=nodes.get(ref.key)) for ref in step.objects)
+    return replace(step, objects=tuple(objects))
 
 
 def by_number(refs: Sequence[ObjectRef], classes: Mapping[int, str], knowledge: Knowledge) -> dict[Key, int]:
@@ -92,6 +101,8 @@ def _is_of_class(home: Home, ref: ObjectRef) -> bool:
 def _fault(ref: ObjectRef, program: Program, home: Home, place: str) -> Diagnostic:
     found = home.classes[home.index[ref.node or 0]]
     message = f"`{ref.name}` is said to be node {ref.node}, but that is a `{found}` in {home.name or 'this home'}"
-    hint = f"write <{ref.name}> ({ref.instance or 1}) for any, or give the home that the ids are of by --graph or --home"
+    hint = (
+        f"write <{ref.name}> ({ref.instance or 1}) for any, or give the home that the ids are of by --graph or --home"
+    )
     line = next((program.line(n) for n, step in enumerate(program.steps) if ref in step.objects), 0)
     return Diagnostic(Code.UNBOUND, message, place, line, found=f"{ref.instance}.{ref.node}", suggestion=hint)

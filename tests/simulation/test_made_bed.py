@@ -90,7 +90,9 @@ def test_engine_mask_plain_engine_literals_and_conditions_agree(seed):
         for action in ("Sit", "Lie"):
             found = code(act(world, step(action, seat), rules))
             plain = PlainWorld(graph, rules.origin == "release")
-            assert found == reference.step(plain, step(action, seat), Options(made_bed=rules.made_bed, near_hands=rules.near_hands))
+            assert found == reference.step(
+                plain, step(action, seat), Options(made_bed=rules.made_bed, near_hands=rules.near_hands)
+            )
             on = frozenset(("made_bed",) if rules.made_bed else ())
             failed = first_failure(KNOWN, Facts.of(graph), KNOWN.actions[action], {"a": ME, "o": BED}, on)
             assert found == (failed and failed.code)
