@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -243,8 +243,8 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
 def read_rules(name: str, home: Home) -> Rules:
     """The rules of that name (see `simulation.rules.CHOICES`); of `auto` those that fit the home, said if not ours.
 
-    A graph of VirtualHome 2.x says of no two things that they are CLOSE: its simulator knows what is near by what stands
-    ON and INSIDE what, and so do the rules `evolving_graph`.
+    A graph of VirtualHome 2.x says of no two things that they are CLOSE: its simulator knows what is near by what is ON
+    and INSIDE what, and so do the rules `evolving_graph`.
     """
     from hearth.commands import output
     from hearth.simulation.rules import CHOICES, EVOLVING_GRAPH

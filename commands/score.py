@@ -107,8 +107,9 @@ def program(
 
     Rows are those of `score lcs`. The environment is a row's `graph` (a scene graph's file, relative to FILE's folder)
     or `home` (a name), or else --graph. The goal is what the reference achieves there,
-    or a row's own (`goal`), which the signature counts. Steps may be natural language. Actions are read by --rules: ours,
-    those of the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph).
+    or a row's own (`goal`), which the signature counts. Steps may be natural language. Actions are read by --rules:
+    ours, those of the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface
+    (evolving_graph).
 
     \b
     Example:

@@ -40,7 +40,8 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
     """Find nodes with which every step runs (thesis 2.4.1).
 
     Objects that are bound already keep their node, and one whose number names a node gets it (see `node_ids`).
-    Distinct instances get distinct nodes; only a room that serves as another (`kitchen`, where it is part of the dining room) stands for both.
+    Distinct instances get distinct nodes; only a room that serves as another (`kitchen`, where it is part of the dining
+    room) stands for both.
 
     Returns:
         The binding, or the failure that pruned the last candidate of the furthest step reached.

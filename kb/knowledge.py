@@ -164,7 +164,7 @@ class Knowledge:
         return (name,) if found is None else self._same_class(found.name)
 
     def found_as(self, name: str) -> tuple[str, ...]:
-        """`same_class`, and after each name the name as VirtualHome 2.x writes it: `washing_machine`, `washingmachine`."""
+        """`same_class`, and after each name how VirtualHome 2.x writes it: `washing_machine`, `washingmachine`."""
         known = self._found_as.get(name)
         if known is None:
             pairs = ((each, each.replace("_", "")) for each in self.same_class(name))

@@ -49,9 +49,11 @@ REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
 """Reproduces the release's stored end graphs exactly."""
 
 EVOLVING_GRAPH = Rules(origin="release", watch_needs_on=False, doors=False, one_grip=True, near="evolving_graph")
-"""Reads actions as the simulator `evolving_graph` of VirtualHome 2.x and of the Embodied Agent Interface does today: what
-is in an opened thing that one stands at is within reach, and nothing in a room that one has only walked into. It checks
-no doors either."""
+"""Reads actions as the simulator `evolving_graph` of VirtualHome 2.x and the Embodied Agent Interface does today.
+
+What is in an opened thing that one stands at is within reach, and nothing in a room that one has only walked into. It
+checks no doors either.
+"""
 
 WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
 """For programs that watch what they themselves keep off (see `suited`)."""
