@@ -4,7 +4,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from functools import cached_property
 
-from hearth.homes.filling import CATEGORIES
+from hearth.homes.left_out import CATEGORIES
 from hearth.homes.forms import form
 from hearth.homes.from_graph.measured import has_geometry, measured
 from hearth.homes.plans.checks import joined
