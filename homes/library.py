@@ -8,9 +8,9 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any
 
-from hearth.homes.left_out import filled
 from hearth.homes.from_graph.graph_layout import GraphLayout, lay_out
 from hearth.homes.from_graph.measured import has_geometry, measured
+from hearth.homes.left_out import filled
 from hearth.homes.plans.layout import Layout, read
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge

@@ -4,9 +4,9 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from functools import cached_property
 
-from hearth.homes.left_out import CATEGORIES
 from hearth.homes.forms import form
 from hearth.homes.from_graph.measured import has_geometry, measured
+from hearth.homes.left_out import CATEGORIES
 from hearth.homes.plans.checks import joined
 from hearth.homes.plans.floor import REACH
 from hearth.kb.knowledge import Knowledge

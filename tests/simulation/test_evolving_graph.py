@@ -1,6 +1,6 @@
 """The rules `evolving_graph` against the programs that the Embodied Agent Interface takes as gold.
 
-They are in the wheel `virtualhome-eval`, of which only files are read: `pip install virtualhome-eval` anywhere, and name
+They are files of the wheel `virtualhome-eval`; `pip install virtualhome-eval` anywhere, and name
 the folder of the package by HEARTH_VIRTUALHOME_EVAL.
 """
 
