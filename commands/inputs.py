@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from hearth.schemas.goals import Goal
     from hearth.schemas.program import Program
     from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
+    from hearth.simulation.rules import Rules
     from hearth.simulation.world.home import Home
     from hearth.storage.rejects import Reject
 
@@ -24,15 +25,31 @@ def paths(sources: Sequence[Path] | None) -> list[str]:
     return [str(path) for path in sources or corpus()]
 
 
-def read_knowledge(overlay: Path | None) -> Knowledge:
-    """Our knowledge, with a user's own files laid over it.
+def read_knowledge(
+    overlay: Path | None, name: str = "", graph: Path | None = None, homes: Path | None = None
+) -> Knowledge:
+    """Our knowledge, with a user's own files laid over it, and with the classes of the graph that a program is for.
+
+    Args:
+        overlay: a folder of files of knowledge.
+        name, graph, homes: the home, as for `read_home`; without a name and a graph the knowledge stays as it is.
 
     Raises:
-        HearthError: every fault of the user's files.
+        HearthError: every fault of the user's files, or of the graph.
     """
     from hearth.kb.loading.load import overlaid
 
-    return overlaid(overlay)
+    known = overlaid(overlay)
+    return _with_classes(known, name, graph, homes) if name or graph else known
+
+
+def _with_classes(known: Knowledge, name: str, graph: Path | None, homes: Path | None) -> Knowledge:
+    from hearth.homes import library
+    from hearth.kb.graph_classes import with_classes
+
+    graph = graph or library.given_file(name)
+    found = library.graph_of(graph, known) if graph is not None else library.load_graph(name, known, homes)
+    return with_classes(known, found.nodes)
 
 
 class Given(NamedTuple):
@@ -59,27 +76,47 @@ class Given(NamedTuple):
 
         if name or graph or not self.grounding or not self.grounding["start"]:
             place = read_home(name or DEFAULT_HOME, graph, homes, known)
-            return _of_home(self.program, place), place, False
+            return _of_home(self.program, place, self.place), place, False
         place = Home.from_graph(graph_of(self.grounding["start"]), self.grounding["home"], known)
         found = bind_stored(self.program, World.start(place))
         return found.apply(self.program) if isinstance(found, Binding) else self.program, place, True
 
 
-def _of_home(program: Program, home: Home) -> Program:
-    """The program, without its node ids if one of them is nothing, or something else, in the home."""
+def _of_home(program: Program, home: Home, file: str) -> Program:
+    """The program with the nodes of the home that it names; says which, and which the home lacks.
+
+    Raises:
+        HearthError: UNBOUND: a node that it names is a thing of another class.
+    """
     from hearth.commands import output
+    from hearth.grounding.node_ids import read_ids
+    from hearth.schemas.diagnostics import HearthError
 
-    for ref in program.objects():
-        if ref.node is None:
-            continue
-        index = home.index.get(ref.node, -1)
-        names = home.knowledge.same_class(ref.name)
-        if index < 0 or (home.classes[index] not in names and not home.instances(ref.name) >> index & 1):
-            found = f"{home.classes[index]} there" if index >= 0 else "nothing there"
-            output.note(f"The program's nodes are not those of {home.name} ({ref.node} is {found}): it is bound anew.")
-            return program.unbound()
-    return program
+    found = read_ids(program, home, file)
+    if found.faults:
+        raise HearthError(found.faults)
+    if found.named:
+        shown = (f"<{ref.name}> to node {ref.node} ({home.classes[home.index[ref.node or 0]]})" for ref in found.named)
+        output.note(f"By their numbers these are bound: {_some(shown, len(found.named))}.")
+    if found.lacking:
+        shown = (f"{ref.node} (<{ref.name}>)" for ref in found.lacking)
+        count = output.counted(len(found.lacking), "node")
+        output.note(
+            f"{home.name} lacks {count} that the program names: {_some(shown, len(found.lacking))}; bound anew."
+        )
+    return found.program
 
+
+def _some(names: Iterable[str], count: int) -> str:
+    """The first names of a list, and how many more there are."""
+    from itertools import islice
+
+    rest = count - MOST_NAMED
+    return ", ".join(islice(names, MOST_NAMED)) + (f" and {rest} more" if rest > 0 else "")
+
+
+MOST_NAMED = 6
+"""Objects of a program that a note names."""
 
 DEFAULT_HOME = "maple"
 
@@ -202,7 +239,9 @@ def _titled(program: Program, row: IngestedRow) -> Program:
 
 
 def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
-    """The home of that name, or that of a graph file; a name that is the path of a file is that file.
+    """Return the home of that name, or that of a graph file; a name that is the path of a file is that file.
+
+    A note says which nodes the knowledge had to complete.
 
     Raises:
         HearthError: UNKNOWN_HOME, or a fault of the file.
@@ -211,9 +250,40 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     from hearth.simulation.world.home import Home
 
     graph = graph or library.given_file(name)
+    note_filled(library.filled_nodes(graph or name, known, homes))
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)
+
+
+def read_rules(name: str, home: Home) -> Rules:
+    """The rules of that name (see `simulation.rules.CHOICES`); of `auto` those that fit the home, said if not ours.
+
+    A graph of VirtualHome 2.x says of no two things that they are CLOSE: its simulator knows what is near by what is ON
+    and INSIDE what, and so do the rules `evolving_graph`.
+    """
+    from hearth.commands import output
+    from hearth.simulation.rules import CHOICES, EVOLVING_GRAPH
+
+    if name != "auto":
+        return CHOICES[name]
+    if any(home.close) or not home.able("Grab"):
+        return CHOICES["default"]
+    output.note(
+        f"No two things of {home.name} are CLOSE, as in graphs of VirtualHome 2.x: read by the rules `evolving_graph`; "
+        "`--rules default` takes ours."
+    )
+    return EVOLVING_GRAPH
+
+
+def note_filled(nodes: Sequence[str]) -> None:
+    """Say which nodes of a graph have a category, properties or states only from the knowledge of their class."""
+    from hearth.commands import output
+
+    if nodes:
+        count = output.counted(len(nodes), "node")
+        named = _some(iter(nodes), len(nodes))
+        output.note(f"{count} without category, properties or states: from the knowledge of the class: {named}.")
 
 
 def read_goals(goals: Sequence[str], home: Home) -> Goal:

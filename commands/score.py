@@ -98,7 +98,7 @@ def program(
     graph: Path | None = None,
     home: str = "",
     homes: Path | None = None,
-    rules: Literal["default", "replay"] = "default",
+    rules: Literal["default", "replay", "evolving_graph"] = "default",
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
@@ -113,7 +113,8 @@ def program(
     the row has a goal (`goal`). The environment is the row's `home` (a name) or `graph` (a scene graph's file, relative
     to FILE's folder), else --home or --graph; with `--homes all`, each of our homes. A goal is else what the reference
     achieves; conditions that hold at the start do not count (`goal_whole` counts them). Steps may be natural language.
-    Rows that can't be read are left out and counted; the status is then 1.
+    Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
+    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph).
 
     \b
     Examples:
@@ -125,9 +126,9 @@ def program(
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
     from hearth.scoring.first_faults import FirstFaults
-    from hearth.simulation.rules import RULES
+    from hearth.simulation.rules import CHOICES
 
-    how = Options(RULES[rules], match, scope, instances, seed)
+    how = Options(CHOICES[rules], match, scope, instances, seed)
     known, rejects = inputs.read_knowledge(None), FirstFaults()
     pairs = read_predictions(file, references, known, rejects)
     if homes and str(homes) == ALL:

@@ -97,7 +97,9 @@ class ValidatedRow(NamedRow):
 class RunRow(TypedDict):
     """A run of a program."""
 
-    rules: Annotated[str, "named options of the engine: made_bed or replay; default in older datasets"]
+    rules: Annotated[
+        str, "named options of the engine: near_hands, replay or evolving_graph; made_bed or default in older datasets"
+    ]
     bindings: Annotated[list[BindingRow], "program objects to graph nodes"]
     ticks: Annotated[list[TickRow], "what each tick did and changed"]
     executable: Annotated[bool, "ran to its end; false for originals in perturbed environments in which they fail"]
