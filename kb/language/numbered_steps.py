@@ -10,7 +10,7 @@ from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import PlanLine, header_of, is_step, ordered, plan_line
-from hearth.kb.language.sentences import Asked, Said, asked_steps, nearest_steps, said_by
+from hearth.kb.language.sentences import REMEMBERED, Asked, Said, asked_steps, nearest_steps, said_by
 from hearth.kb.language.understanding import Candidate
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -74,6 +74,7 @@ class _StepParser:
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
+        self._said: tuple[Said, ...] = ()
         self._indent: int | None = None
         self._above = self._is_heading = self._by_headings = False
 
@@ -100,7 +101,7 @@ class _StepParser:
         """Add the steps of a line; the faults of one that is not understood."""
         if line.bracketed:
             return self._written(line.text, raw, number)
-        words, said = line.text, said_by(self.steps)
+        words, said = line.text, self._said
         asked = asked_steps(self.known, words, said, Fuzzy.OFF)
         if not asked and self.fuzzy is not Fuzzy.OFF:
             shorter = _EXPLAINED.split(words, 1)[0]
@@ -136,15 +137,18 @@ class _StepParser:
             program, faults = grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
+                self._said = said_by(self.steps)
                 self.lines += [number] * len(found)
         at = max(raw.find(text), 0)
         return [replace(f, file=self.place, line=number, column=f.column + at, source=raw) for f in faults]
 
     def _add(self, asked: Asked, number: int) -> None:
-        instances = (asked.instance, 1)
-        refs = tuple(map(ObjectRef, asked.meant.names, instances))
-        self.steps.append(Step(asked.meant.action.name, refs))
+        action, names = asked.meant.action.name, asked.meant.names
+        # Only the first thing is counted.
+        refs = tuple([ObjectRef(name, 1 if place else asked.instance) for place, name in enumerate(names)])
+        self.steps.append(Step(action, refs))
         self.lines.append(number)
+        self._said = ((action, names), *self._said[: REMEMBERED - 1])
 
     def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
         message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"

@@ -14,11 +14,14 @@ from hearth.schemas.program import Step
 _JOINTS = re.compile(
     r"(?:\s*[,;])?\s+(?:and then|then|and)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])", re.IGNORECASE
 )
+_PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
 _THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 _PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
 _CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
 _PERSON = "PERSON"
-_REMEMBERED = 6
+REMEMBERED = 6
+"""Steps of which a pronoun may speak."""
+
 _NUMBERS = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 _COUNTS = {"both": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
 _COUNT = re.compile(rf"\b({'|'.join(_COUNTS)})\s+(?:of\s+)?(?:the\s+|my\s+|your\s+)?(?=[a-z])", re.IGNORECASE)
@@ -59,6 +62,8 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Said], fuzzy: Fuzzy
         said: the steps before, the last first, as `said_by` gives them.
         fuzzy: how far from known words a clause may be; off takes exact readings only.
     """
+    if not _PRONOUN.search(words) and (meant := understand_exactly(known, words).meant):
+        return (Asked(meant),)
     words = " ".join(words.split()).rstrip(".!;,")
     whole = _clause(known, words, said, Fuzzy.OFF)
     if whole:
@@ -76,7 +81,7 @@ def nearest_steps(known: Knowledge, words: str, said: Sequence[Said], fuzzy: Fuz
 
 def said_by(steps: Sequence[Step]) -> tuple[Said, ...]:
     """Return the last steps, the last first, as pronouns need them."""
-    return tuple((step.action, tuple(ref.name for ref in step.objects)) for step in reversed(steps[-_REMEMBERED:]))
+    return tuple((step.action, tuple(ref.name for ref in step.objects)) for step in reversed(steps[-REMEMBERED:]))
 
 
 def _joined(known: Knowledge, clauses: list[str], said: Sequence[Said], fuzzy: Fuzzy) -> tuple[Asked, ...]:
@@ -146,6 +151,8 @@ def _shortened(known: Knowledge, words: str, said: Sequence[Said], left_out: str
 def _exact(known: Knowledge, words: str, said: Sequence[Said]) -> tuple[Asked, ...]:
     """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
     readings = [found for clause in _referred(known, words, said) if (found := understand_exactly(known, clause).meant)]
+    if len(readings) == 1:
+        return (Asked(readings[0]),)
     if readings:
         afforded = (each for each in readings if _affords(known, each))
         return (Asked(next(afforded, readings[0])),)
@@ -164,6 +171,9 @@ def _affords(known: Knowledge, meant: Candidate) -> bool:
 
 def _referred(known: Knowledge, words: str, said: Sequence[Said]) -> Iterator[str]:
     """The sentence with each thing that its pronoun may stand for, the likeliest first; itself where it has none."""
+    if not _PRONOUN.search(words):
+        yield words
+        return
     of_things, of_people = _THINGS.search(words), _PEOPLE.search(words)
     things = _spoken_of(said, is_closed=bool(_CLOSING.match(words))) if of_things or of_people else ()
     if not things:
