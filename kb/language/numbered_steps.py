@@ -10,7 +10,7 @@ from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import PlanLine, header_of, is_step, ordered, plan_line
-from hearth.kb.language.sentences import REMEMBERED, Asked, Said, asked_steps, nearest_steps, said_by
+from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
 from hearth.kb.language.understanding import Candidate
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -74,7 +74,7 @@ class _StepParser:
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
-        self._said: tuple[Said, ...] = ()
+        self._said: tuple[Mentioned, ...] = ()
         self._indent: int | None = None
         self._above = self._is_heading = self._by_headings = False
 
@@ -114,12 +114,12 @@ class _StepParser:
             self.warnings += [self._fuzzy(each, raw, words, number)] if each.fuzzy else []
         return fault
 
-    def _asked(self, shorter: str, said: tuple[Said, ...]) -> tuple[Asked, ...]:
+    def _asked(self, shorter: str, said: tuple[Mentioned, ...]) -> tuple[Asked, ...]:
         """The steps of a line before its explanation, which is left out."""
         first, *others = asked_steps(self.known, shorter, said, Fuzzy.OFF) or (None,)
         return (first._replace(left_out="the explanation"), *others) if first else ()
 
-    def _nearest(self, words: str, raw: str, number: int, said: tuple[Said, ...]) -> list[Diagnostic]:
+    def _nearest(self, words: str, raw: str, number: int, said: tuple[Mentioned, ...]) -> list[Diagnostic]:
         """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
         whole = nearest_steps(self.known, words, said, self.fuzzy)
         if not whole.meant or words.endswith(":"):

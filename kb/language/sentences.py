@@ -30,7 +30,7 @@ _LEFT_OUT = 3
 _CLAUSES = 12
 
 
-Said = tuple[str, tuple[str, ...]]
+Mentioned = tuple[str, tuple[str, ...]]
 """A step that was said before: its action and its things."""
 
 
@@ -53,7 +53,7 @@ class Asked(NamedTuple):
         return self.meant.score < 1 or bool(self.left_out)
 
 
-def asked_steps(known: Knowledge, words: str, said: Sequence[Said], fuzzy: Fuzzy) -> tuple[Asked, ...]:
+def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
     """Return the steps that a line asks for; none where a clause of it is not understood.
 
     Args:
@@ -74,17 +74,17 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Said], fuzzy: Fuzzy
     return _clause(known, words, said, fuzzy) if len(clauses) == 1 and fuzzy is not Fuzzy.OFF else ()
 
 
-def nearest_steps(known: Knowledge, words: str, said: Sequence[Said], fuzzy: Fuzzy) -> Understood:
+def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> Understood:
     """Return what a line as a whole is understood as, and the nearest steps as hints."""
     return understand(known, next(_referred(known, words, said), words), fuzzy)
 
 
-def said_by(steps: Sequence[Step]) -> tuple[Said, ...]:
+def said_by(steps: Sequence[Step]) -> tuple[Mentioned, ...]:
     """Return the last steps, the last first, as pronouns need them."""
     return tuple((step.action, tuple(ref.name for ref in step.objects)) for step in reversed(steps[-REMEMBERED:]))
 
 
-def _joined(known: Knowledge, clauses: list[str], said: Sequence[Said], fuzzy: Fuzzy) -> tuple[Asked, ...]:
+def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
     """The steps of clauses one after another; what shares a verb, as `grab a cup and a plate`, is read together."""
     for size in range(1, len(clauses) + 1):
         read = _clause(known, clauses[0], said, fuzzy) if size == 1 else _listed(known, clauses[:size], said)
@@ -97,7 +97,7 @@ def _joined(known: Knowledge, clauses: list[str], said: Sequence[Said], fuzzy: F
     return ()
 
 
-def _listed(known: Knowledge, parts: list[str], said: Sequence[Said]) -> tuple[Asked, ...]:
+def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tuple[Asked, ...]:
     """The steps of one verb for several things: `put the cup`, `the plate on the table`."""
     first, last = parts[0].split(), parts[-1].split()
     middle = [part for part in parts[1:-1] if thing_of(known, part.lower())]
@@ -122,7 +122,7 @@ def _is_bare(known: Knowledge, words: str) -> bool:
     return thing_of(known, words) is not None and not _BETWEEN.search(words)
 
 
-def _clause(known: Knowledge, words: str, said: Sequence[Said], fuzzy: Fuzzy) -> tuple[Asked, ...]:
+def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
     """The steps of one clause: exact, else with trailing words left out, else with misspelled words corrected."""
     if read := _exact(known, words, said):
         return read
@@ -137,7 +137,9 @@ def _clause(known: Knowledge, words: str, said: Sequence[Said], fuzzy: Fuzzy) ->
     return ()
 
 
-def _shortened(known: Knowledge, words: str, said: Sequence[Said], left_out: str, depth: int = 0) -> tuple[Asked, ...]:
+def _shortened(
+    known: Knowledge, words: str, said: Sequence[Mentioned], left_out: str, depth: int = 0
+) -> tuple[Asked, ...]:
     for shorter, out in shortened(known, words):
         without = f"{out} {left_out}".strip()
         read = tuple(each._replace(left_out=without) for each in _exact(known, shorter, said))
@@ -148,7 +150,7 @@ def _shortened(known: Knowledge, words: str, said: Sequence[Said], left_out: str
     return ()
 
 
-def _exact(known: Knowledge, words: str, said: Sequence[Said]) -> tuple[Asked, ...]:
+def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
     """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
     readings = [found for clause in _referred(known, words, said) if (found := understand_exactly(known, clause).meant)]
     if len(readings) == 1:
@@ -169,7 +171,7 @@ def _affords(known: Knowledge, meant: Candidate) -> bool:
     return all(known.affords(meant.action.name, place, name) for place, name in enumerate(meant.names))
 
 
-def _referred(known: Knowledge, words: str, said: Sequence[Said]) -> Iterator[str]:
+def _referred(known: Knowledge, words: str, said: Sequence[Mentioned]) -> Iterator[str]:
     """The sentence with each thing that its pronoun may stand for, the likeliest first; itself where it has none."""
     if not _PRONOUN.search(words):
         yield words
@@ -186,7 +188,7 @@ def _referred(known: Knowledge, words: str, said: Sequence[Said]) -> Iterator[st
             yield _PEOPLE.sub(name, words)
 
 
-def _spoken_of(said: Sequence[Said], *, is_closed: bool) -> tuple[str, ...]:
+def _spoken_of(said: Sequence[Mentioned], *, is_closed: bool) -> tuple[str, ...]:
     """The things of steps, the last first; what was opened comes before others where something is closed."""
     opened = [name for action, names in said if is_closed and action == "Open" for name in names]
     return tuple(dict.fromkeys((*opened, *(name for _, names in said for name in names))))
