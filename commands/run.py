@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from hearth.commands import output
 from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
 from hearth.commands.run_shown import Outcome, document, failed, show
+from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.schemas.program import Program
@@ -29,6 +30,7 @@ def run(
     goal: list[str] | None = None,
     which: int = 1,
     columns: str = "",
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     skip_faults: bool = False,
     strict: bool = False,
     rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
@@ -52,8 +54,8 @@ def run(
     """
     _check(sample, as_is, skip_faults, strict)
     known = read_knowledge(kb, home, graph, homes)
-    given = choose_given(file, known, which, columns)
-    _refuse_faults(given, skip_faults)
+    given = choose_given(file, known, which, columns, fuzzy)
+    _refuse_faults(given, skip_faults, strict)
     program, place, _ = given.at_home(home, graph, homes, known)
     outcome = _outcome(program, place, seed, sample, read_rules(rules, place))
     progress = _progress(goal, outcome) if goal else None
@@ -80,14 +82,18 @@ def _check(sample: bool, as_is: bool, skip_faults: bool, strict: bool) -> None:
         raise typer.BadParameter("`--strict` skips nothing: leave one of the two out", param_hint="--skip-faults")
 
 
-def _refuse_faults(given: Given, skip: bool) -> None:
+def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
     """Print warnings, and the faults that are skipped.
 
     Raises:
-        HearthError: every fault, unless they are skipped and there are other steps.
+        HearthError: every fault, unless they are skipped and there are other steps; every corrected step if `strict`.
     """
     from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failures import Code
 
+    fuzzy = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
+    if strict and fuzzy:
+        raise HearthError([*given.faults, *fuzzy])
     steps = output.counted(len(given.program.steps), "other step")
     if given.faults and not (skip and given.program.steps):
         if given.program.steps:

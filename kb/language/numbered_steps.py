@@ -6,17 +6,18 @@ from typing import NamedTuple
 
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import PlanLine, header_of, is_step, ordered, plan_line
-from hearth.kb.language.understanding import Candidate, understand
+from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
+from hearth.kb.language.understanding import Candidate
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps as parse_ticks
 
-_JOINTS = re.compile(r"(?:,|;)?\s+(?:and then|then|and)\s+|[;,]\s+|\.\s+(?=[A-Z])", re.IGNORECASE)
 _EXPLAINED = re.compile(r" ?[(–—]| - |:(?= |$)|\. (?=[A-Z])")
-_PRONOUN = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 
 
 class ParsedSteps(NamedTuple):
@@ -27,7 +28,7 @@ class ParsedSteps(NamedTuple):
     warnings: tuple[Diagnostic, ...]
 
 
-def parse_steps(text: str, before: int, place: str, known: Knowledge) -> ParsedSteps:
+def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy = Fuzzy.TYPOS) -> ParsedSteps:
     """Parse natural-language steps. They name no instances, so that every object is instance 1.
 
     A line may ask for several things ("open the fridge and take the milk out"), where each of them is understood; `it`
@@ -39,8 +40,9 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge) -> ParsedS
         before: lines of the file before it.
         place: the file, for diagnostics.
         known: the grammar.
+        fuzzy: how far a line may be from one that is known.
     """
-    parser = _StepParser(known, place)
+    parser = _StepParser(known, place, fuzzy)
     raw = text.split("\n")
     lines = list(map(plan_line, raw))
     is_ordered = ordered(lines)
@@ -50,17 +52,29 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge) -> ParsedS
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
+    parser.faults = _of_language(parser.faults, len(parser.steps))
     program = Program(top.title, top.description, tuple(parser.steps), tuple(parser.lines))
     return ParsedSteps(program, tuple(parser.faults), tuple(parser.warnings))
 
 
+def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
+    """The faults; one that names the language where most lines are not understood, as they are not English."""
+    lines = [fault for fault in faults if fault.code == Code.NOT_UNDERSTOOD]
+    if len(lines) <= understood or not (language := foreign_language([fault.found for fault in lines])):
+        return faults
+    message = f"the plan is in {language}; only English is read"
+    others = [fault for fault in faults if fault.code != Code.NOT_UNDERSTOOD]
+    return [replace(lines[0], message=message, suggestion="translate it into English"), *others]
+
+
 class _StepParser:
-    def __init__(self, known: Knowledge, place: str) -> None:
-        self.known, self.place = known, place
+    def __init__(self, known: Knowledge, place: str, fuzzy: Fuzzy) -> None:
+        self.known, self.place, self.fuzzy = known, place, fuzzy
         self.steps: list[Step] = []
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
+        self._said: tuple[Mentioned, ...] = ()
         self._indent: int | None = None
         self._above = self._is_heading = self._by_headings = False
 
@@ -87,23 +101,31 @@ class _StepParser:
         """Add the steps of a line; the faults of one that is not understood."""
         if line.bracketed:
             return self._written(line.text, raw, number)
-        words = line.text
-        parts = self._parts(words)
-        if not parts and (shorter := _EXPLAINED.split(words, 1)[0]) not in ("", words):
-            parts = self._parts(shorter)
-            self.warnings += [self._fuzzy(parts[0], raw, words, number)] if parts else []
-        fault = [] if parts else self._nearest(words, raw, number)
-        for part in parts:
-            self._add(part, number)
+        words, said = line.text, self._said
+        asked = asked_steps(self.known, words, said, Fuzzy.OFF)
+        if not asked and self.fuzzy is not Fuzzy.OFF:
+            shorter = _EXPLAINED.split(words, 1)[0]
+            asked = self._asked(shorter, said) if shorter not in ("", words) else ()
+            if not asked and not words.endswith(":"):
+                asked = asked_steps(self.known, words, said, self.fuzzy)
+        fault = [] if asked else self._nearest(words, raw, number, said)
+        for each in asked:
+            self._add(each, number)
+            self.warnings += [self._fuzzy(each, raw, words, number)] if each.fuzzy else []
         return fault
 
-    def _nearest(self, words: str, raw: str, number: int) -> list[Diagnostic]:
-        """Add the step that a line most resembles; the fault of one that resembles none."""
-        whole = understand(self.known, self._resolved(words))
+    def _asked(self, shorter: str, said: tuple[Mentioned, ...]) -> tuple[Asked, ...]:
+        """The steps of a line before its explanation, which is left out."""
+        first, *others = asked_steps(self.known, shorter, said, Fuzzy.OFF) or (None,)
+        return (first._replace(left_out="the explanation"), *others) if first else ()
+
+    def _nearest(self, words: str, raw: str, number: int, said: tuple[Mentioned, ...]) -> list[Diagnostic]:
+        """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
+        whole = nearest_steps(self.known, words, said, self.fuzzy)
         if not whole.meant or words.endswith(":"):
             return [self._fault(whole.candidates, whole.ambiguous, raw, words, number)]
-        self._add(whole.meant, number)
-        self.warnings.append(self._fuzzy(whole.meant, raw, words, number))
+        self._add(Asked(whole.meant), number)
+        self.warnings.append(self._fuzzy(Asked(whole.meant), raw, words, number))
         return []
 
     def _written(self, text: str, raw: str, number: int) -> list[Diagnostic]:
@@ -115,41 +137,23 @@ class _StepParser:
             program, faults = grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
+                self._said = said_by(self.steps)
                 self.lines += [number] * len(found)
         at = max(raw.find(text), 0)
         return [replace(f, file=self.place, line=number, column=f.column + at, source=raw) for f in faults]
 
-    def _parts(self, words: str) -> list[Candidate]:
-        """The step of which a line is an exact paraphrase, or those of its clauses if each is one; else none."""
-        whole = understand(self.known, self._resolved(words)).meant
-        if whole and whole.score == 1:
-            return [whole]
-        clauses = [clause for clause in _JOINTS.split(words) if clause]
-        if len(clauses) < 2:
-            return []
-        found: list[Candidate] = []
-        about = self._about()
-        for clause in clauses:
-            meant = understand(self.known, _PRONOUN.sub(about, clause) if about else clause).meant
-            if meant is None or meant.score < 1:
-                return []
-            found.append(meant)
-            about = meant.names[0].replace("_", " ") if meant.names else about
-        return found
-
-    def _about(self) -> str:
-        return next((step.objects[0].name.replace("_", " ") for step in reversed(self.steps) if step.objects), "")
-
-    def _resolved(self, words: str) -> str:
-        about = self._about() if _PRONOUN.search(words) else ""
-        return _PRONOUN.sub(about, words) if about else words
-
-    def _add(self, meant: Candidate, number: int) -> None:
-        self.steps.append(Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)))
+    def _add(self, asked: Asked, number: int) -> None:
+        action, names = asked.meant.action.name, asked.meant.names
+        # Only the first thing is counted.
+        refs = tuple([ObjectRef(name, 1 if place else asked.instance) for place, name in enumerate(names)])
+        self.steps.append(Step(action, refs))
         self.lines.append(number)
+        self._said = ((action, names), *self._said[: REMEMBERED - 1])
 
-    def _fuzzy(self, meant: Candidate, line: str, words: str, number: int) -> Diagnostic:
-        message = f"taken for `{phrase(meant)}`, similarity {meant.score:.2f}"
+    def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
+        message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"
+        if asked.left_out:
+            message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
     def _fault(self, near: tuple[Candidate, ...], ambiguous: bool, line: str, words: str, number: int) -> Diagnostic:
