@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import shutil
 import subprocess
 import time
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from web.people import accessibility, watched
+from web.people import accessibility, strict, watched
 from web.playing import alone
 
 from hearth.kb.loading.load import default
@@ -75,6 +76,68 @@ def test_each_kind_of_task_can_be_finished_by_clicks(serving, page, challenge, n
 def test_the_ten_tasks_are_of_ten_kinds():
     kinds = {(name, published(name, split, n).sets) for name, split in SPLIT.items() for n in range(5)}
     assert len(kinds) == 10
+
+
+def tick_of(page):
+    return int(page.get_attribute("#game", "data-tick"))
+
+
+def press(page, thing, text):
+    """Open the menu of a thing, press one of its buttons, and wait until that has done something."""
+    tick = tick_of(page)
+    page.locator(f'#game button.thing[data-id="{thing}"]').first.click()
+    page.locator("#menu-actions button").get_by_text(text, exact=True).first.click()
+    page.wait_for_selector(f'#game:not([data-tick="{tick}"])', timeout=30_000)
+
+
+def offered(page, thing):
+    button = page.locator(f'#game button.thing[data-id="{thing}"]').first
+    if button.is_disabled():
+        return []
+    button.click()
+    words = page.locator("#menu-actions button").all_text_contents()
+    page.locator("#menu-close").click()
+    return words
+
+
+def settled(page):
+    """Wait until the page asks for no more ticks."""
+    before = -1
+    while before != (before := tick_of(page)):
+        page.wait_for_timeout(600)
+
+
+KINDS = {"Go all the way", "One step towards it", "Open", "Close", "Take", "Put", "Switch on", "Switch off", "Sit down on"}
+
+
+def kind_of(words):
+    return next((kind for kind in sorted(KINDS, key=len, reverse=True) if words.startswith(kind)), words)
+
+
+def test_every_button_of_the_page_does_something(serving, page):
+    """Those of menus, a kind each; each move; what opens and closes the menu."""
+    begin(page, serving(), "wah", 0, sees="full")
+    pressed = set()
+    for name in ("fridge", "mug", "coffee table", "couch"):
+        button = page.locator("#game .lists button.thing:not([disabled])").filter(has_text=re.compile(f"^{name}"))
+        thing = button.first.get_attribute("data-id")
+        press(page, thing, "Go all the way")
+        pressed.add("Go all the way")
+        settled(page)
+        assert page.locator(f'#game .lists button.thing.close[data-id="{thing}"]').count() == 1, f"not at the {name}"
+        for _ in range(12):
+            left = [words for words in offered(page, thing) if kind_of(words) not in pressed]
+            if not left:
+                break
+            press(page, thing, left[0])
+            pressed.add(kind_of(left[0]))
+    assert pressed == KINDS
+    for move in ("StandUp", "", "Turnright", *["Turnleft"] * 12, "Walkforward"):
+        if move == "Turnleft" and page.locator('[data-move="Walkforward"]').is_enabled():
+            continue
+        tick = tick_of(page)
+        page.locator(f'[data-move="{move}"]').click()
+        page.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -166,9 +229,11 @@ def drawing(browser):
     """A page of a browser that draws in 3D, in software."""
     if "three" in missing():
         pytest.skip("no three.js: make web")
-    started = browser.browser_type.launch(executable_path=shutil.which("chromium"), args=list(WEBGL))
+    faults = []
+    started = strict(browser.browser_type.launch(executable_path=shutil.which("chromium"), args=list(WEBGL)), faults)
     yield started.new_context(viewport={"width": 1400, "height": 1000}).new_page()
     started.close()
+    assert faults == []
 
 
 def test_what_is_under_the_cursor_is_what_our_renderer_shows(serving, drawing):
