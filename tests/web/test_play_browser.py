@@ -107,7 +107,17 @@ def settled(page):
         page.wait_for_timeout(600)
 
 
-KINDS = {"Go all the way", "One step towards it", "Open", "Close", "Take", "Put", "Switch on", "Switch off", "Sit down on"}
+KINDS = {
+    "Go all the way",
+    "One step towards it",
+    "Open",
+    "Close",
+    "Take",
+    "Put",
+    "Switch on",
+    "Switch off",
+    "Sit down on",
+}
 
 
 def kind_of(words):
