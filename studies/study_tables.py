@@ -19,7 +19,7 @@ from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
 from hearth.studies.conduct import Standing
-from hearth.studies.events import Event, salted
+from hearth.studies.events import Event
 from hearth.studies.judged_films import JudgedFilm, read_films
 from hearth.studies.study_folder import FILMS, Collected
 from hearth.studies.study_trials import record_of, tasks_of
@@ -87,15 +87,15 @@ class Rows:
     def __init__(self, collected: Collected) -> None:
         self.collected, self.study = collected, collected.study
         conduct = collected.conduct
-        self.salt = collected.ledger.secret("participants")
         self.standings = [conduct.standing(person) for person in collected.ledger.streams()]
+        self.codes = {each.person: conduct.code(each.person) for each in self.standings}
         self.films: dict[tuple[int, str], JudgedFilm] = {}
         if self.study.films is not None and collected.folder is not None:
             found = read_films(collected.folder / FILMS)
             self.films = {(film.item, film.condition): film for film in found}
 
     def _head(self, standing: Standing) -> dict[str, Any]:
-        participant = salted(self.salt, standing.person)
+        participant = self.codes[standing.person]
         return {"study": self.study.name, "participant": participant, "simulated": self.collected.simulated}
 
     def participants(self) -> Iterator[Mapping[str, Any]]:
@@ -197,8 +197,7 @@ def person_of(collected: Collected, given: str) -> str:
     Raises:
         HearthError: UNKNOWN_ID: nobody of this id takes part.
     """
-    salt = collected.ledger.secret("participants")
     for person in collected.ledger.streams():
-        if given in (person, salted(salt, person)):
+        if given in (person, collected.conduct.code(person)):
             return person
     raise HearthError.of(Code.UNKNOWN_ID, f"nobody of the id `{given[:60]}` takes part")
