@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+import time
 
 import pytest
 from web.playing import Player, alone, begun, connected, session_of
@@ -228,14 +229,56 @@ def test_two_people_in_one_home(server, person):
     assert games(server.store, default()).open(game).game.texts == [("Turnleft", "Turnright")]
 
 
-def test_who_keeps_the_other_waiting_waits(server, person, monkeypatch):
-    monkeypatch.setattr("hearth.web.play.live_games.PATIENCE", 0.0)
-    game = begun(server, person, TASK, "person")
+@pytest.fixture
+def for_two(server, person):
+    """A game for two people that both may play; and the second."""
+    game, other = begun(server, person, TASK, "person"), server.person()
+    other.post(f"/play/join/{games(server.store, default()).open(game).stored.code}")
+    return game, other
+
+
+def test_nobody_acts_before_the_other_is_there(server, person, for_two):
+    """It is said, and nothing is kept; once the other has come, the page is told, and acts."""
+    game, other = for_two
     with Player(person, game) as player:
+        assert player.state["other"] == "awaited"
+        assert player.act(TURN)["error"]["code"] == "NOT_ALLOWED"
+        assert games(server.store, default()).open(game).decided == ()
+        with Player(other, game) as second:
+            assert second.state["other"] == "here"
+            while player.state["other"] == "awaited":
+                player.receive()
+            assert player.act(TURN)["decided"] == [0]
+
+
+def test_who_keeps_the_other_waiting_waits(server, person, for_two, monkeypatch):
+    monkeypatch.setattr("hearth.web.play.live_games.PATIENCE", 0.0)
+    game, other = for_two
+    with Player(other, game), Player(person, game) as player:
         player.act(TURN)
         while player.state["tick"] < 1:
             player.receive()
     assert games(server.store, default()).open(game).game.texts == [("Turnleft", None)]
+
+
+def test_who_has_left_keeps_nobody_waiting(server, person, for_two, monkeypatch):
+    monkeypatch.setattr("hearth.web.play.presence.GONE_AFTER", 1.5)
+    game, other = for_two
+    with Player(person, game) as player:
+        with Player(other, game):
+            pass
+        while player.state["other"] != "gone":
+            player.receive()
+        since = time.monotonic()
+        for tick in range(5):
+            player.act(TURN)
+            assert player.state["tick"] == tick + 1
+        assert time.monotonic() - since < 5
+        with Player(other, game) as again:
+            assert again.state["tick"] == 5
+            while player.state["other"] != "here":
+                player.receive()
+    assert games(server.store, default()).open(game).game.texts == [("Turnleft", None)] * 5
 
 
 def test_a_study_gets_the_record_once_it_is_over(server, person, game):

@@ -109,16 +109,6 @@ def settled(page):
 
 KINDS = {"Go all the way", "One step towards it", "Open", "Close", "Take", "Put", "Switch on", "Switch off",
          "Sit down on"}  # fmt: skip
-    "Go all the way",
-    "One step towards it",
-    "Open",
-    "Close",
-    "Take",
-    "Put",
-    "Switch on",
-    "Switch off",
-    "Sit down on",
-}
 
 
 def kind_of(words):
@@ -202,19 +192,40 @@ def test_the_older_of_two_tabs_says_so(serving, page):
 
 
 def test_two_people_in_two_browsers(serving, browser, page):
+    """One waits for the other, both decide, one leaves and comes back; each is told, and waits for nobody in vain."""
     server = serving()
     begin(page, server, helper="person")
     link = page.locator("#banner a").get_attribute("href")
+    assert page.locator('[data-move="Turnleft"]').is_disabled()
+    page.keyboard.press(".")
+    assert "not here yet" in page.inner_text("#said")
     other = browser.new_context().new_page()
     other.goto(f"{server.address}/")
     other.locator('form[action="/begin"] button').first.click()
     other.goto(link)
     other.get_by_role("button", name="Join").click()
     other.wait_for_selector("#game[data-tick]")
+    page.locator("#banner", has_text="The other person is here").wait_for()
+    assert page.locator("#banner a").count() == 0, "the invitation goes"
     page.keyboard.press("ArrowLeft")
+    page.locator("#said", has_text="Waiting for the other person").wait_for()
+    other.locator("#said", has_text="It is your turn").wait_for()
+    page.keyboard.press("ArrowRight")  # has decided already
+    assert "You have decided" in page.inner_text("#said")
     other.keyboard.press("ArrowRight")
     for each in (page, other):
         each.wait_for_selector('#game[data-tick="1"]')
+    page.locator("#banner").wait_for(state="hidden")
+    address = other.url
+    other.goto("about:blank")
+    page.locator("#banner", has_text="The other person has left").wait_for()
+    since = time.monotonic()
+    for tick in range(1, 6):
+        page.keyboard.press("ArrowLeft")
+        page.wait_for_selector(f'#game[data-tick="{tick + 1}"]')
+    assert time.monotonic() - since < 5, "nobody waits for who has left"
+    other.goto(address)
+    page.locator("#banner", has_text="is back").wait_for()
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")

@@ -45,3 +45,14 @@ DECISIONS = sql.Table(
     sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when it was accepted"),
 )
 """What each character tried in each tick. A tick is done once every character has a row of it; a row never changes."""
+
+SIGNS = sql.Table(
+    "play_signs",
+    METADATA,
+    _game(),
+    sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
+    sql.Column(
+        "at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when its person's page was open last"
+    ),
+)
+"""Which people of games for two are there."""

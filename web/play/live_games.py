@@ -18,6 +18,7 @@ from hearth.schemas.failures import Code
 from hearth.web.play import game_store
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
+from hearth.web.play.presence import AWAITED, HERE, presence, signs
 from hearth.web.play.trials import PROGRAM
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
@@ -29,7 +30,7 @@ MOST_GAMES = 300
 """Games that a process keeps; the one that was not asked for longest is forgotten first, and done again if needed."""
 
 PATIENCE = 15.0
-"""Seconds after which the other of two people waits in a tick, if one has decided and the other has not."""
+"""Seconds after which the other of two people waits in a tick, if one has decided and the other, who is there, has not."""
 
 PROGRAM_WITHIN = 10.0
 """Seconds that a helper's program may think about a tick."""
@@ -51,6 +52,7 @@ class LiveGame:
         self.lock = threading.RLock()
         self.waiting_since = 0.0
         self.decided: tuple[int, ...] = ()
+        self.signs: dict[int, float] = {}
         self._drawn: dict[int, DrawnGame] = {}
         self._listener: Listener | None = None
         self._program: WireAgent | None = None
@@ -65,6 +67,11 @@ class LiveGame:
         """How many there are."""
         return len(self.game.start.agents)
 
+    def other(self, number: int) -> str:
+        """Whether the other of two people is there; "" in a game of one."""
+        people = self.game.trial.people
+        return presence(self.signs.get(1 - number)) if len(people) > 1 else ""
+
     def drawn(self, knowledge: Knowledge, number: int) -> DrawnGame:
         """The game's scene for the eyes of a character. Hold the lock."""
         if number not in self._drawn:
@@ -76,10 +83,11 @@ class LiveGame:
     def sync(self) -> Game:
         """The game with every tick that the store has. Hold the lock."""
         game = self.game
-        found, row = self.store.read(
+        found, row, self.signs = self.store.read(
             lambda connection: (
                 game_store.decisions(connection, self.stored.id, game.tick),
                 game_store.stored(connection, self.stored.id),
+                signs(connection, self.stored.id) if len(game.trial.people) > 1 else {},
             )
         )
         while len(rows := found.get(game.tick, [])) == self.characters:
@@ -98,13 +106,15 @@ class LiveGame:
         """Take a person's decision; once this returns, no kill loses it.
 
         Raises:
-            WebError: OUT_OF_ORDER, LOCKED; NOT_ALLOWED: the game is over.
+            WebError: OUT_OF_ORDER, LOCKED; NOT_ALLOWED: the game is over, or the other of two people has not come yet.
             HearthError: it can't be done now, as far as the person sees; the game is as before.
         """
         with self.lock:
             game = self.sync()
             if game.over:
                 raise WebError(Code.NOT_ALLOWED, "act", "a game that is not over", "its end")
+            if self.other(number) == AWAITED:
+                raise WebError(Code.NOT_ALLOWED, "act", "a game that both people have come to", "the other is awaited")
             if tick != game.tick or number in self.decided:
                 raise WebError(Code.OUT_OF_ORDER, "tick", str(game.tick), str(tick))
             acts: dict[int, str | None] = {number: game.read(number, text)}
@@ -121,6 +131,7 @@ class LiveGame:
                 self._written_if_over()
             else:
                 self._after()
+                self.hurry()
 
     def _after(self) -> None:
         """Do what is complete, and write the result once it is over."""
@@ -146,12 +157,13 @@ class LiveGame:
         self._after()
 
     def hurry(self) -> None:
-        """Let whoever keeps the other waiting for too long wait in this tick."""
+        """Let whoever keeps the other waiting for too long wait in this tick; who has left, at once."""
         with self.lock:
-            if not self.decided or self.game.over or time.time() - self.waiting_since < PATIENCE:
+            late: dict[int, str | None] = {n: None for n in self.game.trial.people if n not in self.decided}
+            there = any(presence(self.signs.get(n)) == HERE for n in late)
+            if not self.decided or self.game.over or (there and time.time() - self.waiting_since < PATIENCE):
                 return
             turn = Turn(self.stored.id, self.game.tick, self.characters)
-            late: dict[int, str | None] = {n: None for n in self.game.trial.people if n not in self.decided}
             with contextlib.suppress(WebError):
                 self.store.write(lambda connection: game_store.decide(connection, turn, late))
             self._after()

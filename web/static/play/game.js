@@ -4,7 +4,7 @@ import { FloorPlan } from "./floor_plan.js";
 import { Menu } from "./menu.js";
 import { ObjectPanels } from "./object_panels.js";
 import { State } from "./state.js";
-import { name, retold, spoken, written } from "./words.js";
+import { name, refused, retold, spoken, written } from "./words.js";
 
 const root = document.getElementById("game");
 const state = new State();
@@ -14,6 +14,7 @@ let busy = false; // a decision is on its way
 let walking = null; // the thing that one goes all the way to
 let view = null; // first person
 let again = 0; // how often the same move is still wanted
+let [shown, shownAt] = ["", -1]; // what was said last of the other person, and at which tick
 let latest = null; // the last message about the game
 
 const choose = (id, from) => state.things.has(id) && state.things.get(id).seen && menu.open(id, state, from);
@@ -28,11 +29,19 @@ function decide(action, ids = []) {
 }
 
 function send(action, ids = []) {
-  if (busy || state.over || state.tick < 0) return false;
+  if (busy || state.over || state.tick < 0 || waits()) return false;
   const act = action ? written(action, ids, state.things) : null;
   busy = connection.send({ type: "act", tick: state.tick, act });
   if (busy) said.textContent = action ? `${spoken(action, ids, state.things)} …` : "Waiting a tick …";
   return busy;
+}
+
+// Whether it is for the other of two people to come or to decide; then that is said.
+function waits() {
+  const decided = state.decided.includes(state.me);
+  if (state.other !== "awaited" && !decided) return false;
+  said.textContent = decided ? "You have decided. Waiting for the other person …" : "The other person is not here yet.";
+  return true;
 }
 
 function walk(id) {
@@ -87,6 +96,7 @@ function begin(message) {
   plan.begin(state);
   panels?.begin();
   banner.hidden = true;
+  shown = "";
   if (root.dataset.interface !== "symbolic" && view === null) {
     view = {}; // until it has loaded
     const file = root.dataset.interface === "visual" ? "./first_person.js" : "./pictures.js";
@@ -112,14 +122,24 @@ function show() {
   showHands();
   for (const button of document.querySelectorAll("[data-move]")) {
     const move = button.dataset.move;
-    button.disabled = state.over || (move !== "" && !state.can(move));
+    button.disabled = state.over || state.other === "awaited" || (move !== "" && !state.can(move));
     if (move === "StandUp") button.hidden = !state.can(move);
   }
   document.getElementById("finish").disabled = state.over;
   said.textContent = lastActions();
   if (state.over) showEnd();
   else if (state.port) tell("note", `Connect your program to port ${state.port} of this machine.`);
-  else if (state.code && state.agents.length) showCode();
+  else if (state.other) showOther();
+}
+
+// Of a game for two: whether the other person is there, said when it changes and until the next tick.
+function showOther() {
+  if (state.other === shown && state.tick === shownAt) return;
+  if (state.other === "awaited") showInvitation();
+  else if (state.other === "gone") tell("note", "The other person has left. You can go on: their character waits until they come back.");
+  else if (state.other !== shown) tell("good", shown === "gone" ? "The other person is back." : "The other person is here. A tick passes once both of you have decided.");
+  else banner.hidden = true;
+  [shown, shownAt] = [state.other, state.tick];
 }
 
 function showGoal() {
@@ -161,15 +181,18 @@ function heldButton(id) {
 }
 
 function lastActions() {
+  if (state.decided.length && state.tick === 0) return whoDecided();
   if (state.tick === 0) return "Choose a thing to see what you can do with it.";
   const lines = state.agents.filter((agent) => agent.last).map((agent) => {
     const who = agent.agent === state.me ? "You" : "The other";
     const failure = agent.last.failure ? `: that failed (${agent.last.failure.message})` : "";
     return `${who}: ${retold(agent.last.instruction)}${failure}.`;
   });
-  if (state.decided.length && !state.over) lines.push(state.decided.includes(state.me) ? "Waiting for the other …" : "The other has decided.");
+  if (state.decided.length && !state.over) lines.push(whoDecided());
   return lines.join(" ");
 }
+
+const whoDecided = () => (state.decided.includes(state.me) ? "You have decided. Waiting for the other person …" : "The other person has decided. It is your turn.");
 
 function showEnd() {
   const text = state.success ? `Done: the goal is reached after ${state.tick} ticks. ` : `This is over after ${state.tick} ticks. `;
@@ -178,9 +201,10 @@ function showEnd() {
   tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, "Go on"));
 }
 
-function showCode() {
+function showInvitation() {
+  if (!state.code) return tell("note", "The other person is not here yet. You begin together.");
   const address = `${location.origin}/play/join/${state.code}`;
-  tell("note", "Two people play this. The other joins by this link: ", link(address, address));
+  return tell("note", "Two people play this. It begins once the other has come, by this link: ", link(address, address));
 }
 
 function link(address, text) {
@@ -198,7 +222,7 @@ function trouble(fault) {
     Object.assign(button, { type: "button", textContent: "Go on here" });
     button.addEventListener("click", () => connection.takeOver());
     tell("note", "This session is open in another tab. ", button);
-  } else said.textContent = fault.place === "act" ? `That can't be done: ${fault.actual}` : `${fault.code}: ${fault.actual}`;
+  } else said.textContent = refused(fault);
 }
 
 const KEYS = { ArrowLeft: "Turnleft", ArrowRight: "Turnright", ArrowUp: "Walkforward" };

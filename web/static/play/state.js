@@ -23,7 +23,7 @@ export class State {
       Object.assign(this.things.get(Number(id)), { room, relation, holder, states, close: Boolean(close), seen: true });
     }
     for (const id of message.gone) this.things.get(id).seen = false;
-    for (const key of ["tick", "goal", "legal", "agents", "over", "success", "end", "decided", "go_on"]) this[key] = message[key];
+    for (const key of ["tick", "goal", "legal", "agents", "over", "success", "end", "decided", "go_on", "other"]) this[key] = message[key];
     if (message.type === "tick") this.follow();
     this.usable = new Set(Object.values(this.legal).flat(2));
     this.wanted = new Set(this.goal.flatMap((each) => each.classes));
