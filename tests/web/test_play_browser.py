@@ -319,6 +319,68 @@ def test_a_thing_is_clicked_and_acted_on_in_3d(serving, drawing):
     assert drawing.locator("#menu").is_visible()
 
 
+@pytest.mark.parametrize("how", ["late", "lost"])
+def test_the_view_in_3d_goes_on_whatever_becomes_of_its_models(serving, drawing, how):
+    """A model that comes after others have gone, or never; an error that nobody catches fails the fixture."""
+
+    def answered(route):
+        if how == "lost":
+            route.fulfill(status=404)
+        else:
+            drawing.wait_for_timeout(300)
+            route.continue_()
+
+    drawing.route("**/models/*.glb", answered)
+    begin(drawing, serving(), "wah", 0, helper="hp_true", interface="visual")
+    drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+    for _ in range(4):
+        tick = tick_of(drawing)
+        drawing.locator('[data-move="Turnleft"]').click()
+        drawing.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)
+    drawing.wait_for_selector(f'#view[data-tick="{tick_of(drawing)}"]', timeout=30_000)
+
+
+def test_every_model_that_the_page_asks_for_is_there(serving, drawing):
+    """Also when the game has gone on before the page asks: a helper that walks looks different in every tick."""
+    refused = []
+    drawing.on("response", lambda answer: refused.append(answer.url) if answer.status >= 400 else None)
+    drawing.route("**/models/*.glb", lambda route: (drawing.wait_for_timeout(200), route.continue_()))
+    begin(drawing, serving(), "wah", 0, helper="hp_true", interface="visual", sees="full")
+    drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+    drawing.focus("#view")
+    drawing.keyboard.press("s")  # turns six times, as fast as the server answers
+    drawing.wait_for_selector('#view[data-tick="6"]', timeout=60_000)
+    assert refused == []
+
+
+@pytest.mark.parametrize("way", ["g", "button"])
+def test_a_task_is_finished_once_that_is_confirmed(serving, drawing, way):
+    begin(drawing, serving(), "wah", 0, interface="visual")
+    drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+    drawing.locator("#save").click()
+    assert "saved" in drawing.inner_text("#said")
+
+    def ask():
+        if way == "g":
+            drawing.focus("#view")
+            drawing.keyboard.press("g")
+        else:
+            drawing.locator("#finish").click()
+        drawing.locator("#sure").wait_for()
+
+    ask()
+    drawing.keyboard.press(".")  # no move of the game behind it
+    drawing.keyboard.press("Escape")
+    drawing.locator("#sure").wait_for(state="hidden")
+    ask()
+    drawing.get_by_role("button", name="Go on playing").click()
+    drawing.locator('[data-move="Turnleft"]').click()
+    drawing.wait_for_selector('#game[data-tick="1"]')
+    ask()
+    drawing.locator("#sure").get_by_role("button", name="Finish").click()
+    drawing.locator("#banner", has_text="This is over").wait_for()
+
+
 def test_pictures_of_our_renderer_need_no_webgl(serving, page):
     begin(page, serving(), "wah", 0, interface="stream")
     page.wait_for_selector('#view[data-tick="0"]', timeout=90_000)

@@ -51,8 +51,6 @@ SIGNS = sql.Table(
     METADATA,
     _game(),
     sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
-    sql.Column(
-        "at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when its person's page was open last"
-    ),
+    sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when its page was open last"),
 )
 """Which people of games for two are there."""

@@ -30,7 +30,7 @@ MOST_GAMES = 300
 """Games that a process keeps; the one that was not asked for longest is forgotten first, and done again if needed."""
 
 PATIENCE = 15.0
-"""Seconds after which the other of two people waits in a tick, if one has decided and the other, who is there, has not."""
+"""Seconds after which the other of two people waits in a tick, if one has decided and the other is there and has not."""
 
 PROGRAM_WITHIN = 10.0
 """Seconds that a helper's program may think about a tick."""

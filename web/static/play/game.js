@@ -10,6 +10,7 @@ const root = document.getElementById("game");
 const state = new State();
 const said = document.getElementById("said");
 const banner = document.getElementById("banner");
+const sure = document.getElementById("sure");
 let busy = false; // a decision is on its way
 let walking = null; // the thing that one goes all the way to
 let view = null; // first person
@@ -228,7 +229,7 @@ function trouble(fault) {
 const KEYS = { ArrowLeft: "Turnleft", ArrowRight: "Turnright", ArrowUp: "Walkforward" };
 
 document.addEventListener("keydown", (event) => {
-  const typing = event.target.closest("input, select, textarea, #view");
+  const typing = event.target.closest("input, select, textarea, #view, dialog");
   if (typing || event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === ".") decide("");
   else if (event.key in KEYS && state.can(KEYS[event.key])) decide(KEYS[event.key]);
@@ -242,11 +243,18 @@ document.getElementById("save").addEventListener("click", save);
 document.getElementById("finish").addEventListener("click", finish);
 
 function save() {
-  said.textContent = "Everything up to here is saved.";
+  const kept = busy ? "Everything but what you just decided is saved." : "Everything up to here is saved. You can close the page and come back.";
+  said.textContent = kept;
 }
 
+// Asks first: what is finished can't be gone on with.
 function finish() {
-  connection.send({ type: "finish" });
+  if (!state.over && !sure.open) sure.showModal();
 }
+
+sure.addEventListener("close", () => {
+  if (sure.returnValue === "finish" && !connection.send({ type: "finish" })) trouble({ code: "DISCONNECTED" });
+  sure.returnValue = "";
+});
 
 const connection = new Connection(root.dataset.game, receive, trouble);
