@@ -38,6 +38,7 @@ class StudyTrialRow(TypedDict):
     conflicts: Annotated[int | None, "predicates of the other's goal that held and that the person or helper undid"]
     needless: Annotated[int | None, "things the helper moved that in the end neither count nor are where they were"]
     end: Annotated[str, "code of what ended it before its time; empty if nothing did"]
+    helper_fault: Annotated[str, "code of the helper's fault that ended it, for which reports leave it out; else empty"]
 
 
 class DecisionRow(TypedDict):

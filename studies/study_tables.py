@@ -24,6 +24,9 @@ from hearth.studies.judged_films import JudgedFilm, read_films
 from hearth.studies.study_folder import FILMS, Collected
 from hearth.studies.study_trials import record_of, tasks_of
 
+HELPER = 1
+"""The number of the helper among the characters; the person is 0."""
+
 TABLES: dict[str, pa.Schema] = {
     name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
     for name, row in {
@@ -129,6 +132,7 @@ class Rows:
                     **{name: data[name] for name in ("item", "condition", "repeat", "seconds")},
                     **{name: metrics.get(name) for name in shown},
                     "end": end["code"] if end else "",
+                    "helper_fault": helper_fault(data),
                 }
 
     def decisions(self, knowledge: Knowledge) -> Iterator[Mapping[str, Any]]:
@@ -179,6 +183,12 @@ class Rows:
                 "value": number,
                 "text": "" if number is not None else str(given),
             }
+
+
+def helper_fault(data: Mapping[str, Any]) -> str:
+    """The code of what the helper failed with, if that ended a trial, by the data of its event; "" otherwise."""
+    end = (data.get("record") or {}).get("end")
+    return str(end["code"]) if end and end.get("agent") == HELPER else ""
 
 
 def _of_kind(standing: Standing, kind: str) -> list[Event]:

@@ -10,6 +10,8 @@ import time
 import pytest
 from web.playing import Player, alone, begun, connected, session_of
 
+from hearth.challenges.definition import challenge
+from hearth.challenges.lineup import Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify
@@ -23,6 +25,7 @@ from hearth.web.play.games import Game
 from hearth.web.play.live_games import LiveGame, games
 from hearth.web.play.trials import helpers, offered, published, read_trial, trial
 
+OWAH = challenge("owah")
 TASK = published("wah", "test-1", 0)
 TURN = "[Turnleft]"
 
@@ -49,8 +52,34 @@ def test_a_helper_that_asks_a_network_is_not_offered_without_it(monkeypatch):
     monkeypatch.setattr("hearth.challenges.lineup.lacking", lambda extra: ["torch"])
     with pytest.raises(HearthError, match="asks the network `helping-subgoals`, and torch is not installed"):
         trial(TASK, default(), "hybrid")
-    assert {"hybrid", "hrl", "hp_gpn", "nopa_gpn"}.isdisjoint(offered())
-    assert {"none", "person", "program", "hp", "nopa"} <= set(offered())
+    assert {"hybrid", "hrl", "hp_gpn", "nopa_gpn"}.isdisjoint(offered(OWAH))
+    assert {"none", "person", "program", "hp", "nopa"} <= set(offered(OWAH))
+
+
+UNFIT = {"wah": {"asking", "nopa_gpn", "nopa_gpn_s", "hp_gpn", "hp_gpn_s", "af_gpn"}, "owah": {"asking"}}
+"""Helpers that would end every game of a challenge: they talk, or ask a network of other goals."""
+
+
+@pytest.mark.parametrize("name", UNFIT)
+def test_a_helper_that_could_not_go_on_is_neither_offered_nor_begun(name):
+    known = [each for each in helpers() if each != "none"]
+    task = published(name, "test-1" if name == "wah" else "test", 3)
+    assert UNFIT[name].isdisjoint(offered(challenge(name)))
+    for helper in sorted(UNFIT[name]):
+        with pytest.raises(HearthError, match=f"the helper `{helper}` can't help in `{name}`") as found:
+            trial(task, default(), helper)
+        assert found.value.diagnostics[0].suggestion
+    for helper in offered(challenge(name)).keys() & known:
+        game = Game(trial(task, default(), helper), default())
+        for _ in range(5):
+            game.advance(("Turnleft", game.helper_decides())[: len(game.start.agents)])
+        assert game.tick == 5, helper
+
+
+def test_who_asks_may_help_where_agents_may_talk():
+    talking = challenge("owah_messages")
+    assert {"asking", "nopa"} <= set(offered(talking))
+    assert Lineup(helper="nopa_gpn").fits(talking).helper == "nopa_gpn"
 
 
 def test_without_libraries_for_pictures_there_are_buttons_alone(monkeypatch, person):
@@ -318,7 +347,7 @@ def test_researchers_get_everybodys_results(server, person, game):
 
 def test_the_form_begins_a_game(person):
     page = person.get("/play/").text
-    assert all(f'value="{name}"' in page for name in helpers())
+    assert all((f'value="{name}"' in page) is (name != "asking") for name in helpers())
     begun = person.post("/play/new", data={"challenge": "owah", "task": "1", "helper": "none", "sees": "partial"})
     assert begun.status_code == 303
     assert "in rowan" in person.get(begun.headers["location"]).text

@@ -100,9 +100,9 @@ def helpers() -> dict[str, str]:
     return {**others, **ours, **online}
 
 
-def offered() -> dict[str, str]:
-    """Those of `helpers` that can be here: not those that ask networks where the extra `models` is not installed."""
-    return {name: about for name, about in helpers().items() if _here(name)}
+def offered(which: Challenge) -> dict[str, str]:
+    """Those of `helpers` that can help in a challenge, here: networks are asked where the extra `models` is installed."""
+    return {name: about for name, about in helpers().items() if _can_help(name, which)}
 
 
 def drawable() -> tuple[str, ...]:
@@ -110,9 +110,9 @@ def drawable() -> tuple[str, ...]:
     return INTERFACES[:1] if lacking("pictures") else INTERFACES
 
 
-def _here(helper: str) -> bool:
+def _can_help(helper: str, which: Challenge) -> bool:
     try:
-        Lineup(helper=helper).installed()
+        Lineup(helper=helper).installed().fits(which)
     except HearthError:
         return False
     return True
@@ -152,7 +152,7 @@ def trial(
         goal: what the helper is asked to do; as its row in the registry says where empty.
 
     Raises:
-        HearthError: BAD_ARGUMENT: there is no such helper, goal or interface; MISSING_FILE: the helper asks a network,
+        HearthError: BAD_ARGUMENT: there is no such helper, goal or interface, or it can't help there; MISSING_FILE: the helper asks a network,
             and the extra `models` is not installed; or the interface draws, and the extra `pictures` is not.
     """
     _check("helper", helper, helpers())
@@ -163,7 +163,7 @@ def trial(
     usual = {PERSON: "true", PROGRAM: "true"} | {name: each.goal for name, each in HELPERS.items()}
     kind = goal or usual.get(helper, "none")
     _check("goal", kind, GOALS)
-    Lineup(helper=helper, goal=kind).installed()
+    Lineup(helper=helper, goal=kind).installed().fits(challenge(task.challenge))
     seen = challenge(task.challenge).partial if partial is None else partial
     return Trial(task, helper, kind, _asked(task, kind, seed, knowledge), interface, seed, seen)
 
