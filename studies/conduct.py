@@ -116,13 +116,14 @@ class Conduct:
 
     def last_sign(self, standing: Standing) -> float:
         """When a person did something last."""
-        return max([each.at for each in standing.events] or [self._joined_at(standing.person)])
+        return max([each.at for each in standing.events] or [self.joined_at(standing.person)])
 
     def code(self, person: str) -> str:
         """The code of a person: what the person is given at the end, and what desk and tables have as the id."""
         return salted(self.ledger.secret("participants"), person)
 
-    def _joined_at(self, person: str) -> float:
+    def joined_at(self, person: str) -> float:
+        """When a person joined."""
         return next(each.at for each in self.ledger.read(PLACES) if each.data["person"] == person)
 
     def standing(self, person: str) -> Standing:
@@ -165,13 +166,16 @@ class Conduct:
         """A person has done a practice trial."""
         return self._go_on(person, PRACTICE, "practised", {})
 
-    def played(self, person: str, record: Mapping[str, Any], seconds: float = 0.0) -> Standing:
+    def played(
+        self, person: str, record: Mapping[str, Any], seconds: float = 0.0, times: Sequence[float] = ()
+    ) -> Standing:
         """A person has played a trial.
 
         Args:
             person: who.
             record: all that was done, as `result_files.episode_data` writes it; it is done again here.
             seconds: that it took.
+            times: when the person decided in each tick, in seconds since it was begun; none where that is not known.
 
         Raises:
             HearthError: BAD_ARGUMENT: something else is to come; those of `trials.checked`.
@@ -179,7 +183,8 @@ class Conduct:
         standing = self._expected(person, TRIAL)
         planned = self.trial(standing)
         data = checked(self.study, planned, record, self.known())
-        return self._append(standing, "did", {**_named(planned), "seconds": seconds, "record": data})
+        kept = {"times": list(times)} if times else {}
+        return self._append(standing, "did", {**_named(planned), "seconds": seconds, **kept, "record": data})
 
     def watched(self, person: str, seconds: float = 0.0) -> Standing:
         """A person has watched a film."""

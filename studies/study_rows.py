@@ -16,6 +16,8 @@ class ParticipantRow(TypedDict):
     trials: Annotated[int, "that the person did"]
     seconds: Annotated[float, "of all trials"]
     left: Annotated[str, "why the person left; empty if not"]
+    began: Annotated[float, "when the person joined, in seconds since 1970, UTC; 0 of simulated people"]
+    ended: Annotated[float | None, "when the person finished or left, in the same seconds; null of who is under way"]
 
 
 class StudyTrialRow(TypedDict):
@@ -53,6 +55,9 @@ class DecisionRow(TypedDict):
     action: Annotated[str, "name of the action"]
     objects: Annotated[list[int], "node ids"]
     failure: Annotated[str, "code of why it could not be done; empty if it was"]
+    seconds: Annotated[
+        float | None, "from the beginning of the trial until the person decided; null of simulated people"
+    ]
 
 
 class RatingRow(TypedDict):

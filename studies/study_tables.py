@@ -18,7 +18,7 @@ from hearth.schemas.tables import comment_of, struct
 from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
-from hearth.studies.conduct import Standing
+from hearth.studies.conduct import DONE, LEFT, Standing
 from hearth.studies.events import Event
 from hearth.studies.judged_films import JudgedFilm, read_films
 from hearth.studies.study_folder import FILMS, Collected
@@ -113,6 +113,8 @@ class Rows:
                 "trials": len(did),
                 "seconds": sum(each.data["seconds"] for each in did),
                 "left": left[0] if left else "",
+                "began": self.collected.conduct.joined_at(standing.person),
+                "ended": standing.events[-1].at if standing.stage in (DONE, LEFT) else None,
             }
 
     def trials(self) -> Iterator[Mapping[str, Any]]:
@@ -144,6 +146,7 @@ class Rows:
                 _, ticks = ticks_of(
                     tasks_of(self.study)[event.data["item"]], record_of(event.data["record"]), knowledge
                 )
+                times = dict(enumerate(event.data.get("times", ())))
                 for tick, done in enumerate(ticks):
                     for agent, step in sorted(done.instructions.items()):
                         failure = done.failures.get(agent)
@@ -155,6 +158,7 @@ class Rows:
                             "action": step.action,
                             "objects": [ref.node for ref in step.objects],
                             "failure": str(failure.code) if failure else "",
+                            "seconds": times.get(tick),
                         }
 
     def ratings(self) -> Iterator[Mapping[str, Any]]:

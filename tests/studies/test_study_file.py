@@ -99,10 +99,8 @@ def test_a_helper_that_would_end_every_trial_is_a_fault_of_the_file(challenge, h
     text = SMALL.replace("challenge: owah, split: test", f"challenge: {challenge}, split: {split}")
     text = text.replace("helper: hp_random, goal: random", f"helper: {helper}")
     (found,) = faults(text)
-    assert (found.line, found.code) == (
-        14,
-        "BAD_ARGUMENT",
-    ) and f"`{helper}` can't help in `{challenge}`" in found.message
+    assert (found.line, found.code) == (14, "BAD_ARGUMENT")
+    assert f"`{helper}` can't help in `{challenge}`" in found.message
     assert found.suggestion.startswith("hp, nopa")
     assert study_of(text, "study.yaml", begun=True).name == "small", "what was collected with it is still to be read"
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 from web.playing import Player, alone, begun, connected, session_of
@@ -19,7 +20,7 @@ from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking
-from hearth.web.play import recorded_episode
+from hearth.web.play import game_store, recorded_episode, start_trial
 from hearth.web.play.game_results import results
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import LiveGame, games
@@ -318,7 +319,29 @@ def test_a_study_gets_the_record_once_it_is_over(server, person, game):
         assert player.act(TURN)["error"]["code"] == "NOT_ALLOWED"
     record = recorded_episode(server.store, default(), game)
     assert record.actions == (("Turnleft",),)
-    assert record.end["code"] == "DISCONNECTED"
+    assert record.end["code"] == "FINISHED"
+
+
+def test_nothing_is_accepted_once_the_time_is_over(server, person):
+    """The page is told how long it has, and that it is over, though nobody does anything."""
+    chosen = replace(trial(TASK, default()), seconds=2.0)
+    game = server.store.write(lambda connection: start_trial(connection, session_of(server, person), chosen))
+    with Player(person, game) as player:
+        assert 0 < player.state["left"] <= 2
+        assert player.act(TURN)["tick"] == 1
+        time.sleep(2.1)
+        late = player.ask({"type": "act", "tick": 1, "act": TURN})
+        assert late.get("over") or late["error"]["code"] == "NOT_ALLOWED"
+        while not player.state["over"]:
+            player.receive()
+        assert (player.state["end"], player.state["ended_by"], player.state["tick"]) == ("TIMED_OUT", 0, 1)
+    found = server.store.read(lambda connection: game_store.stored(connection, game))
+    assert found.result["at"] - found.created == pytest.approx(2.0), "the time ends it, not who looks at it afterwards"
+
+
+def test_a_game_without_a_limit_has_no_clock(server, person, game):
+    with Player(person, game) as player:
+        assert player.state["left"] is None
 
 
 def test_results_of_many_games_verify(server, person, tmp_path):

@@ -378,7 +378,7 @@ def test_a_task_is_finished_once_that_is_confirmed(serving, drawing, way):
     drawing.wait_for_selector('#game[data-tick="1"]')
     ask()
     drawing.locator("#sure").get_by_role("button", name="Finish").click()
-    drawing.locator("#banner", has_text="This is over").wait_for()
+    drawing.locator("#banner", has_text="You finished this task after 1 tick").wait_for()
 
 
 def test_pictures_of_our_renderer_need_no_webgl(serving, page):

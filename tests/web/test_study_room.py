@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import sqlite3
+import time
 import zipfile
 from dataclasses import asdict
 
@@ -195,6 +196,56 @@ def test_a_game_that_takes_too_long_is_ended(playing):
     person.post("/study/begin")
     playing.store.write(lambda c: c.execute(sql.update(GAMES).values(created=GAMES.c.created - 21 * 60)))
     assert "Task 1 of 2" in person.get("/study/").text
+
+
+def test_a_trial_lasts_until_its_end_and_has_the_times_of_its_decisions(playing, monkeypatch):
+    """Not until the person leaves the last banner; the export has when each decided, began and ended."""
+    person, desk = playing.person(), playing.researcher()
+    at_trial(person)
+    finish(playing, person)
+    address = person.post("/study/begin").headers["location"]
+    cookie = {"cookie": f"hearth={person.cookies['hearth']}"}
+    with person.websocket_connect(f"ws://127.0.0.1{address}/live", headers=cookie) as link:
+        link.send_json({"type": "hello", "n": 1, "tab": "t"})
+        assert link.receive_json()["left"] > 19 * 60
+        for tick in range(3):
+            link.send_json({"type": "act", "n": tick + 2, "tick": tick, "act": "Turnleft"})
+            link.receive_json()
+        link.send_json({"type": "finish", "n": 5})
+        over = link.receive_json()
+    assert (over["end"], over["ended_by"]) == ("FINISHED", 0)
+    playing.store.write(lambda c: c.execute(sql.update(GAMES).values(created=GAMES.c.created - 60)))
+    later = time.time() + 300
+    with monkeypatch.context() as patch:  # five minutes on the last banner
+        patch.setattr("time.time", lambda: later)
+        person.get("/study/")
+    (row,) = table_of(desk, "trials")
+    assert 60 <= row["seconds"] < 90 and row["end"] == "FINISHED"
+    times = [each["seconds"] for each in table_of(desk, "decisions") if each["agent"] == 0]
+    assert len(times) == 3 and 60 <= times[0] <= times[1] <= times[2] <= row["seconds"] + 0.1
+    (who,) = table_of(desk, "participants")
+    assert 0 < time.time() - who["began"] < 60 and who["ended"] is None
+    person.post("/study/leave")
+    (who,) = table_of(desk, "participants")
+    assert who["began"] <= who["ended"]
+
+
+def test_no_move_is_taken_once_the_time_of_a_trial_is_over(playing):
+    person = playing.person()
+    at_trial(person)
+    finish(playing, person)
+    address = person.post("/study/begin").headers["location"]
+    playing.store.write(lambda c: c.execute(sql.update(GAMES).values(created=GAMES.c.created - 20 * 60)))
+    cookie = {"cookie": f"hearth={person.cookies['hearth']}"}
+    with person.websocket_connect(f"ws://127.0.0.1{address}/live", headers=cookie) as link:
+        link.send_json({"type": "hello", "n": 1, "tab": "t"})
+        begun = link.receive_json()
+        assert (begun["over"], begun["end"], begun["left"]) == (True, "TIMED_OUT", 0)
+        link.send_json({"type": "act", "n": 2, "tick": 0, "act": "Turnleft"})
+        assert link.receive_json()["error"]["code"] == "NOT_ALLOWED"
+    person.get("/study/")
+    (row,) = table_of(playing.researcher(), "trials")
+    assert (row["seconds"], row["ticks"], row["end"]) == (20 * 60, 0, "TIMED_OUT")
 
 
 def test_one_answers_what_is_asked_and_nothing_else(playing):

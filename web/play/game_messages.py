@@ -95,6 +95,7 @@ class Telling:
             "over": game.over,
             "success": game.playing.progress[-1].satisfied,
             "end": None if game.end is None else game.end["code"],
+            "ended_by": None if game.end is None else game.end["agent"],
         }
 
     def tick(self) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import threading
 import time
 from collections import OrderedDict
@@ -30,7 +31,7 @@ MOST_GAMES = 300
 """Games that a process keeps; the one that was not asked for longest is forgotten first, and done again if needed."""
 
 PATIENCE = 15.0
-"""Seconds after which the other of two people waits in a tick, if one has decided and the other is there and has not."""
+"""Seconds after which the other of two people waits in a tick, if one has decided and the other is there, undecided."""
 
 PROGRAM_WITHIN = 10.0
 """Seconds that a helper's program may think about a tick."""
@@ -95,7 +96,14 @@ class LiveGame:
         self._now(found.get(game.tick, []))
         if row.end is not None:
             game.end = row.end
+        elif not game.over and time.time() >= row.deadline:
+            self._stop(0, Code.TIMED_OUT, "the time for this trial was over")
         return game
+
+    def seconds_left(self) -> float | None:
+        """The seconds until the game's time is over; None where it has no limit."""
+        left = self.stored.deadline - time.time()
+        return None if left == math.inf else max(0.0, left)
 
     def _now(self, rows: list[Decided]) -> None:
         """Who has decided in the tick that is under way, and since when."""
@@ -142,14 +150,15 @@ class LiveGame:
         game = self.game
         if game.over:
             success, ticks = game.playing.progress[-1].satisfied, game.tick
-            self.store.write(lambda connection: game_store.over(connection, self.stored.id, success, ticks))
+            at = min(time.time(), self.stored.deadline)
+            self.store.write(lambda connection: game_store.over(connection, self.stored.id, success, ticks, at))
             self.close()
 
     def leave(self, number: int) -> None:
         """End the game before its goal and time."""
         with self.lock:
             if not self.sync().over:
-                self._stop(number, Code.DISCONNECTED, "the person ended it")
+                self._stop(number, Code.FINISHED, "the person finished it")
 
     def _stop(self, number: int, code: Code, message: str) -> None:
         why = {"agent": number, "code": str(code), "message": message[:300]}

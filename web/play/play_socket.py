@@ -88,7 +88,14 @@ class Page:
             port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
             self._told = self._state()
             begun = {**self.telling.begin(), **self._unnamed()}
-            return {**begun, "port": port, "code": self._code(), **self._waiting(), **self._scene()}
+            return {
+                **begun,
+                "port": port,
+                "code": self._code(),
+                "left": self.live.seconds_left(),
+                **self._waiting(),
+                **self._scene(),
+            }
 
     def _unnamed(self) -> dict[str, str]:
         """The helper of a study's trial, without its name."""

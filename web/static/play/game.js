@@ -119,6 +119,7 @@ function show() {
   const left = state.limit - state.tick;
   root.dataset.tick = state.tick;
   document.getElementById("clock").textContent = `Tick ${state.tick} of ${state.limit}; ${left} left. Helper: ${state.helper}.`;
+  showTime();
   showGoal();
   showHands();
   for (const button of document.querySelectorAll("[data-move]")) {
@@ -141,6 +142,17 @@ function showOther() {
   else if (state.other !== shown) tell("good", shown === "gone" ? "The other person is back." : "The other person is here. A tick passes once both of you have decided.");
   else banner.hidden = true;
   [shown, shownAt] = [state.other, state.tick];
+}
+
+// The time that is left, where there is a limit; the last minute is also said.
+function showTime() {
+  if (state.until === null || state.until === undefined || state.over) return;
+  const left = Math.max(0, Math.ceil((state.until - performance.now()) / 1000));
+  const clock = document.getElementById("time");
+  clock.hidden = false;
+  clock.textContent = `Time left: ${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
+  clock.classList.toggle("short", left <= 60);
+  if (left === 60) said.textContent = "One minute is left.";
 }
 
 function showGoal() {
@@ -195,8 +207,18 @@ function lastActions() {
 
 const whoDecided = () => (state.decided.includes(state.me) ? "You have decided. Waiting for the other person …" : "The other person has decided. It is your turn.");
 
+// Why it is over, in words.
+function why() {
+  const after = `after ${state.tick} ${state.tick === 1 ? "tick" : "ticks"}`;
+  if (state.success) return `Done: the goal is reached ${after}.`;
+  if (state.end === "FINISHED") return `${state.ended_by === state.me ? "You" : "The other person"} finished this task ${after}.`;
+  if (state.end === "TIMED_OUT" && state.ended_by === 0) return `The time is over, ${after}.`;
+  if (state.end) return `The helper could not go on, so this is over ${after}. That is no fault of yours.`;
+  return `This is over ${after}: that is as many as there are.`;
+}
+
 function showEnd() {
-  const text = state.success ? `Done: the goal is reached after ${state.tick} ticks. ` : `This is over after ${state.tick} ticks. `;
+  const text = `${why()} `;
   const studied = !state.go_on.startsWith("/play/"); // whose helper is not to be known
   const episode = studied ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, "The episode"), " · "];
   tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, "Go on"));
@@ -257,4 +279,5 @@ sure.addEventListener("close", () => {
   sure.returnValue = "";
 });
 
+setInterval(showTime, 1000);
 const connection = new Connection(root.dataset.game, receive, trouble);
