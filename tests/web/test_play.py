@@ -20,7 +20,9 @@ from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking
+from hearth.simulation.world.bits import indices
 from hearth.web.play import game_store, recorded_episode, start_trial
+from hearth.web.play.game_messages import Telling, legal_json
 from hearth.web.play.game_results import results
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import LiveGame, games
@@ -268,7 +270,7 @@ def for_two(server, person):
 
 
 def test_nobody_acts_before_the_other_is_there(server, person, for_two):
-    """It is said, and nothing is kept; once the other has come, the page is told, and acts."""
+    """The page says so, and nothing is kept; once the other has come, it says that, and acts."""
     game, other = for_two
     with Player(person, game) as player:
         assert player.state["other"] == "awaited"
@@ -322,8 +324,26 @@ def test_a_study_gets_the_record_once_it_is_over(server, person, game):
     assert record.end["code"] == "FINISHED"
 
 
+@pytest.mark.parametrize("number", range(5))
+def test_what_is_offered_is_about_what_is_shown_and_makes_sense(number):
+    """A thing in the hand goes on surfaces and into containers alone, of which a menu does not list a hundred."""
+    task, most = published("wah", "test-1", number), 0
+    game = Game(trial(task, default(), partial=False), default())
+    telling, home, shown = Telling(game, 0), game.start.home, set()
+    has = {name: {home.ids[i] for i in indices(mask)} for name, mask in home.properties.items()}
+    for act, _ in alone(task):
+        shown |= telling.tick()["things"].keys()
+        offered = legal_json(game.legal(0), game.view(0).me.node)
+        assert {str(node) for places in offered.values() for ids in places for node in ids} <= shown
+        assert set(offered.get("PutBack", [[], []])[1]) <= has["SURFACES"]
+        assert set(offered.get("PutIn", [[], []])[1]) <= has["CONTAINERS"] | has["CAN_OPEN"]
+        most = max(most, sum(len(offered[name][1]) for name in ("PutBack", "PutIn") if name in offered))
+        game.advance((act,))
+    assert 0 < most < 40, "something was held, and could be put somewhere"
+
+
 def test_nothing_is_accepted_once_the_time_is_over(server, person):
-    """The page is told how long it has, and that it is over, though nobody does anything."""
+    """The page shows how long it has, and that it is over, though nobody does anything."""
     chosen = replace(trial(TASK, default()), seconds=2.0)
     game = server.store.write(lambda connection: start_trial(connection, session_of(server, person), chosen))
     with Player(person, game) as player:

@@ -192,7 +192,7 @@ def test_the_older_of_two_tabs_says_so(serving, page):
 
 
 def test_two_people_in_two_browsers(serving, browser, page):
-    """One waits for the other, both decide, one leaves and comes back; each is told, and waits for nobody in vain."""
+    """One waits for the other, both decide, one leaves and comes back; each page says so."""
     server = serving()
     begin(page, server, helper="person")
     link = page.locator("#banner a").get_attribute("href")

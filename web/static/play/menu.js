@@ -1,6 +1,16 @@
 // What one can do with a thing: a panel with a button for each legal instruction about it.
 import { name, spoken } from "./words.js";
 
+// Of pieces of floor that nobody can tell apart, the first.
+function distinct(options, state) {
+  const known = new Set();
+  return options.filter(([action, ids]) => {
+    if (!ids.some((id) => state.things.get(id).group === "floor")) return true;
+    const words = spoken(action, ids, state.things);
+    return !known.has(words) && Boolean(known.add(words));
+  });
+}
+
 export class Menu {
   constructor(act, walk) {
     this.panel = document.getElementById("menu");
@@ -35,7 +45,7 @@ export class Menu {
     const thing = state.things.get(id);
     const states = (thing.states ?? []).map((each) => each.toLowerCase().replaceAll("_", " ")).join(", ");
     this.title.textContent = `${name(state.things, id)}${states ? ` (${states})` : ""}`;
-    const options = state.over ? [] : state.about(id);
+    const options = state.over ? [] : distinct(state.about(id), state);
     const buttons = options.map(([action, ids]) => {
       const made = this.button(spoken(action, ids, state.things), () => this.act(action, ids));
       made.dataset.instruction = [action, ...ids].join(" ");
