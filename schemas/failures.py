@@ -114,6 +114,7 @@ class Code(StrEnum):
     NOT_ALLOWED = "NOT_ALLOWED", 76
     DISCONNECTED = "DISCONNECTED", 77
     AGENT_FAILED = "AGENT_FAILED", 78
+    FINISHED = "FINISHED", 83
     # People and their browsers
     NO_SESSION = "NO_SESSION", 79
     TOO_FAST = "TOO_FAST", 80

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import reduce
+from operator import or_
 from typing import Any
 
 from hearth.challenges.observations import last_json
@@ -90,11 +92,12 @@ class Telling:
             "things": {str(node): _thing(view.world.home, node) for node in new},
             "changed": changed,
             "gone": gone,
-            "legal": legal_json(legal),
+            "legal": legal_json(legal, view.me.node),
             "agents": [_character(pose, view) for pose in (view.me, *view.others)],
             "over": game.over,
             "success": game.playing.progress[-1].satisfied,
             "end": None if game.end is None else game.end["code"],
+            "ended_by": None if game.end is None else game.end["agent"],
         }
 
     def tick(self) -> dict[str, Any]:
@@ -105,9 +108,7 @@ class Telling:
 def seen_objects(view: View) -> Objects:
     """Things that can be used and that a person sees: their room, what they are on or in, states, and whether close."""
     home, world = view.world.home, as_seen(view.world, view.mask)
-    usable = home.rooms | home.characters
-    for name in USES:
-        usable |= home.properties[name]
+    usable = usable_things(home)
     agent = world.agents[view.agent]
     close = reach.close_to(world, agent)
     held = {i: other for other in world.agents for i in rows.held_indices(other)}
@@ -157,9 +158,36 @@ def floor_plan(home: Home) -> list[list[Any]]:
     return [[kinds[node.category], node.class_name, _rect(node), node.id] for node in order]
 
 
-def legal_json(legal: Legal) -> dict[str, list[list[int]]]:
-    """The instructions that can be done: action -> the ids that each of its places may have."""
-    return {name: [list(legal.objects(name, n)) for n in range(len(masks))] for name, masks in legal.masks.items()}
+PUT = {"PutBack": ("SURFACES",), "PutIn": ("CONTAINERS", "CAN_OPEN")}
+"""What a place is, for people, on or in which something can be put; the engine takes anything that is close."""
+
+
+def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
+    """The instructions that are offered: action -> the ids that each of its places may have.
+
+    They are those that can be done with things that the page shows, and that make sense to people. `me` is the node of
+    who decides, which the page does not show as a thing.
+    """
+    home = legal.home
+    things = usable_things(home) & ~(1 << home.index[me])
+    found = {}
+    for name, masks in legal.masks.items():
+        shown = [mask & things for mask in masks]
+        if name in PUT:
+            shown[1] &= _with(home, PUT[name]) | (home.characters if name == "PutBack" else 0)
+        if all(shown):
+            found[name] = [[home.ids[i] for i in indices(mask)] for mask in shown]
+    return found
+
+
+def usable_things(home: Home) -> int:
+    """The things of a home that pages show."""
+    return home.rooms | home.characters | _with(home, USES)
+
+
+def _with(home: Home, properties: Iterable[str]) -> int:
+    """The things that have one of some properties."""
+    return reduce(or_, (home.properties[name] for name in properties))
 
 
 def _character(pose: Any, view: View) -> dict[str, Any]:
