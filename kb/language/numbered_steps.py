@@ -1,6 +1,5 @@
 """Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
-import re
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -9,7 +8,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import PlanLine, header_of
+from hearth.kb.language.plan_lines import PlanLine, header_of, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import Asked, Said, asked_steps, nearest_steps, said_by
 from hearth.kb.language.understanding import Candidate
@@ -17,8 +16,6 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps as parse_ticks
-
-_EXPLAINED = re.compile(r" ?[(–—]| - |:(?= |$)|\. (?=[A-Z])")
 
 
 class ParsedSteps(NamedTuple):
@@ -86,7 +83,9 @@ class _StepParser:
             self.faults += found
         elif kind == Kind.MISSING:
             self._is_open = False
-            self.faults += [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, said_by(self.steps))
+            self.faults += (
+                [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, said_by(self.steps))
+            )
         elif line.number is not None and self._is_open:
             self._take_item(line, raw, number)
         elif kind == Kind.DETAIL and not self._detail(line.text, number):
@@ -108,7 +107,9 @@ class _StepParser:
             return []
         words, raw, number = self._notes[0]
         count = len(self._notes)
-        message = f"{count} lines explain steps and are none" if count > 1 else "a line that explains a step and is none"
+        message = (
+            f"{count} lines explain steps and are none" if count > 1 else "a line that explains a step and is none"
+        )
         return [self._diagnostic(Code.NO_STEP, message, raw, words, number, "number it if it is a step")]
 
     def _detail(self, words: str, number: int) -> bool:
@@ -125,7 +126,7 @@ class _StepParser:
         words, said = line.text, said_by(self.steps)
         asked = asked_steps(self.known, words.removesuffix(":"), said, Fuzzy.OFF)
         if not asked and self.fuzzy is not Fuzzy.OFF:
-            shorter = _EXPLAINED.split(words, 1)[0]
+            shorter = unexplained(words)
             asked = self._asked(shorter, said) if shorter not in ("", words) else ()
             if not asked and not words.endswith(":"):
                 asked = asked_steps(self.known, words, said, self.fuzzy)

@@ -50,6 +50,9 @@ _USUAL = re.compile(
 """Headings that every plan may have, and so are not its title."""
 
 
+_EXPLAINED = re.compile(r" ?[(–—]| - |:(?= |$)|\. (?=[A-Z])")
+
+
 class PlanLine(NamedTuple):
     """A line without its Markdown.
 
@@ -102,6 +105,11 @@ def plan_line(raw: str) -> PlanLine:
         return PlanLine(TITLE.sub("", text, count=1), 0, indent)
     heading = marked is not None or TITLE.match(text) is not None
     return PlanLine(text, 0 if _BRACKETED.match(text) else None, indent, heading)
+
+
+def unexplained(words: str) -> str:
+    """Return a step's words without the explanation behind them, `Walk to fridge` of `Walk to fridge: it hums`."""
+    return _EXPLAINED.split(words, 1)[0]
 
 
 class Header(NamedTuple):

@@ -12,7 +12,10 @@ from hearth.kb.language.plan_lines import is_plan as is_list
 from hearth.schemas.blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|;\s+")
-_END = re.compile(r"(?:\[?(?:all )?(?:done(?: task)?|end(?: of (?:plan|task))?|finished|task (?:is )?(?:complete|done)d?)\]?)\W*", re.I)
+_END = re.compile(
+    r"(?:\[?(?:all )?(?:done(?: task)?|end(?: of (?:plan|task))?|finished|task (?:is )?(?:complete|done)d?)\]?)\W*",
+    re.I,
+)
 """Words that end a plan and are no step."""
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
@@ -56,7 +59,13 @@ def header(text: str) -> Header:
 
 def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan in any form but that of program text."""
-    return form_of(lines) is not None or is_list(lines)
+    return any(map(_THOUGHT.match, lines)) or form_of(lines) is not None or is_list(lines) or _is_joined(lines)
+
+
+def _is_joined(lines: Sequence[str]) -> bool:
+    """Return whether a line holds several steps, `Plan: 1. walk to kitchen 2. open fridge`."""
+    read = map(plan_line, lines)
+    return any(len(list(_parts(line))) > 1 for line in read if line.number is not None and not line.bracketed)
 
 
 def _without_thoughts(lines: list[str]) -> list[str]:
@@ -76,7 +85,9 @@ def _ends(placed: Placed) -> bool:
 
 
 def _kind(line: PlanLine) -> Kind:
-    return Kind.TEXT if line.number is None else Kind.STEP
+    if line.number is None:
+        return Kind.TEXT
+    return Kind.STEP if line.numbered or line.bracketed else Kind.DETAIL
 
 
 def _kinds(placed: list[Placed]) -> Iterator[ProgramLine]:

@@ -75,20 +75,22 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
-    """Split a text of a form: a line that begins a program does so after a line that does not."""
+    """Split a text of a form before each line that begins a program."""
     block: list[str] = []
     first = size = 0
-    has_body = False
+    has_steps, begun = False, set[str]()
     for number, raw in lines:
-        begins = form.begins.match(raw) is not None
-        if begins and has_body:
+        begins = form.begins.match(raw)
+        key = next(iter(begins.groups()), "").lower() if begins else ""
+        if begins and (has_steps or key in begun):
             yield first, block
-            block, size, has_body = [], 0, False
+            block, size, has_steps, begun = [], 0, False, set()
+        begun |= {key} if begins else set()
         if raw.strip() or block:
             first = number if not block else first
             block += [raw] if size <= most else []
             size += len(raw) + 1
-        has_body = bool(block) and (has_body or (bool(raw.strip()) and not begins))
+        has_steps = has_steps or form.is_step(raw)
     if block:
         yield first, block
 
@@ -173,7 +175,7 @@ class _Block:
         if RULE.match(raw):
             is_apart = bool(self.lines) and not self.lines[-1].strip()
             return not self._last and is_apart and len(self._texts) > 1 and not is_answer(self._texts[0])
-        return line.heading and 0 < self._level and level_of(raw) <= self._level
+        return line.heading and self._level > 0 and level_of(raw) <= self._level
 
     def ends_before(self, step: PlanLine) -> bool:
         """Whether a step belongs to the next program."""

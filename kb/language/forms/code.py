@@ -4,11 +4,16 @@ import ast
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.form import Form, Placed, step, title, written
+from hearth.kb.language.forms.form import Form, Placed, note, step, title, written
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
 _CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*;?\s*(?:#.*|//.*)?$")
-_LEFT_OUT = re.compile(r"\s*(?:assert\b|else\b|if\b|elif\b|for\b|while\b|try\b|import\b|from\b.*\bimport\b|return\b|pass\b|print\()")
+_LEFT_OUT = re.compile(
+    r"\s*(?:(?:assert|else|if|elif|for|while|try|except|import|return|pass|class|with)\b|from\b.*\bimport\b|print\(|\"{3}|'{3})"
+)
+_MADE_TRUE = re.compile(r"\s*else\s*:(?!\s*find\b)\s*(\S.*)")
+"""What ProgPrompt does where a state lacks, `else: open('fridge')`; that a thing is found again is no step."""
+
 _COMMENT = re.compile(r"\s*(?:#|//|`{3}|~{3}|$)")
 _LONGEST = 500
 
@@ -30,9 +35,12 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
         named = _DEF.match(raw)
         if named:
             found.append(title(row, named[1].replace("_", " ")))
-        elif not _COMMENT.match(raw) and not _LEFT_OUT.match(raw) and not raw.strip().startswith(('"""', "'''")):
-            call = _CALL.match(raw) if len(raw) <= _LONGEST else None
-            found.append(step(row, _called(call) if call else raw, len(raw) - len(raw.lstrip())))
+        elif not _COMMENT.match(raw):
+            made_true = _MADE_TRUE.match(raw)
+            words = made_true[1] if made_true else raw
+            call = _CALL.match(words) if len(raw) <= _LONGEST else None
+            is_step = made_true is not None or not _LEFT_OUT.match(raw)
+            found.append(step(row, _called(call) if call else words) if is_step else note(row, raw))
     return found
 
 
@@ -55,4 +63,4 @@ def _name(argument: ast.expr) -> str | None:
     return argument.id if isinstance(argument, ast.Name) else None
 
 
-CODE = Form(_fits, _lines, _DEF)
+CODE = Form(_fits, _lines, _is_call, re.compile(r"\s*(?:async\s+)?def\s"))

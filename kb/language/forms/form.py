@@ -20,17 +20,25 @@ class Form(NamedTuple):
     Attributes:
         fits: whether the lines of a text, or the first of them, are written so.
         lines: the steps, headings and notes of a text.
-        begins: matches the line with which the next program begins once a program has steps.
+        is_step: whether a line is a step.
+        begins: matches a line with which a program begins, once the one above has steps or such a line of its own; of
+            lines that differ in the first group, each belongs to one beginning.
     """
 
     fits: Callable[[Sequence[str]], bool]
     lines: Callable[[Sequence[str]], list[Placed]]
+    is_step: Callable[[str], bool]
     begins: re.Pattern[str]
 
 
 def step(row: int, text: str, indent: int = 0) -> Placed:
     """Return a step of a form in which every step counts."""
     return Placed(row, PlanLine(" ".join(text.split()), 1, indent, numbered=True))
+
+
+def note(row: int, text: str) -> Placed:
+    """Return a line that is no step, and is counted as such."""
+    return Placed(row, PlanLine(" ".join(text.split()), 0, 1))
 
 
 def title(row: int, text: str) -> Placed:

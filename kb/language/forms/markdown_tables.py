@@ -42,4 +42,4 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
     return found
 
 
-MARKDOWN_TABLE = Form(_fits, _lines, re.compile(r"\s*#"))
+MARKDOWN_TABLE = Form(_fits, _lines, lambda raw: bool(_cells(raw)), re.compile(r"\s*(?:#|\**task\b.*:)", re.IGNORECASE))

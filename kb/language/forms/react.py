@@ -31,4 +31,9 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
     return found
 
 
-REACT = Form(_fits, _lines, re.compile(r"\s*(?:task|goal|question|your task is to)\b.*:", re.IGNORECASE))
+REACT = Form(
+    _fits,
+    _lines,
+    lambda raw: _ACT.match(raw) is not None,
+    re.compile(r"[\s#*]*(task\b|goal\b|question\b|your task is to:)", re.IGNORECASE),
+)
