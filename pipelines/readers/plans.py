@@ -153,7 +153,9 @@ class _Block:
             self._level, self._texts = 0, []
         elif line.text and self._last and not self._below and (line.heading or not line.indent):
             self._below = len(self.lines)
-            self.has_title_below = line.heading or not (is_sentence(line.text) or META.match(line.text))
+            is_apart = bool(self.lines) and not self.lines[-1].strip()
+            is_remark = is_sentence(line.text) or META.match(line.text) is not None
+            self.has_title_below = line.heading or (is_apart and not is_remark)
         if line.number is None and line.text:
             self._level = self._level or (level_of(raw) if line.heading else 0)
             self._texts.append(line)

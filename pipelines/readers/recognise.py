@@ -1,6 +1,7 @@
 """The form of a source, recognised by its content."""
 
 import itertools
+import re
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
@@ -38,6 +39,9 @@ _JSON = frozenset({".json", ".jsonl", ".ndjson"})
 _YAML = frozenset({".yaml", ".yml"})
 _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 """Endings of texts that are read as programs even without a step; others, such as notes, need one."""
+
+_NUMBER = re.compile(r"\s*\[\d{1,4}\]\s+[^\s,\]}]")
+"""The number of a step in brackets, `[1] Walk to fridge`."""
 
 _LOOKED_AT = 60
 _LONGEST = 100_000
@@ -130,7 +134,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     line = first[0] if first else ""
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
-    if looks_like_json(line):
+    if looks_like_json(line) and not _NUMBER.match(line):
         return _json(path, place, [line for line in whole if line.strip()])
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")

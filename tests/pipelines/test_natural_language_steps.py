@@ -109,7 +109,7 @@ def test_a_language_model_s_markdown(write, knowledge):
     ]  # fmt: skip
     assert found.program.lines == (12, 13, 17, 17, 20)
     assert [(fault.code, fault.line, fault.column) for fault in found.faults] == [("NOT_UNDERSTOOD", 18, 4)]
-    assert [(warning.code, warning.line) for warning in found.warnings] == [("FUZZY_MATCH", 13)]
+    assert [(warning.code, warning.line) for warning in found.warnings] == [("FUZZY_MATCH", 13), ("NO_STEP", 14)]
     assert (second["title"], second["program_id"]) == ("Watch TV", "spoken:chat.md:23")
     found = parse_steps(second["text"], second["line"], "chat.md", knowledge)
     assert found.program.lines == (27, 28) and not found.faults

@@ -22,7 +22,7 @@ def _fits(lines: Sequence[str]) -> bool:
     """Return whether most lines are calls: a text in which some line is nothing that code has is none."""
     code = [line for line in lines if not _COMMENT.match(line)]
     calls = sum(_is_call(line) for line in code)
-    return calls > 0 and (any(map(_DEF.match, code)) or calls >= 0.6 * len(code))
+    return any(map(_DEF.match, code)) or (calls > 0 and calls >= 0.6 * len(code))
 
 
 def _is_call(line: str) -> bool:

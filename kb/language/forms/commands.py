@@ -86,7 +86,7 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
 
 
 def read(lines: Sequence[str], told: Callable[[str], str]) -> list[Placed]:
-    """Return the steps of the lines of which `told` gives words; the lines above the first are title and description."""
+    """Return the steps of the lines of which `told` gives words; lines above the first are title and description."""
     from hearth.kb.language.plan_lines import plan_line
 
     found: list[Placed] = []

@@ -47,7 +47,7 @@ def title(row: int, text: str) -> Placed:
 
 
 def written(action: str, objects: Sequence[str]) -> str:
-    """Return a step in the syntax of programs: objects are names, with their instance behind a blank if they have one."""
+    """Return a step in the syntax of programs; an object is a name, and its instance behind a blank if it has one."""
     return " ".join([f"[{action}]", *(f"<{name}> ({number or 1})" for name, number in map(_numbered, objects))])
 
 

@@ -10,6 +10,7 @@ _STEP = re.compile(r"\s*\[\s*step\s*\d+\s*\]\s*(.*)", re.IGNORECASE)
 _FIELD = re.compile(r"\s*\[\s*(goal|scene|description|env\w*|initial state|task)\s*\]\s*(.*)", re.IGNORECASE)
 
 
+_GOAL = re.compile(r"\s*\[\s*goal\s*\]\s", re.IGNORECASE)
 _SHORT = re.compile(r"(walk|run|go|sit|lie)(?= (?!to\b|into\b|towards\b|on\b|in\b|down\b|at\b))", re.IGNORECASE)
 """The beginning of `walk sofa`, `sit sofa`, which name no preposition."""
 
@@ -19,7 +20,7 @@ def _whole(verb: re.Match[str]) -> str:
 
 
 def _fits(lines: Sequence[str]) -> bool:
-    return any(map(_STEP.match, lines))
+    return any(_STEP.match(line) or _GOAL.match(line) for line in lines)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
