@@ -26,7 +26,7 @@ class Kind(StrEnum):
     """What a line of a program is.
 
     A detail is a line that may explain the step above: an item below a step, or a line without a number. It is a step
-    if it reads exactly as one. Else it is a note, unless it is missing, a line between numbered ones that is no sentence.
+    if it reads exactly as one, else a note. A missing step is a line between numbered ones that is no sentence.
     """
 
     TEXT = "text"

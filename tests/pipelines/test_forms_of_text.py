@@ -1,4 +1,4 @@
-"""The forms that a text's steps are written in: each is read whole by check and score, and no record takes another's."""
+"""The forms that a text's steps are written in: check and score read the same, and no record takes another's."""
 
 import functools
 
@@ -40,17 +40,20 @@ MILK_TEXTS = {
     "numbers in brackets": "[1] Walk to fridge\n[2] Open fridge\n[3] Grab milk\n[4] Close fridge\n",
     "decimals": "1.1 Walk to fridge\n1.2 Open fridge\n1.3 Grab milk\n1.4 Close fridge\n",
     "checkboxes": "- [ ] Walk to fridge\n- [x] Open fridge\n- [ ] Grab milk\n- [ ] Close fridge\n",
-    "keycaps": ("1\ufe0f\u20e3 Walk to fridge\n2\ufe0f\u20e3 Open fridge\n"
-        "3\ufe0f\u20e3 Grab milk\n4\ufe0f\u20e3 Close fridge\n"),
+    "keycaps": (
+        "1\ufe0f\u20e3 Walk to fridge\n2\ufe0f\u20e3 Open fridge\n3\ufe0f\u20e3 Grab milk\n4\ufe0f\u20e3 Close fridge\n"
+    ),
     "Windows, BOM": "\ufeff1. Walk to fridge\r\n2. Open fridge\r\n3. Grab milk\r\n4. Close fridge\r\n",
     "one line": "Plan: 1. walk to fridge  2. open fridge 3. grab milk 4. close fridge 5. Done\n",
-    "one line, explained": ("Explanation: I need milk.\n\n"
-        "Plan: 1. walk to fridge 2. open fridge 3. grab milk 4. close fridge\n"),
+    "one line, explained": (
+        "Explanation: I need milk.\n\nPlan: 1. walk to fridge 2. open fridge 3. grab milk 4. close fridge\n"
+    ),
     "one line from zero": "0. Walk to fridge 1. Open fridge 2. Grab milk 3. Close fridge 4. done task.\n",
     "arrows": "Task: milk\nWalk to fridge -> open fridge → grab milk => close fridge\n",
     "semicolons": "1. Walk to fridge; open fridge\n2. Grab milk; close fridge\n3. END\n",
-    "items below a heading step": ("1. Walk to the fridge:\n   - Open the fridge\n"
-        "   - Grab the milk\n2. Close the fridge\n"),
+    "items below a heading step": (
+        "1. Walk to the fridge:\n   - Open the fridge\n   - Grab the milk\n2. Close the fridge\n"
+    ),
     "letters below": "1. Walk to the fridge\n   a. Open the fridge\n   b. Grab the milk\n2. Close the fridge\n",
     "decimals below": "1. Walk to the fridge\n   1.1 Open the fridge\n   1.2 Grab the milk\n2. Close the fridge\n",
     "a continuation": "1. Walk to the fridge\n   Open the fridge\n2. Grab the milk\n3. Close the fridge\n",
@@ -59,32 +62,49 @@ MILK_TEXTS = {
     "the last without": "1. Walk to fridge\n2. Open fridge\n3. Grab milk\nClose fridge\n",
     "a fence": "```\n1. Walk to fridge\n2. Open fridge\n3. Grab milk\n4. Close fridge\n```\n",
     "calls in a fence": "```python\n# Step 1: go\nwalk('fridge')\nopen(\"fridge\")\ngrab(milk)\nclose('fridge')\n```\n",
-    "calls of a robot": ('robot.walk("fridge")\nrobot.open("fridge")\n'
-        'robot.grab("milk")  # cold\nrobot.close("fridge")\n'),
-    "a function": ("def get_milk():\n\t# 0: go\n\twalk('fridge')\n\topen('fridge')\n"
-        "\tgrab('milk')\n\tclose('fridge')\n\t# 1: Done\n"),
-    "ReAct": ("Thought: go\nAct 1: walk to fridge\nObs 1: ok\n"
-        "Act 2: open fridge\nAct 3: grab milk\nAct 4: close fridge\n"),
-    "Action:": ("Thought: x\nAction: Walk to fridge\nAction: open fridge\n"
-        "Action: grab milk\nAction: close fridge\nAction: finish\n"),
+    "calls of a robot": (
+        'robot.walk("fridge")\nrobot.open("fridge")\nrobot.grab("milk")  # cold\nrobot.close("fridge")\n'
+    ),
+    "a function": (
+        "def get_milk():\n\t# 0: go\n\twalk('fridge')\n\topen('fridge')\n"
+        "\tgrab('milk')\n\tclose('fridge')\n\t# 1: Done\n"
+    ),
+    "ReAct": (
+        "Thought: go\nAct 1: walk to fridge\nObs 1: ok\nAct 2: open fridge\nAct 3: grab milk\nAct 4: close fridge\n"
+    ),
+    "Action:": (
+        "Thought: x\nAction: Walk to fridge\nAction: open fridge\n"
+        "Action: grab milk\nAction: close fridge\nAction: finish\n"
+    ),
     "ALFWorld": "> go to fridge 1\nYou see it.\n> open fridge 1\nok\n> take milk 1 from fridge 1\n> close fridge 1\n",
     "ALFWorld, numbered": "1. go to fridge 1\n2. open fridge 1\n3. take milk 1 from fridge 1\n4. close fridge 1\n",
-    "PDDL": ("(walk_towards character fridge)\n(open character fridge)\n"
-        "(grab character milk)\n(close character fridge)\n"),
-    "PDDL with times": ("0: (walk_towards robot fridge) ; far\n1: (open robot fridge)\n"
-        "2: (grab robot milk)\n3: (close robot fridge)\n"),
-    "PDDL without parentheses": ("walk_towards character fridge\nopen character fridge\n"
-        "grab character milk\nclose character fridge\n"),
-    "a table": ("| Step | Action |\n|---|---|\n| 1 | Walk to fridge |\n"
-        "| 2 | Open fridge |\n| 3 | Grab milk |\n| 4 | Close fridge |\n"),
-    "thoughts": ("<think>\nI should open the door.\n</think>\n[Walk] <fridge> (1)\n"
-        "[Open] <fridge> (1)\n[Grab] <milk> (1)\n[Close] <fridge> (1)\n"),
+    "PDDL": (
+        "(walk_towards character fridge)\n(open character fridge)\n(grab character milk)\n(close character fridge)\n"
+    ),
+    "PDDL with times": (
+        "0: (walk_towards robot fridge) ; far\n1: (open robot fridge)\n2: (grab robot milk)\n3: (close robot fridge)\n"
+    ),
+    "PDDL without parentheses": (
+        "walk_towards character fridge\nopen character fridge\ngrab character milk\nclose character fridge\n"
+    ),
+    "a table": (
+        "| Step | Action |\n|---|---|\n| 1 | Walk to fridge |\n"
+        "| 2 | Open fridge |\n| 3 | Grab milk |\n| 4 | Close fridge |\n"
+    ),
+    "thoughts": (
+        "<think>\nI should open the door.\n</think>\n[Walk] <fridge> (1)\n"
+        "[Open] <fridge> (1)\n[Grab] <milk> (1)\n[Close] <fridge> (1)\n"
+    ),
     "printed": "[WALK] <fridge> (1) [0]\n[OPEN] <fridge> (1) [1]\n[GRAB] <milk> (1) [2]\n[CLOSE] <fridge> (1) [3]\n",
-    "comments": ("T\n\n\n[WALK] <fridge> (1) # go\n"
-        "[OPEN] <fridge> (1)   // may be open\n[GRAB] <milk> (1)\n[CLOSE] <fridge> (1)#\n"),
+    "comments": (
+        "T\n\n\n[WALK] <fridge> (1) # go\n"
+        "[OPEN] <fridge> (1)   // may be open\n[GRAB] <milk> (1)\n[CLOSE] <fridge> (1)#\n"
+    ),
     "no instances": "T\n\n\n[walk]<fridge>\n[open] <fridge>\n[grab] <milk>\n[close] <fridge> [3]\n",
-    "agents": ("<char0> [walk] <fridge> (1)\n<char0> [open] <fridge> (1)\n"
-        "<char0> [grab] <milk> (1)\n<char0> [close] <fridge>\n"),
+    "agents": (
+        "<char0> [walk] <fridge> (1)\n<char0> [open] <fridge> (1)\n"
+        "<char0> [grab] <milk> (1)\n<char0> [close] <fridge>\n"
+    ),
 }
 
 
@@ -105,8 +125,10 @@ def test_the_same_steps_in_every_form_for_check_and_score(write, knowledge, text
         ("## Tea\n## Novel\n- Grab novel\n- Read novel\n", ["Tea", "Novel"]),
         ("Task 7 - Tea\n\nTask 8 - Novel\n1) Grab novel\n2) Read novel\n", ["Tea", "Novel"]),
         ("Task: Tea\n\nTask: Novel\n[Grab] <novel> (1)\n[Read] <novel> (1)\n", ["Task: Tea", "Task: Novel"]),
-        (("[Goal] Tea.\n\n[Goal] Novel.\n"
-            "[Step 1] grab novel.\n[Step 2] read novel.\n[Step 3] done task.\n"), ["Tea", "Novel"]),
+        (
+            ("[Goal] Tea.\n\n[Goal] Novel.\n[Step 1] grab novel.\n[Step 2] read novel.\n[Step 3] done task.\n"),
+            ["Tea", "Novel"],
+        ),
         ("Task: Tea\n\nTask: Novel\nThought: go\nAct: grab novel\nAct: read novel\n", ["Tea", "Novel"]),
         ("def tea():\n\t# later\ndef novel():\n\tgrab('novel')\n\tread('novel')\n", ["tea", "novel"]),
     ],
@@ -126,8 +148,8 @@ def test_a_record_without_steps_below_one_with_steps(write, knowledge):
 
 def test_blocks_of_say_can_pay(write, knowledge):
     text = (
-        ("[Scene] 7\n[Goal] sit.\n[Description] go, sit.\n[Step 1] walk sofa.\n"
-            "[Step 2] sit sofa.\n[Step 3] done task.\n\n")
+        "[Scene] 7\n[Goal] sit.\n[Description] go, sit.\n[Step 1] walk sofa.\n"
+        "[Step 2] sit sofa.\n[Step 3] done task.\n\n"
         "[Scene] 2\n[Goal] read.\n[Step 1] grab novel.\n[Step 2] read novel.\n"
     )
     first, second = programs(write, knowledge, text)
@@ -162,8 +184,10 @@ def test_what_no_form_means_is_a_fault_at_its_line(write, knowledge, text, place
 
 
 def test_explanations_are_counted_and_metadata_is_no_step(write, knowledge):
-    text = ("Scene: 3\nAuthor: me\nTask: Nap\n1. Walk to bed\n"
-        "   It is in the bedroom.\n   - Mind the cat.\n2. Sleep\nDifficulty: easy\n")
+    text = (
+        "Scene: 3\nAuthor: me\nTask: Nap\n1. Walk to bed\n"
+        "   It is in the bedroom.\n   - Mind the cat.\n2. Sleep\nDifficulty: easy\n"
+    )
     assert programs(write, knowledge, text) == [("Nap", ["[Walk] <bed> (1)", "[Sleep]"], [], ["NO_STEP"])]
 
 
