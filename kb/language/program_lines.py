@@ -19,6 +19,9 @@ _END = re.compile(
 """Words that end a plan and are no step."""
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
+_SEVERAL = re.compile(r"[>→⟶➔➡;]|\d[.):\]]")
+"""What a line of several steps has in any case."""
+
 _THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>\s*$", re.IGNORECASE)
 
 
@@ -54,7 +57,9 @@ def lines_of_program(text: str) -> list[ProgramLine]:
 
 def header(text: str) -> Header:
     """Return title and description of a program's text."""
-    return header_of([line for _, line, _ in lines_of_program(text)])
+    raw = _without_thoughts(text.split("\n"))
+    form = form_of(raw)
+    return header_of([line for _, line in form.lines(raw)] if form else list(map(plan_line, raw)))
 
 
 def is_plan(lines: Sequence[str]) -> bool:
@@ -127,6 +132,9 @@ def _between(line: PlanLine, steps_follow: bool) -> Kind:
 
 def _parts(line: PlanLine) -> Iterator[PlanLine]:
     """Part a line of several steps: `walk to kitchen 2. open fridge`, or `walk to kitchen -> open fridge`."""
+    if not _SEVERAL.search(line.text):
+        yield line
+        return
     pieces = [line.text]
     if line.numbered:
         pieces = list(_numbered(line.text, line.number or 0))

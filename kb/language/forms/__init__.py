@@ -1,5 +1,6 @@
 """The forms in which steps are written, besides numbered and bulleted lines."""
 
+import re
 from collections.abc import Sequence
 
 from hearth.kb.language.forms.code import CODE
@@ -22,7 +23,12 @@ FORMS: dict[str, Form] = {
 }
 """Forms by name, in the order in which they are tried."""
 
+_HINT = re.compile(r"[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|.*\bcharacter\b", re.IGNORECASE).match
+"""Whether a line has what some line of each form has: most plans have none, and are not tried."""
+
 
 def form_of(lines: Sequence[str]) -> Form | None:
     """Return the form that the lines of a text are written in; None for numbered, bulleted and bracketed lines."""
+    if not any(map(_HINT, lines)):
+        return None
     return next((form for form in FORMS.values() if form.fits(lines)), None)
