@@ -1,16 +1,19 @@
 """The form of a source, recognised by its content."""
 
 import itertools
+import re
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from hearth.kb.language.plan_lines import TITLE, is_plan, plan_line
+from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, spreadsheets, text
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
+from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
@@ -36,6 +39,9 @@ _JSON = frozenset({".json", ".jsonl", ".ndjson"})
 _YAML = frozenset({".yaml", ".yml"})
 _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 """Endings of texts that are read as programs even without a step; others, such as notes, need one."""
+
+_NUMBER = re.compile(r"\s*\[\d{1,4}\]\s+[^\s,\]}]")
+"""The number of a step in brackets, `[1] Walk to fridge`."""
 
 _LOOKED_AT = 60
 _LONGEST = 100_000
@@ -128,7 +134,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     line = first[0] if first else ""
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
-    if looks_like_json(line):
+    if looks_like_json(line) and not _NUMBER.match(line):
         return _json(path, place, [line for line in whole if line.strip()])
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
