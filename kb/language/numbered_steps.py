@@ -8,15 +8,14 @@ from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import PlanLine, header_of, is_step, ordered, plan_line
-from hearth.kb.language.understanding import Candidate, understand
+from hearth.kb.language.sentences import exact_steps, last_thing, nearest_step
+from hearth.kb.language.understanding import Candidate
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps as parse_ticks
 
-_JOINTS = re.compile(r"(?:,|;)?\s+(?:and then|then|and)\s+|[;,]\s+|\.\s+(?=[A-Z])", re.IGNORECASE)
 _EXPLAINED = re.compile(r" ?[(–—]| - |:(?= |$)|\. (?=[A-Z])")
-_PRONOUN = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 
 
 class ParsedSteps(NamedTuple):
@@ -88,9 +87,9 @@ class _StepParser:
         if line.bracketed:
             return self._written(line.text, raw, number)
         words = line.text
-        parts = self._parts(words)
+        parts = exact_steps(self.known, words, last_thing(self.steps))
         if not parts and (shorter := _EXPLAINED.split(words, 1)[0]) not in ("", words):
-            parts = self._parts(shorter)
+            parts = exact_steps(self.known, shorter, last_thing(self.steps))
             self.warnings += [self._fuzzy(parts[0], raw, words, number)] if parts else []
         fault = [] if parts else self._nearest(words, raw, number)
         for part in parts:
@@ -99,7 +98,7 @@ class _StepParser:
 
     def _nearest(self, words: str, raw: str, number: int) -> list[Diagnostic]:
         """Add the step that a line most resembles; the fault of one that resembles none."""
-        whole = understand(self.known, self._resolved(words))
+        whole = nearest_step(self.known, words, last_thing(self.steps))
         if not whole.meant or words.endswith(":"):
             return [self._fault(whole.candidates, whole.ambiguous, raw, words, number)]
         self._add(whole.meant, number)
@@ -118,31 +117,6 @@ class _StepParser:
                 self.lines += [number] * len(found)
         at = max(raw.find(text), 0)
         return [replace(f, file=self.place, line=number, column=f.column + at, source=raw) for f in faults]
-
-    def _parts(self, words: str) -> list[Candidate]:
-        """The step of which a line is an exact paraphrase, or those of its clauses if each is one; else none."""
-        whole = understand(self.known, self._resolved(words)).meant
-        if whole and whole.score == 1:
-            return [whole]
-        clauses = [clause for clause in _JOINTS.split(words) if clause]
-        if len(clauses) < 2:
-            return []
-        found: list[Candidate] = []
-        about = self._about()
-        for clause in clauses:
-            meant = understand(self.known, _PRONOUN.sub(about, clause) if about else clause).meant
-            if meant is None or meant.score < 1:
-                return []
-            found.append(meant)
-            about = meant.names[0].replace("_", " ") if meant.names else about
-        return found
-
-    def _about(self) -> str:
-        return next((step.objects[0].name.replace("_", " ") for step in reversed(self.steps) if step.objects), "")
-
-    def _resolved(self, words: str) -> str:
-        about = self._about() if _PRONOUN.search(words) else ""
-        return _PRONOUN.sub(about, words) if about else words
 
     def _add(self, meant: Candidate, number: int) -> None:
         self.steps.append(Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)))
