@@ -166,22 +166,23 @@ def _given(row: IngestedRow, known: Knowledge) -> Given:
     from hearth.kb import grammar
     from hearth.kb.language.numbered_steps import parse_steps
     from hearth.pipelines.readers import plans
-    from hearth.schemas.places import in_file, line_in_file
     from hearth.schemas.syntax import parse_program
+    from hearth.schemas.text_places import TextPlaces
 
-    text, before, place, places = row["text"] or "", row["line"] or 0, row["place"], row["places"]
+    text, place = row["text"] or "", row["place"]
+    places = TextPlaces(row["line"] or 0, row["places"] or ())
     own = next(iter(row["groundings"] or ()), None)
     if row["origin"] == plans.NAME:
         steps = parse_steps(text, 0, place, known)
-        lines = tuple(line_in_file(line, places, before) for line in steps.program.lines)
-        faults, warnings = (tuple(in_file(one, places, before) for one in found) for found in steps[1:])
+        lines = tuple(map(places.line, steps.program.lines))
+        faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])
         return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own)
     written, syntax = parse_program(text, place)
     program, wrong = grammar.check(written, known, place, text.split("\n"))
     bad = {fault.line for fault in wrong}
     kept = [number for number, line in enumerate(program.lines) if line not in bad]
-    steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(line_in_file(program.lines[n], places, before) for n in kept)
-    moved = sorted((in_file(fault, places, before) for fault in (*syntax, *wrong)), key=lambda f: f.line)
+    steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(places.line(program.lines[n]) for n in kept)
+    moved = sorted((places.placed(fault) for fault in (*syntax, *wrong)), key=lambda f: f.line)
     return Given(_titled(replace(program, steps=steps_kept, lines=lines), row), place, tuple(moved), (), own)
 
 

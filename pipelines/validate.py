@@ -14,11 +14,11 @@ from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import plans
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.places import in_file, line_in_file
 from hearth.schemas.program import Program
 from hearth.schemas.stage_rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
+from hearth.schemas.text_places import TextPlaces
 from hearth.simulation.rules import REPLAY
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -31,11 +31,10 @@ Check = Callable[[str, int, str, Knowledge], tuple[Program, tuple[Diagnostic, ..
 def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject]:
     """Check one program and each of its groundings; a faulty grounding is refused alone."""
     check = checked_natural_language if record["origin"] == plans.NAME else checked
-    before, places = record["line"] or 0, record["places"]
-    program, faults, warnings = check(record["text"] or "", 0 if places else before, record["place"], known)
-    if places:
-        faults, warnings = (tuple(in_file(one, places) for one in found) for found in (faults, warnings))
-        program = replace(program, lines=tuple(line_in_file(line, places) for line in program.lines))
+    places = TextPlaces(record["line"] or 0, record["places"] or ())
+    program, faults, warnings = check(record["text"] or "", 0, record["place"], known)
+    faults, warnings = (tuple(map(places.placed, found)) for found in (faults, warnings))
+    program = replace(program, lines=tuple(map(places.line, program.lines)))
     if faults:
         return [Reject(faults)]
     outcomes = [_grounding(grounding, record["place"], known, check) for grounding in record["groundings"] or ()]

@@ -7,7 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from hearth.kb.loading.load import default
-from hearth.pipelines.readers.located import Pairs, composed, pairs_of, pieces_of
+from hearth.pipelines.readers.located import Pairs, Text, composed, pairs_of, pieces_of
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.syntax import normal_name
 
 ACTIONS = ("action", "verb", "act", "function", "name")
@@ -26,8 +28,14 @@ _OF_MAPPING = re.compile(r"""\s*(?:```\w*\s*)?\{\s*["'][A-Z][A-Z_]+["']\s*:\s*\[
 
 
 def is_action(value: Any) -> bool:
-    """Whether a value is an object with an action and perhaps objects, or a call of a tool."""
-    return isinstance(value, dict) and _action(value) is not None
+    """Whether a value is an object with an action and perhaps objects, or a call of a tool.
+
+    A row of a dataset's steps, whose objects are objects with a name, is none.
+    """
+    if not isinstance(value, dict) or _action(value) is None:
+        return False
+    objects = value.get("objects")
+    return not (isinstance(objects, list) and all(isinstance(each, dict) for each in objects))
 
 
 def step_of(value: dict[str, Any]) -> str:
@@ -158,6 +166,21 @@ def mapping_in(text: str) -> dict[str, Any] | None:
     return found if isinstance(found, dict) and is_mapping(found) else None
 
 
+def mapped_steps(text: str) -> list[str]:
+    """The steps of a mapping in a text.
+
+    Raises:
+        HearthError: BAD_JSON, it is cut off or is something else.
+    """
+    found = mapping_in(text)
+    if found is None:
+        line, column = (text.line, text.column) if isinstance(text, Text) else (0, 0)
+        message, remedy = "an answer that is cut off, or that maps actions to no objects", "give it whole"
+        shown = text.partition("\n")[0][:60]
+        raise HearthError(Diagnostic(Code.BAD_JSON, message, "", line, column, len(shown), shown, remedy))
+    return steps_of_mapping(found, text)
+
+
 def _of_python(text: str) -> Any:
     """A dict of constants as Python writes it, with repeated keys."""
     try:
@@ -168,5 +191,3 @@ def _of_python(text: str) -> Any:
     except (SyntaxError, ValueError, RecursionError, MemoryError, TypeError):
         pass
     return None
-
-

@@ -31,7 +31,7 @@ class Text(str):
         return text_at(str(self)[start : start + length], line, column, self.raw[first:end], self.unit)
 
     def places(self, skip: int = 0) -> list[list[int]]:
-        """The place of each line; see `hearth.schemas.places`.
+        """The place of each line; see `hearth.schemas.text_places`.
 
         Args:
             skip: characters that a reader has put before the first line.
@@ -107,12 +107,18 @@ def _composed(line: str, parts: list[tuple[int, Text]]) -> Composed:
 
 
 class Located:
-    """A JSON value whose strings are `Text`, and the lines on which its objects begin."""
+    """A JSON value whose strings are `Text`, and the lines on which its objects begin.
+
+    Attributes:
+        value: the value.
+        whole: whether every string of the file is in it: not if an object repeats a key.
+    """
 
     def __init__(self, value: Any, raw: str, line: int = 1, column: int = 1) -> None:
         self._raw, self._line, self._column = raw, line, column
         self._breaks = [match.start() for match in re.finditer("\n", raw)]
         self._lines: dict[int, int] = {}
+        self.whole = True
         self.value = self._walk(value)
 
     def line_of(self, value: Any) -> int:
@@ -139,6 +145,7 @@ class Located:
                     break
             else:
                 stack.pop()
+        self.whole = next(tokens, None) is None
         return top[0]
 
     def _keyed(self, holder: Any, token: re.Match[str]) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.columns import FieldColumns, guessed
-from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_fault
+from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
@@ -52,7 +52,8 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
         if wrong:
             yield refused(place, Reject((wrong,)), line=line)
         elif full and any(full):
-            values = {field: full[layout.columns.index(name)] for field, name in columns.items()}
+            placed = cells_at(raw, full, line, layout)
+            values = {field: placed[layout.columns.index(name)] for field, name in columns.items()}
             yield from ours.items(values, place, line, f"{place}:{line}", {})
     if empty:
         yield refused(place, Reject.of(Code.EMPTY, "a table with its first line only", file=place, line=first))
