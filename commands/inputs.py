@@ -146,8 +146,8 @@ def read_programs(path: Path, known: Knowledge, name: str, columns: str = "") ->
 
     tables: dict[str, FieldColumns] = {}
     for _, item in ingest.items([Source(name, path)], read_columns(columns), tables):
-        while tables:
-            output.note(shown(*tables.popitem()))
+        for place in [place for place, found in tables.items() if found]:
+            output.note(shown(place, tables.pop(place)))
         for row in ingest.read(item):
             if isinstance(row, Reject):
                 yield row

@@ -16,8 +16,32 @@ ACTIONS = ("action", "verb", "act", "function", "name")
 """Keys of the action of a step, the likeliest first."""
 
 OBJECTS = frozenset(
-    "object objects obj object1 object2 target targets arg args arguments parameters params item items receptacle "
-    "location destination recipient room place to into on from".split()
+    [
+        "object",
+        "objects",
+        "obj",
+        "object1",
+        "object2",
+        "target",
+        "targets",
+        "arg",
+        "args",
+        "arguments",
+        "parameters",
+        "params",
+        "item",
+        "items",
+        "receptacle",
+        "location",
+        "destination",
+        "recipient",
+        "room",
+        "place",
+        "to",
+        "into",
+        "on",
+        "from",
+    ]
 )
 """Keys of the objects of a step."""
 

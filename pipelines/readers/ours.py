@@ -12,7 +12,7 @@ from hearth.kb.language.plan_lines import header as plan_header
 from hearth.kb.language.plan_lines import is_plan, plan_line
 from hearth.pipelines.readers import plans
 from hearth.pipelines.readers.actions import is_action, looks_like_mapping, mapped_steps, step_of
-from hearth.pipelines.readers.columns import FieldColumns, guessed
+from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, lacks, value_at
 from hearth.pipelines.readers.document import located, located_document
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless, worker_hash
@@ -46,27 +46,36 @@ _FORM = 'a record is {"title": ..., "description": ..., "steps": ["[Walk] <bed> 
 _ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "synthetic", "augmented", NAME})
 
 
-def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
+def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """The items of each line that is not blank."""
     for number, (line, _) in enumerate(lines(path), 1):
         if line.strip():
             fault = fault_of(line, place, number)
             value = Reject((fault,)) if fault else located(line, place, number)
-            yield from items(value, place, number, f"{place}:{number}", given)
+            yield from items(value, place, number, f"{place}:{number}", asked)
+    yield from absent(asked, place)
 
 
-def scan_document(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
+def scan_document(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """The items of one value."""
     found = located_document(path, place)
     if isinstance(found, Located) and isinstance(found.value, list):
         found.value = {"title": suffixless(PurePath(place).name).replace("_", " "), "steps": found.value}
-    yield from items(found, place, 1, place, given)
+    yield from items(found, place, 1, place, asked)
+    yield from absent(asked, place)
 
 
-def scan_list(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
+def absent(asked: Asked, place: str) -> Iterator[Item]:
+    """The fault of each column that `--columns` names and no record has."""
+    for field, name in asked.absent() if asked.names else ():
+        yield refused(place, lacks(field, name, asked.names, place), f"{place}~{name}")
+
+
+def scan_list(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """The items of each entry of a list."""
     for number, (line, value) in enumerate(located_entries(path, place), 1):
-        yield from items(value, place, line, f"{place}[{number}]", given)
+        yield from items(value, place, line, f"{place}[{number}]", asked)
+    yield from absent(asked, place)
 
 
 def items(found: Any, place: str, line: int, name: str, given: FieldColumns) -> Iterator[Item]:
@@ -117,9 +126,15 @@ def _is_steps(value: Any) -> bool:
 
 def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
     """A record with its fields by our names; those of others are guessed where ours are missing."""
+    inside = {name: value_at(value, name) for name in given.values() if "." in name and name not in value}
+    value = {**value, **{name: part for name, part in inside.items() if part is not None}}
     texts = [key for key, part in value.items() if isinstance(part, str) or (part and _is_steps(part))]
     found = guessed(texts, given, exact=True) if texts else {}
+    if isinstance(given, Asked):
+        given.note(value, found, texts)
     named = {field: value[name] for field, name in found.items() if field in given or field not in value}
+    if "program" in given:
+        value = {key: part for key, part in value.items() if key not in _PROGRAMS or key == given["program"]}
     if "steps" in value:
         named.pop("program", None)
     if "text" not in value or "text" in given.values():
@@ -127,6 +142,9 @@ def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
     if "program" in named and not _is_steps(value["text"]):
         return {**{key: part for key, part in value.items() if key != "text"}, **named}
     return {**value, **{field: part for field, part in named.items() if field != "program" and found[field] != "text"}}
+
+
+_PROGRAMS = frozenset({"steps", "program"})
 
 
 def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> Item:
@@ -140,7 +158,10 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
         kind = type(value).__name__
         fault = Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         return refused(place, fault, name, line)
+    keys = [*value]
     value = _named(value, given)
+    if _FIELDS.isdisjoint(value):
+        value[_KEYS] = keys
     own = current_id(str(value.get("program_id") or value.get("id") or ""))
     fault = id_fault(own, place, line)
     if fault:

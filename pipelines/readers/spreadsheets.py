@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.columns import FieldColumns, guessed
+from hearth.pipelines.readers.columns import FieldColumns, Found, guessed, lacks, rivals
 from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
@@ -21,7 +21,10 @@ def names_it(line: str) -> bool:
 
 def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
     """The column of each field that a table has."""
-    return guessed(_begun(Rows(path))[1].columns, given)
+    names = _begun(Rows(path))[1].columns
+    found = Found(guessed(names, given))
+    found.rivals = rivals(names, found, given)
+    return found
 
 
 def _begun(rows: Rows) -> tuple[int, Layout]:
@@ -43,6 +46,10 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
     if not {"program", "description"} & columns.keys():
         yield refused(place, _unnamed(rows, first, layout, place, given))
         return
+    names = dict.fromkeys(layout.columns)
+    for field, name in given.items():
+        if name not in names:
+            yield refused(place, lacks(field, name, names, place, first), f"{place}~{name}")
     empty = True
     for line, raw, cells in rows.parsed(layout):
         full = cells and [*cells, *[""] * (len(layout.columns) - len(cells))]
