@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from hearth.kb.language.fuzzy import Fuzzy
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -89,15 +91,18 @@ def read_program(file: Path, known: Knowledge) -> Program:
     return read_given(file, known).program
 
 
-def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = False, columns: str = "") -> Given:
+def read_given(
+    file: Path, known: Knowledge, number: int = 1, strict: bool = False, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
+) -> Given:
     """A program of an input of any form that `build` reads; a faulty step is left out, with a warning on stderr.
 
     Args:
         file: a file or folder; `-` is standard input.
         known: the grammar.
         number: which of its programs, from 1.
-        strict: refuse a program with a faulty step.
+        strict: refuse a program with a faulty step, or one that was corrected or shortened.
         columns: of a table, or keys of JSON, as in `title=Task,program=Plan`.
+        fuzzy: how far the steps of plans may be from sentences that are known.
 
     Raises:
         HearthError: every fault of a program without a step that can be used, or of an input without a program.
@@ -111,7 +116,7 @@ def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = Fal
     refused: list[Diagnostic] = []
     programs: list[Given] = []
     with placed(file) as path:
-        for found in read_programs(path, known, name_of(file), columns):
+        for found in read_programs(path, known, name_of(file), columns, fuzzy):
             if isinstance(found, Reject):
                 refused += found.diagnostics
             else:
@@ -123,8 +128,11 @@ def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = Fal
         message = f"it holds {output.counted(len(programs), 'program')}" if programs else "no program in it"
         raise HearthError(refused or HearthError.of(Code.EMPTY, message, file=str(file)).diagnostics)
     given = programs[number - 1]
+    given_fuzzy = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
     if given.faults and (strict or not given.program.steps):
         raise HearthError(given.faults)
+    if strict and given_fuzzy:
+        raise HearthError(given_fuzzy)
     output.report((*given.faults, *given.warnings), kind="warning")
     if given.faults:
         lines = output.counted(len({fault.line for fault in given.faults}), "line")
@@ -132,7 +140,9 @@ def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = Fal
     return given
 
 
-def read_programs(path: Path, known: Knowledge, name: str, columns: str = "") -> Iterator[Given | Reject]:
+def read_programs(
+    path: Path, known: Knowledge, name: str, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
+) -> Iterator[Given | Reject]:
     """The programs of a file or folder that is called `name` in diagnostics, and rejects for what is none.
 
     Raises:
@@ -152,7 +162,7 @@ def read_programs(path: Path, known: Knowledge, name: str, columns: str = "") ->
             if isinstance(row, Reject):
                 yield row
             elif row["kind"] == "program":
-                yield _given(row, known)
+                yield _given(row, known, fuzzy)
 
 
 def name_of(file: Path) -> str:
@@ -160,7 +170,7 @@ def name_of(file: Path) -> str:
     return "standard input" if str(file) == "-" else str(file)
 
 
-def _given(row: IngestedRow, known: Knowledge) -> Given:
+def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     from dataclasses import replace
 
     from hearth.kb import grammar
@@ -173,7 +183,7 @@ def _given(row: IngestedRow, known: Knowledge) -> Given:
     places = TextPlaces(row["line"] or 0, row["places"] or ())
     own = next(iter(row["groundings"] or ()), None)
     if row["origin"] == plans.NAME:
-        steps = parse_steps(text, 0, place, known)
+        steps = parse_steps(text, 0, place, known, fuzzy)
         lines = tuple(map(places.line, steps.program.lines))
         faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])
         return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own)

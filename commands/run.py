@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
 from hearth.commands.inputs import read_given, read_goals, read_knowledge
+from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.grounding.trial import Trial
@@ -35,6 +36,7 @@ def run(
     goal: list[str] | None = None,
     which: int = 1,
     columns: str = "",
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     strict: bool = False,
     as_json: bool = False,
 ) -> None:
@@ -54,7 +56,7 @@ def run(
     from hearth.simulation.rules import DEFAULT
 
     known = read_knowledge(kb)
-    given = read_given(file, known, which, strict, columns)
+    given = read_given(file, known, which, strict, columns, fuzzy)
     program, place, is_own = given.at_home(home, graph, homes, known)
     trial = attempt(program, place, seed, DEFAULT, default_state=not (as_is or is_own), add=not (as_is or is_own))
     failure = trial if isinstance(trial, Failure) else trial.execution.failure

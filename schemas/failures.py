@@ -43,6 +43,7 @@ class Code(StrEnum):
     NOT_UNDERSTOOD = "NOT_UNDERSTOOD", 18
     AMBIGUOUS = "AMBIGUOUS", 19
     FUZZY_MATCH = "FUZZY_MATCH", 20
+    NO_STEP = "NO_STEP", 83
     HEARD_NEARLY = "FUZZY_MATCH", 20  # its name in datasets of version 0.1.0
     # Objects of an action
     NOT_AFFORDED = "NOT_AFFORDED", 21

@@ -8,8 +8,9 @@ from typing import Any
 
 from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
-from hearth.kb.language.plan_lines import header as plan_header
-from hearth.kb.language.plan_lines import is_plan, plan_line
+from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.program_lines import header as plan_header
+from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import plans
 from hearth.pipelines.readers.actions import is_action, looks_like_mapping, mapped_steps, step_of
 from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, lacks, value_at

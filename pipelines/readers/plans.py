@@ -1,9 +1,13 @@
 """Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
-from hearth.kb.language.plan_lines import PlanLine, header, plan_line
+from hearth.kb.language.forms import form_of
+from hearth.kb.language.forms.form import Form
+from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, level_of, plan_line
+from hearth.kb.language.program_lines import header
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.located import Text
@@ -17,11 +21,12 @@ NAME = "spoken"
 """This reader's name in ids of records and in the column `origin`."""
 
 _LONGEST_PROGRAM = 100_000
+_LOOKED_AT = 60
 
 
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
-    for number, block in blocks((number, line) for number, (line, _) in enumerate(lines(path), 1)):
+    for number, block in _programs((number, line) for number, (line, _) in enumerate(lines(path), 1)):
         text = "\n".join(block)
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
@@ -68,11 +73,39 @@ def read(item: Item) -> IngestedRow:
     return record(item, "program", top.title, top.description, text=item.value["text"], line=line, places=places)
 
 
+def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
+    """Split a text into its programs, in the form that its first lines are written in."""
+    first = list(itertools.islice(lines, _LOOKED_AT))
+    form = form_of([line for _, line in first])
+    rest = itertools.chain(first, lines)
+    return blocks(rest) if form is None else _blocks_of(form, rest)
+
+
+def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+    """Split a text of a form: a line that begins a program does so after a line that does not."""
+    block: list[str] = []
+    first = size = 0
+    has_body = False
+    for number, raw in lines:
+        begins = form.begins.match(raw) is not None
+        if begins and has_body:
+            yield first, block
+            block, size, has_body = [], 0, False
+        if raw.strip() or block:
+            first = number if not block else first
+            block += [raw] if size <= most else []
+            size += len(raw) + 1
+        has_body = bool(block) and (has_body or (bool(raw.strip()) and not begins))
+    if block:
+        yield first, block
+
+
 def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs: (number of the first line, lines), cut after `most` characters.
 
     A program begins where the numbers begin again, or with a line below the steps that is not one of them; not if the
-    numbers go on after it, or if it is a remark at the end.
+    numbers go on after it, or if it is a remark at the end. A title, a heading of the level of the one before, or a
+    rule ends a program that has no steps, too.
     """
     block = _Block()
     for number, raw in lines:
@@ -81,6 +114,13 @@ def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[
             rest = block.split()
             yield block.first, block.lines
             block = rest
+        elif line.number is None and block.is_without_steps(raw, line):
+            if block.has_steps:
+                rest = block.split()
+                yield block.first, block.lines
+                block = rest
+            yield block.first, block.lines
+            block = _Block()
         block.add(number, raw, line, most)
     if block.has_title_below:
         rest = block.split()
@@ -99,6 +139,8 @@ class _Block:
         self.has_title_below = False
         self._last, self._below, self._size = 0, 0, 0
         self._bulleted, self._by_headings = True, False
+        self._level = self._number = 0
+        self._texts: list[PlanLine] = []
 
     @property
     def first(self) -> int:
@@ -107,19 +149,38 @@ class _Block:
     def add(self, number: int, raw: str, line: PlanLine, most: int) -> None:
         """Add a line, unless the block is blank or full."""
         if line.number is not None:
-            self._bulleted = self._bulleted and not line.number
+            self._bulleted = self._bulleted and not line.numbered
+            self._number = line.number if line.numbered else self._number
             self._by_headings = self._by_headings or line.heading
             is_nested = self._by_headings and not line.heading
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
+            self._level, self._texts = 0, []
         elif line.text and self._last and not self._below and (line.heading or not line.indent):
             self._below = len(self.lines)
-            self.has_title_below = line.heading or not is_sentence(line.text)
+            self.has_title_below = line.heading or not (is_sentence(line.text) or META.match(line.text))
+        if line.number is None and line.text:
+            self._level = self._level or (level_of(raw) if line.heading else 0)
+            self._texts.append(line)
         self.has_title_below = self.has_title_below or (self._below > 0 and line.heading)
         if (raw.strip() or self.lines) and self._size <= most:
             self.lines.append(raw)
             self.numbers.append(number)
             self._size += len(raw) + 1
+
+    @property
+    def has_steps(self) -> bool:
+        """Whether the program has steps, and lines below them."""
+        return self._below > 0
+
+    def is_without_steps(self, raw: str, line: PlanLine) -> bool:
+        """Return whether a line ends the text since the last step, which then is a program that has no steps."""
+        if self._last and not self._below:
+            return False
+        if RULE.match(raw):
+            is_apart = bool(self.lines) and not self.lines[-1].strip()
+            return not self._last and is_apart and len(self._texts) > 1 and not is_answer(self._texts[0])
+        return line.heading and 0 < self._level and level_of(raw) <= self._level
 
     def ends_before(self, step: PlanLine) -> bool:
         """Whether a step belongs to the next program."""
@@ -127,6 +188,8 @@ class _Block:
             return False
         if step.number:
             return step.number <= 1 and (self._last > 1 or self._below > 0)
+        if step.numbered and self._number > 0:
+            return True
         return self._below > 0 and (self._bulleted or step.bracketed)
 
     def split(self) -> "_Block":
@@ -135,4 +198,5 @@ class _Block:
         rest.lines, rest.numbers = self.lines[at:], self.numbers[at:]
         self.lines, self.numbers = self.lines[:at], self.numbers[:at]
         rest._size = sum(map(len, rest.lines))
+        rest._level, rest._texts = self._level, self._texts
         return rest
