@@ -157,7 +157,9 @@ def read_programs(
     tables: dict[str, FieldColumns] = {}
     for _, item in ingest.items([Source(name, path)], read_columns(columns), tables):
         for place in [place for place, found in tables.items() if found]:
-            output.note(shown(place, tables.pop(place)))
+            columns_of = tables.pop(place)
+            if not getattr(columns_of, "is_ours", False):
+                output.note(shown(place, columns_of))
         for row in ingest.read(item):
             if isinstance(row, Reject):
                 yield row

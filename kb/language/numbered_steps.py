@@ -86,7 +86,9 @@ class _StepParser:
             self.faults += found
         elif kind == Kind.MISSING:
             self._is_open = False
-            self.faults += [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, said_by(self.steps))
+            self.faults += (
+                [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, said_by(self.steps))
+            )
         elif line.number is not None and self._is_open:
             self._take_item(line, raw, number)
         elif kind == Kind.DETAIL and not self._detail(line.text, number):
@@ -108,7 +110,9 @@ class _StepParser:
             return []
         words, raw, number = self._notes[0]
         count = len(self._notes)
-        message = f"{count} lines explain steps and are none" if count > 1 else "a line that explains a step and is none"
+        message = (
+            f"{count} lines explain steps and are none" if count > 1 else "a line that explains a step and is none"
+        )
         return [self._diagnostic(Code.NO_STEP, message, raw, words, number, "number it if it is a step")]
 
     def _detail(self, words: str, number: int) -> bool:

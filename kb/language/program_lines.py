@@ -12,7 +12,10 @@ from hearth.kb.language.plan_lines import is_plan as is_list
 from hearth.schemas.blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|;\s+")
-_END = re.compile(r"(?:\[?(?:all )?(?:done(?: task)?|end(?: of (?:plan|task))?|finished|task (?:is )?(?:complete|done)d?)\]?)\W*", re.I)
+_END = re.compile(
+    r"(?:\[?(?:all )?(?:done(?: task)?|end(?: of (?:plan|task))?|finished|task (?:is )?(?:complete|done)d?)\]?)\W*",
+    re.I,
+)
 """Words that end a plan and are no step."""
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")

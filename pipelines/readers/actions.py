@@ -15,34 +15,11 @@ from hearth.schemas.syntax import normal_name
 ACTIONS = ("action", "verb", "act", "function", "name")
 """Keys of the action of a step, the likeliest first."""
 
-OBJECTS = frozenset(
-    [
-        "object",
-        "objects",
-        "obj",
-        "object1",
-        "object2",
-        "target",
-        "targets",
-        "arg",
-        "args",
-        "arguments",
-        "parameters",
-        "params",
-        "item",
-        "items",
-        "receptacle",
-        "location",
-        "destination",
-        "recipient",
-        "room",
-        "place",
-        "to",
-        "into",
-        "on",
-        "from",
-    ]
-)
+OBJECTS = frozenset({
+    "object", "objects", "obj", "object1", "object2", "target", "targets", "arg", "args", "arguments", "parameters",
+    "params", "item", "items", "receptacle", "location", "destination", "recipient", "room", "place", "to", "into",
+    "on", "from",
+})  # fmt: skip
 """Keys of the objects of a step."""
 
 _NAME = re.compile(r"[A-Za-z][\w .'-]*")
@@ -215,3 +192,17 @@ def _of_python(text: str) -> Any:
     except (SyntaxError, ValueError, RecursionError, MemoryError, TypeError):
         pass
     return None
+
+
+_OF_PLANNER = re.compile(r"\(?\s*[a-z]+(?:_[a-z]+)*(?: \S+)* (?:character|agent_n_\d+_\d+)(?: \S+)*\s*\)?")
+_ACTION_NAME = re.compile(r"[a-z]+(?:_[a-z]+)*")
+
+
+def of_planner(plans: Iterable[Any]) -> bool:
+    """Whether lists are all actions of a planner, as `walk_towards character shower`, or names of such actions."""
+    steps = [step for plan in plans if isinstance(plan, list) for step in plan]
+    if not steps or not all(isinstance(step, str) for step in steps):
+        return False
+    if all(map(_OF_PLANNER.fullmatch, steps)):
+        return True
+    return any("_" in step for step in steps) and all(map(_ACTION_NAME.fullmatch, steps))

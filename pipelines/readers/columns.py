@@ -82,6 +82,11 @@ class Found(dict[str, str]):
         super().__init__(*found)
         self.rivals: dict[str, list[str]] = {}
 
+    @property
+    def is_ours(self) -> bool:
+        """Whether every field has the name that it has in our own records, and no other key may hold it."""
+        return not self.rivals and all(name in (field, "steps", "text") for field, name in self.items())
+
 
 def lacks(field: str, name: str, names: Iterable[str], place: str, line: int = 0) -> Reject:
     """The fault of a column that `--columns` names and a file does not have."""
@@ -111,7 +116,8 @@ def shown(place: str, columns: FieldColumns) -> str:
     none = f"; none for {' and '.join(lacking)}" if named and lacking else ""
     rivals = columns.rivals if isinstance(columns, Found) else {}
     also = "".join(
-        f" Warning: {' and '.join(f'`{name}`' for name in names)} may hold the {field}, too; `{columns[field]}` is taken."
+        f" Warning: {' and '.join(f'`{name}`' for name in names)} may hold the {field} too; "
+        f"`{columns[field]}` is taken."
         for field, names in rivals.items()
     )
     return f"Columns of {place}: {named or 'none is known'}{none}. `--columns` names others.{also}"

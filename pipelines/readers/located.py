@@ -9,6 +9,9 @@ from itertools import accumulate
 from typing import Any
 
 _TOKEN = re.compile(r'"([^"\\]*+(?:\\.[^"\\]*+)*+)"', re.DOTALL)
+_GRAPHS = frozenset({"init_graph", "final_graph", "graph", "nodes", "edges"})
+"""Keys of scene graphs, whose names need no places."""
+
 JSON_UNIT = re.compile(r"\\u[dD][89abAB]..\\u[dD][c-fC-F]..|\\u....|\\.|[^\\]", re.DOTALL)
 CELL_UNIT = re.compile(r'""|.', re.DOTALL)
 """The characters of a file that stand for one character of a text."""
@@ -133,15 +136,18 @@ class Located:
         """Replace the strings of a value, in the order of the file."""
         tokens = _TOKEN.finditer(self._raw)
         top: list[Any] = [value]
-        stack: list[Iterator[tuple[Any, Any, Any]]] = [iter([(top, 0, value)])]
+        stack: list[tuple[Iterator[tuple[Any, Any, Any]], bool]] = [(iter([(top, 0, value)]), False)]
         while stack:
-            for holder, key, part in stack[-1]:
+            parts, is_graph = stack[-1]
+            for holder, key, part in parts:
                 if holder.__class__ is not list:
                     self._keyed(holder, next(tokens))
                 if isinstance(part, str):
-                    holder[key] = self._text(part, next(tokens))
+                    token = next(tokens)
+                    if not is_graph:
+                        holder[key] = self._text(part, token)
                 elif part and isinstance(part, (dict, list)):
-                    stack.append(_parts(part))
+                    stack.append((_parts(part), is_graph or key in _GRAPHS))
                     break
             else:
                 stack.pop()

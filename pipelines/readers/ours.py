@@ -12,7 +12,7 @@ from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import plans
-from hearth.pipelines.readers.actions import is_action, looks_like_mapping, mapped_steps, step_of
+from hearth.pipelines.readers.actions import is_action, looks_like_mapping, mapped_steps, of_planner, step_of
 from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, lacks, value_at
 from hearth.pipelines.readers.document import located, located_document
 from hearth.pipelines.readers.elements import located_entries
@@ -97,6 +97,8 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
     other = of_others(value)
     if other is not None:
         yield "", other
+    elif of_planner(value.values()):
+        yield "", Reject.of(Code.UNSUPPORTED_FILE, _OF_PLANNER, suggestion="write steps as [Walk] <shower> (1)")
     elif is_record(value, given):
         yield "", value
     elif value and all(map(_is_steps, value.values())):
@@ -114,6 +116,7 @@ def is_record(value: dict[str, Any], given: FieldColumns) -> bool:
     return not _FIELDS.isdisjoint(_named(value, given))
 
 
+_OF_PLANNER = "plans of a planner, or names of its actions: no programs of the home"
 _KEYS = "keys of the record"
 _FIELDS = frozenset({"steps", "text", "program", "description"})
 
@@ -122,7 +125,13 @@ def _is_steps(value: Any) -> bool:
     listed = value.split("\n") if isinstance(value, str) else value
     if not isinstance(listed, list) or not all(isinstance(step, str) or is_action(step) for step in listed):
         return False
-    return isinstance(value, list) or looks_like_mapping(value) or is_plan(listed) or any(map(STEP.match, listed))
+    return (
+        isinstance(value, list)
+        or looks_like_mapping(value)
+        or any(map(_IN_LINE.match, listed))
+        or is_plan(listed)
+        or any(map(STEP.match, listed))
+    )
 
 
 def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
@@ -150,7 +159,8 @@ _PROGRAMS = frozenset({"steps", "program"})
 
 def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> Item:
     if isinstance(value, Reject):
-        return refused(place, value, name, line)
+        faults = (replace(fault, line=fault.line or line) for fault in value.diagnostics)
+        return refused(place, Reject.because(faults, place), name, line)
     if isinstance(value, str):
         return plans.checked(value, line, f"{plans.NAME}:{name}", place)
     if isinstance(value, list):
@@ -335,6 +345,11 @@ def _places_of(text: str, skip: int) -> list[list[int]]:
     return text.places(skip) if isinstance(text, Text) else [[skip, 1, 1]] * (text.count("\n") + 1)
 
 
+_IN_LINE = re.compile(r"\s*(?:plan|steps|answer)\s*:\s*1[.)]\s+\S.*\s2[.)]\s", re.IGNORECASE)
+"""A whole plan on a line, as `Plan: 1. walk to kitchen 2. find milk`."""
+
+_NUMBERS = re.compile(r"(?<!\S)\d{1,3}[.)]\s+")
+_ENDS = frozenset({"done", "end", "stop", ""})
 _QUOTED = re.compile(r"""'((?:[^'\\]|\\.)*+)'|"((?:[^"\\]|\\.)*+)\"""")
 _IN_ONE_LINE = re.compile(
     r"(?<=[)\]}])[\s,;.]*(?=\[)|(?<=\S)\s+(?=\d{1,3}[.)]\s)|(?<!\s)\s*(?:;|->|→)\s*|(?<=[a-z]\.)\s+(?=[A-Z])"
@@ -350,6 +365,11 @@ def steps_of(text: str) -> list[str]:
     if looks_like_mapping(text):
         return mapped_steps(text)
     lines = text.strip().split("\n")
+    in_line = next((line for line in lines if _IN_LINE.match(line)), "")
+    if in_line and not any(plan_line(line).number for line in lines if line != in_line):
+        # What is said before and below such a plan explains it.
+        steps = [step.strip() for step in _NUMBERS.split(in_line)[1:]]
+        return pieces_of(text, [step for step in steps if step.rstrip(".").lower() not in _ENDS])
     if len(lines) > 1:
         return pieces_of(text, text.split("\n"))
     if lines[0].startswith(('["', "['")):

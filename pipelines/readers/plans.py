@@ -180,7 +180,7 @@ class _Block:
         if RULE.match(raw):
             is_apart = bool(self.lines) and not self.lines[-1].strip()
             return not self._last and is_apart and len(self._texts) > 1 and not is_answer(self._texts[0])
-        return line.heading and 0 < self._level and level_of(raw) <= self._level
+        return line.heading and self._level > 0 and level_of(raw) <= self._level
 
     def ends_before(self, step: PlanLine) -> bool:
         """Whether a step belongs to the next program."""

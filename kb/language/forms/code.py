@@ -8,7 +8,9 @@ from hearth.kb.language.forms.form import Form, Placed, step, title, written
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
 _CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*;?\s*(?:#.*|//.*)?$")
-_LEFT_OUT = re.compile(r"\s*(?:assert\b|else\b|if\b|elif\b|for\b|while\b|try\b|import\b|from\b.*\bimport\b|return\b|pass\b|print\()")
+_LEFT_OUT = re.compile(
+    r"\s*(?:assert\b|else\b|if\b|elif\b|for\b|while\b|try\b|import\b|from\b.*\bimport\b|return\b|pass\b|print\()"
+)
 _COMMENT = re.compile(r"\s*(?:#|//|`{3}|~{3}|$)")
 _LONGEST = 500
 

@@ -23,7 +23,20 @@ _COMMANDS: dict[str, tuple[str, ...]] = {
 
 _READ = [(re.compile(rf"(?:> ?)?{words}\.?", re.IGNORECASE), meant) for words, meant in _COMMANDS.items()]
 _NO_STEP = re.compile(r"(?:> ?)?(?:look|inventory|think: .*)\.?", re.IGNORECASE)
-_HOLLOW = frozenset("fridge cabinet drawer microwave safe garbagecan box bathtubbasin sinkbasin washingmachine".split())
+_HOLLOW = frozenset(
+    [
+        "fridge",
+        "cabinet",
+        "drawer",
+        "microwave",
+        "safe",
+        "garbagecan",
+        "box",
+        "bathtubbasin",
+        "sinkbasin",
+        "washingmachine",
+    ]
+)
 """Things into which `put in/on` puts, as on others it does not."""
 
 _NAMES = {
@@ -63,7 +76,7 @@ def _fits(lines: Sequence[str]) -> bool:
     """Return whether a third of the lines, and two at least, are commands, or `>` stands before one."""
     texts = [line for line in lines if line.strip()]
     found = [line for line in texts if command(_words(line))]
-    return len(found) > 1 and 3 * len(found) >= len(texts) or any(line.lstrip().startswith(">") for line in found)
+    return (len(found) > 1 and 3 * len(found) >= len(texts)) or any(line.lstrip().startswith(">") for line in found)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:

@@ -10,7 +10,9 @@ _STEP = re.compile(
     r"\s*(?:(?:step\s*)?\d+(?:\.\d+)?\s*[:.)]\s*)?\(\s*([a-z][a-z_-]*)((?:\s+[\w.-]+)*)\s*\)\s*(?:\[[\d.]+\])?\s*(?:;.*)?",
     re.IGNORECASE,
 )
-_CALLED = re.compile(r"\s*(?:\d+\s*[:.)]\s*)?([a-z]+(?:[_-][a-z]+)*)((?:\s+[\w.-]+)*\s+character\d*\b(?:\s+[\w.-]+)*)\s*", re.I)
+_CALLED = re.compile(
+    r"\s*(?:\d+\s*[:.)]\s*)?([a-z]+(?:[_-][a-z]+)*)((?:\s+[\w.-]+)*\s+character\d*\b(?:\s+[\w.-]+)*)\s*", re.I
+)
 _ACTORS = re.compile(r"character\d*|char\d+|robot\d*|agent\d*|player\d*|human\d*", re.IGNORECASE)
 _ACTIONS = {"walk_towards": "Walk", "walk_into": "Walk", "walktowards": "Walk", "pick_up": "Grab", "put_on": "PutBack"}
 """Actions of VirtualHome's domain that have another name here; there `put_on` is upon a thing, not on the body."""
@@ -24,7 +26,10 @@ def pddl_step(raw: str) -> str:
     found = (_STEP.fullmatch(raw) or _CALLED.fullmatch(raw)) if len(raw) <= _LONGEST else None
     if not found:
         return ""
-    action, names = found[1].lower().replace("-", "_"), [each for each in found[2].split() if not _ACTORS.fullmatch(each)]
+    action, names = (
+        found[1].lower().replace("-", "_"),
+        [each for each in found[2].split() if not _ACTORS.fullmatch(each)],
+    )
     return written(_ACTIONS.get(action, action) if names else action, list(map(_name, names)))
 
 

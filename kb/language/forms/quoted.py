@@ -1,11 +1,11 @@
 """A list of texts as JSON and Python print it: `["[Walk] <fridge> (1)", "Open fridge"]`."""
 
 import ast
+import re
 from collections.abc import Sequence
 
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
-import re
 
 _LONGEST = 100_000
 
