@@ -81,11 +81,16 @@ class Found(dict[str, str]):
     def __init__(self, *found: FieldColumns) -> None:
         super().__init__(*found)
         self.rivals: dict[str, list[str]] = {}
+        self.is_table = False
 
     @property
     def is_ours(self) -> bool:
-        """Whether every field has the name that it has in our own records, and no other key may hold it."""
-        return not self.rivals and all(name in (field, "steps", "text") for field, name in self.items())
+        """Whether every key has the name that it has in our own records, and no other key may hold its field."""
+        return (
+            not self.is_table
+            and not self.rivals
+            and all(name in (field, "steps", "text") for field, name in self.items())
+        )
 
 
 def lacks(field: str, name: str, names: Iterable[str], place: str, line: int = 0) -> Reject:

@@ -221,6 +221,20 @@ def pieces_of(text: str, pieces: Sequence[str]) -> list[str]:
     at = 0
     for piece in pieces:
         start = text.find(piece, at)
-        found.append(text.part(start, len(piece)) if start >= 0 else text_at(piece, text.line, text.column, piece))
+        found.append(text.part(start, len(piece)) if start >= 0 else _words_in(text, piece))
         at = start + len(piece) if start >= 0 else at
     return found
+
+
+def _words_in(text: Text, piece: str) -> Text:
+    """A piece whose words follow each other in a text, whatever stands between them; else at the text's place."""
+    parts: list[str] = []
+    at = 0
+    for word in piece.split(" "):
+        start = text.find(word, at)
+        if start < 0:
+            return text_at(piece, text.line, text.column, piece)
+        parts += [text.part(start, len(word)), " "]
+        at = start + len(word)
+    joined = composed(*parts[:-1])
+    return joined if isinstance(joined, Text) else text_at(piece, text.line, text.column, piece)

@@ -300,7 +300,7 @@ def _word(value: Mapping[str, Any], name: str) -> str | None:
     found = value.get(name)
     if found is not None and not isinstance(found, str):
         raise TypeError(f"`{name}` is {type(found).__name__}, not text")
-    return found.strip() if found else None
+    return pieces_of(found, [found.strip()])[0] if found else None
 
 
 def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool, Places]:
@@ -338,7 +338,7 @@ def _numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[s
             found.append(lead + said)
             places += _places_of(pieces_of(step, [said])[0], len(lead))[:1]
     first = places[:1] or [[0, 1, 1]]
-    return "\n".join([*top, *found]), [*first * len(top), *places] if places else None
+    return "\n".join([*top, *found]), [*first * len(top), *places] if any(isinstance(step, Text) for step in listed) else None
 
 
 def _places_of(text: str, skip: int) -> list[list[int]]:

@@ -23,7 +23,7 @@ def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
     """The column of each field that a table has."""
     names = _begun(Rows(path))[1].columns
     found = Found(guessed(names, given))
-    found.rivals = rivals(names, found, given)
+    found.rivals, found.is_table = rivals(names, found, given), True
     return found
 
 
