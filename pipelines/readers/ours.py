@@ -140,6 +140,8 @@ def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
     value = {**value, **{name: part for name, part in inside.items() if part is not None}}
     texts = [key for key, part in value.items() if isinstance(part, str) or (part and _is_steps(part))]
     found = guessed(texts, given, exact=True) if texts else {}
+    if "program" in found and "program" not in given and "steps" in texts:
+        found["program"] = "steps"
     if isinstance(given, Asked):
         given.note(value, found, texts)
     named = {field: value[name] for field, name in found.items() if field in given or field not in value}
@@ -338,7 +340,9 @@ def _numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[s
             found.append(lead + said)
             places += _places_of(pieces_of(step, [said])[0], len(lead))[:1]
     first = places[:1] or [[0, 1, 1]]
-    return "\n".join([*top, *found]), [*first * len(top), *places] if any(isinstance(step, Text) for step in listed) else None
+    return "\n".join([*top, *found]), [*first * len(top), *places] if any(
+        isinstance(step, Text) for step in listed
+    ) else None
 
 
 def _places_of(text: str, skip: int) -> list[list[int]]:
