@@ -161,9 +161,7 @@ def read_given(
     return given
 
 
-def choose_given(
-    file: Path, known: Knowledge, number: int = 1, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
-) -> Given:
+def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS) -> Given:
     """Return a program of an input with its faults; nothing is said of them yet. See `read_given`.
 
     Raises:
@@ -208,8 +206,10 @@ def read_programs(
 
     tables: dict[str, FieldColumns] = {}
     for _, item in ingest.items([Source(name, path)], read_columns(columns), tables):
-        while tables:
-            output.note(shown(*tables.popitem()))
+        for place in [place for place, found in tables.items() if found]:
+            columns_of = tables.pop(place)
+            if not getattr(columns_of, "is_ours", False):
+                output.note(shown(place, columns_of))
         for row in ingest.read(item):
             if isinstance(row, Reject):
                 yield row
@@ -229,18 +229,22 @@ def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     from hearth.kb.language.numbered_steps import parse_steps
     from hearth.pipelines.readers import plans
     from hearth.schemas.syntax import parse_program
+    from hearth.schemas.text_places import TextPlaces
 
-    text, before, place = row["text"] or "", row["line"] or 0, row["place"]
+    text, place = row["text"] or "", row["place"]
+    places = TextPlaces(row["line"] or 0, row["places"] or ())
     own = next(iter(row["groundings"] or ()), None)
     if row["origin"] == plans.NAME:
-        steps = parse_steps(text, before, place, known, fuzzy)
-        return Given(_titled(steps.program, row), place, steps.faults, steps.warnings, own)
-    written, faults = parse_program(text, place)
+        steps = parse_steps(text, 0, place, known, fuzzy)
+        lines = tuple(map(places.line, steps.program.lines))
+        faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])
+        return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own)
+    written, syntax = parse_program(text, place)
     program, wrong = grammar.check(written, known, place, text.split("\n"))
     bad = {fault.line for fault in wrong}
     kept = [number for number, line in enumerate(program.lines) if line not in bad]
-    steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(program.lines[n] + before for n in kept)
-    moved = sorted((replace(fault, line=fault.line + before) for fault in (*faults, *wrong)), key=lambda f: f.line)
+    steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(places.line(program.lines[n]) for n in kept)
+    moved = sorted((places.placed(fault) for fault in (*syntax, *wrong)), key=lambda f: f.line)
     return Given(_titled(replace(program, steps=steps_kept, lines=lines), row), place, tuple(moved), (), own)
 
 

@@ -18,6 +18,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
+from hearth.schemas.graph_wrappers import graph_in
 from hearth.schemas.numbers import number_of
 from hearth.storage.csv_files import CsvTable
 from hearth.storage.input_files import read_input
@@ -195,8 +196,8 @@ def _graph_data(path: Path, which: str) -> Mapping[str, Any]:
 
     try:
         data = orjson.loads(read_input(path))
-        if isinstance(data, dict) and which in data:
-            data = data[which]
+        if isinstance(data, dict):
+            data = data[which] if which in data else graph_in(data) or data
         orjson.dumps(data)  # what is read may stand deeper in one another than can be written
     except (orjson.JSONDecodeError, orjson.JSONEncodeError) as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error

@@ -21,6 +21,7 @@ from hearth.schemas.program import Program
 from hearth.schemas.stage_rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
+from hearth.schemas.text_places import TextPlaces
 from hearth.simulation.rules import REPLAY
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -51,7 +52,10 @@ def process_as(record: IngestedRow, reading: Reading) -> list[ValidatedRow | Rej
     known = reading.known
     natural = partial(checked_natural_language, fuzzy=reading.fuzzy, strict=reading.strict)
     check = natural if record["origin"] == plans.NAME else checked
-    program, faults, warnings = check(record["text"] or "", record["line"] or 0, record["place"], known)
+    places = TextPlaces(record["line"] or 0, record["places"] or ())
+    program, faults, warnings = check(record["text"] or "", 0, record["place"], known)
+    faults, warnings = (tuple(map(places.placed, found)) for found in (faults, warnings))
+    program = replace(program, lines=tuple(map(places.line, program.lines)))
     if faults:
         return [Reject(faults)]
     outcomes = [_grounding(grounding, record["place"], known, check) for grounding in record["groundings"] or ()]

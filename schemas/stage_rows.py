@@ -73,6 +73,9 @@ class IngestedRow(_Kind, NamedRow):
     conditions: Annotated[list[ConditionRow] | None, "preconditions that came with the program"]
     keep: Annotated[list[bool] | None, "for each step of the program a sketch is of, whether it is kept"]
     parts: Annotated[list[PartRow] | None, "its parts in splits of its source's own"]
+    places: Annotated[
+        list[list[int]] | None, "where each line of the text stands in the file, if not in lines of its own"
+    ]
 
 
 class GroundingRow(TypedDict):

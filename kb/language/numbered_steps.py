@@ -84,9 +84,7 @@ class _StepParser:
             self.faults += found
         elif kind == Kind.MISSING:
             self._is_open = False
-            self.faults += (
-                [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, self._said)
-            )
+            self.faults += [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, self._said)
         elif line.number is not None and self._is_open:
             self._take_item(line, raw, number)
         elif kind == Kind.DETAIL and not self._detail(line.text, number):

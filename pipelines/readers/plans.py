@@ -2,13 +2,15 @@
 
 import itertools
 from collections.abc import Iterator
+from typing import Any
 
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, level_of, plan_line
 from hearth.kb.language.program_lines import header
-from hearth.pipelines.readers.elements import entries
+from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
+from hearth.pipelines.readers.located import Text
 from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow
@@ -32,18 +34,19 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 def scan_list(path: Place, place: str) -> Iterator[Item]:
     """One item for each text of a JSON list of texts."""
-    for number, (line, text) in enumerate(entries(path, place), 1):
-        where = f"{place}[{number}]"
+    for number, (line, found) in enumerate(located_entries(path, place), 1):
+        name = f"{place}[{number}]"
+        text = found if isinstance(found, Reject) else found.value
         if isinstance(text, str):
-            yield checked(text, 1, f"{NAME}:{where}", where)
+            yield checked(text, line, f"{NAME}:{name}", place)
         elif isinstance(text, Reject):
-            yield refused(where, text, line=line)
+            yield refused(place, text, name, line)
         else:
             message = f"entry {number} of the list is not text"
             fault = Reject.of(
-                Code.BAD_JSON, message, file=where, line=line, suggestion="a list of texts, or of records"
+                Code.BAD_JSON, message, file=place, line=line, suggestion="a list of texts, or of records"
             )
-            yield refused(where, fault)
+            yield refused(place, fault, name, line)
 
 
 def checked(text: str, first: int, record_id: str, place: str) -> Item:
@@ -57,13 +60,17 @@ def checked(text: str, first: int, record_id: str, place: str) -> Item:
             Code.LINE_TOO_LONG, message, file=place, line=first, suggestion=f"at most {_LONGEST_PROGRAM:,}"
         )
         return refused(place, reject, record_id, first)
-    return Item(record_id, NAME, place, {"text": text.rstrip("\n") + "\n", "line": first - 1}, line=first)
+    value: dict[str, Any] = {"text": text.rstrip("\n") + "\n", "line": first - 1}
+    if isinstance(text, Text):
+        value["places"] = text.places()
+    return Item(record_id, NAME, place, value, line=first)
 
 
 def read(item: Item) -> IngestedRow:
     """The record of an item with its text unchanged; `validate` maps it to steps."""
     top = header(item.value["text"])
-    return record(item, "program", top.title, top.description, text=item.value["text"], line=item.value["line"])
+    line, places = item.value["line"], item.value.get("places")
+    return record(item, "program", top.title, top.description, text=item.value["text"], line=line, places=places)
 
 
 def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
