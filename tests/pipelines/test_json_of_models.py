@@ -72,7 +72,7 @@ def test_output_of_a_batch_has_the_ids_of_its_requests(write):
          ["[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Walk] <milk> (1)", "[Grab] <milk> (1)"]),
         ('{"WALK": ["sofa", "37"], "SIT": ["sofa", 37], "STANDUP": []}',
          ["[Walk] <sofa> (1.37)", "[Sit] <sofa> (1.37)", "[StandUp]"]),
-        ('{\n  "GRAB": ["soap", "5", "sink", "6"]}'.replace("GRAB", "PUTBACK"), ["[PutBack] <soap> (1.5) <sink> (1.6)"]),
+        ('{\n  "PUTBACK": ["soap", "5", "sink", "6"]}', ["[PutBack] <soap> (1.5) <sink> (1.6)"]),
         ('{"WALK": ["chair", "8"], "WALK": ["chair", "9"]}', ["[Walk] <chair> (1.8)", "[Walk] <chair> (2.9)"]),
     ],
 )  # fmt: skip
