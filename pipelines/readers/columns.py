@@ -76,12 +76,17 @@ class Asked(dict[str, str]):
 
 
 class Found(dict[str, str]):
-    """The column of each field in a file; `rivals` has the other columns that may hold a field."""
+    """The column of each field in a file; `rivals` has the other columns that may hold a field.
+
+    Attributes:
+        note: a sentence on how the programs were found, where no name said it.
+    """
 
     def __init__(self, *found: FieldColumns) -> None:
         super().__init__(*found)
         self.rivals: dict[str, list[str]] = {}
         self.is_table = False
+        self.note = ""
 
     @property
     def is_ours(self) -> bool:
@@ -125,7 +130,8 @@ def shown(place: str, columns: FieldColumns) -> str:
         f"`{columns[field]}` is taken."
         for field, names in rivals.items()
     )
-    return f"Columns of {place}: {named or 'none is known'}{none}. `--columns` names others.{also}"
+    note = f" {columns.note}" if isinstance(columns, Found) and columns.note else ""
+    return f"Columns of {place}: {named or 'none is known'}{none}.{note} `--columns` names others.{also}"
 
 
 def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -> dict[str, str]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from hearth.pipelines.readers.item import LARGEST_FILE, fault_of, lines
-from hearth.pipelines.readers.located import text_at
+from hearth.pipelines.readers.placed_texts import text_at
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place

@@ -7,7 +7,7 @@ from typing import Any
 import orjson
 
 from hearth.pipelines.readers.item import LARGEST_FILE, opened
-from hearth.pipelines.readers.located import Located, Pairs
+from hearth.pipelines.readers.placed_texts import Located, Pairs
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place, size_of

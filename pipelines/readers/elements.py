@@ -7,7 +7,7 @@ from typing import Any
 
 from hearth.pipelines.readers.document import located, parsed
 from hearth.pipelines.readers.item import fault_of, pieces
-from hearth.pipelines.readers.located import Located
+from hearth.pipelines.readers.placed_texts import Located
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject

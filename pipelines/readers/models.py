@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hearth.pipelines.readers.actions import is_action, is_mapping, steps_of_mapping
+from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
 
 
 def of_others(value: dict[str, Any]) -> dict[str, Any] | None:

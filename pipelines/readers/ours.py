@@ -1,25 +1,28 @@
 """Records of our own schema as JSON: JSON Lines, a list, or a single object."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
 from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
-from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import plans
-from hearth.pipelines.readers.actions import is_action, looks_like_mapping, mapped_steps, of_planner, step_of
 from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, lacks, value_at
 from hearth.pipelines.readers.document import located, located_document
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless, worker_hash
-from hearth.pipelines.readers.located import Located, Text, pieces_of, texts_in
+from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner, step_of
 from hearth.pipelines.readers.models import of_others
+from hearth.pipelines.readers.placed_texts import Located, Text, pieces_of, texts_in
+from hearth.pipelines.readers.program_columns import column_of_steps
 from hearth.pipelines.readers.release import graphs_of
+from hearth.pipelines.readers.step_lists import with_step_lists
+from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
+from hearth.pipelines.readers.step_texts import IN_LINE, Places, numbered, places_of, steps_of
 from hearth.pipelines.readers.text import header
 from hearth.schemas.blocks import STEP
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -35,9 +38,6 @@ from hearth.storage.rejects import Reject, as_text
 
 NAME = "records"
 
-Places = list[list[int]] | None
-"""Where the lines of a program's text stand in the file, as in `hearth.schemas.text_places`."""
-
 _PLAIN = re.compile(r"[A-Za-z0-9_-]{1,60}", re.ASCII)
 MOST_SPLITS = 20
 """Splits that a record may name: each has a row for every run."""
@@ -49,11 +49,20 @@ _ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "syntheti
 
 def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """The items of each line that is not blank."""
+    yield from _items(_lines(path, place), place, asked)
+
+
+def _lines(path: Place, place: str) -> Iterator[Entry]:
     for number, (line, _) in enumerate(lines(path), 1):
         if line.strip():
             fault = fault_of(line, place, number)
-            value = Reject((fault,)) if fault else located(line, place, number)
-            yield from items(value, place, number, f"{place}:{number}", asked)
+            yield Entry(Reject((fault,)) if fault else located(line, place, number), number, f"{place}:{number}")
+
+
+def _items(entries: Iterable[Entry], place: str, asked: Asked) -> Iterator[Item]:
+    """The items of the records of a file, of which several may be the steps of one program."""
+    for value, line, name in joined(entries, lambda value: row_of_json(value, asked)):
+        yield from items(value, place, line, name, asked)
     yield from absent(asked, place)
 
 
@@ -74,9 +83,8 @@ def absent(asked: Asked, place: str) -> Iterator[Item]:
 
 def scan_list(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """The items of each entry of a list."""
-    for number, (line, value) in enumerate(located_entries(path, place), 1):
-        yield from items(value, place, line, f"{place}[{number}]", asked)
-    yield from absent(asked, place)
+    entries = enumerate(located_entries(path, place), 1)
+    yield from _items((Entry(value, line, f"{place}[{number}]") for number, (line, value) in entries), place, asked)
 
 
 def items(found: Any, place: str, line: int, name: str, given: FieldColumns) -> Iterator[Item]:
@@ -128,7 +136,7 @@ def _is_steps(value: Any) -> bool:
     return (
         isinstance(value, list)
         or looks_like_mapping(value)
-        or any(map(_IN_LINE.match, listed))
+        or any(map(IN_LINE.match, listed))
         or is_plan(listed)
         or any(map(STEP.match, listed))
     )
@@ -136,10 +144,14 @@ def _is_steps(value: Any) -> bool:
 
 def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
     """A record with its fields by our names; those of others are guessed where ours are missing."""
+    value = with_step_lists(value)
     inside = {name: value_at(value, name) for name in given.values() if "." in name and name not in value}
     value = {**value, **{name: part for name, part in inside.items() if part is not None}}
     texts = [key for key, part in value.items() if isinstance(part, str) or (part and _is_steps(part))]
     found = guessed(texts, given, exact=True) if texts else {}
+    if not _PROGRAM_NAMES & (found.keys() | given.keys() | value.keys()) and not all(map(_is_steps, value.values())):
+        program = _key_of_steps({key: value[key] for key in texts if key not in found.values()})
+        found.update({"program": program} if program else {})
     if "program" in found and "program" not in given and "steps" in texts:
         found["program"] = "steps"
     if isinstance(given, Asked):
@@ -157,6 +169,15 @@ def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
 
 
 _PROGRAMS = frozenset({"steps", "program"})
+_PROGRAM_NAMES = _PROGRAMS | {"text"}
+
+
+def _key_of_steps(value: Mapping[str, Any]) -> str:
+    """The key whose texts read as steps, of a record that no key names."""
+    parts = {key: part if isinstance(part, list) else [part] for key, part in value.items()}
+    return column_of_steps(
+        {key: ["\n".join(part)] for key, part in parts.items() if all(isinstance(each, str) for each in part)}
+    )
 
 
 def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> Item:
@@ -305,80 +326,30 @@ def _word(value: Mapping[str, Any], name: str) -> str | None:
     return pieces_of(found, [found.strip()])[0] if found else None
 
 
+_TEXTS = ("steps", "text", "program")
+
+
 def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool, Places]:
     """The program's text, whether it has natural-language steps, and the places of its lines."""
-    steps = value.get("steps")
-    if steps is None and isinstance(value.get("program"), list):
-        steps = value["program"]
-    text = "" if steps is not None else _word(value, "text") or _word(value, "program") or ""
+    steps = next((value[key] for key in ("steps", "program") if isinstance(value.get(key), list)), None)
+    text = "" if steps is not None else next((word for key in _TEXTS if (word := _word(value, key))), "")
     listed: Any = steps_of(text) if steps is None else steps
-    if not isinstance(listed, list):
-        raise TypeError(f"`steps` is {type(steps).__name__}, not a list")
+    has_actions = any(map(is_action, listed))
     listed = [step_of(step) if is_action(step) else step for step in listed]
     if not all(isinstance(step, str) for step in listed):
         program = Program(steps=tuple(_step(step) for step in listed))
         return "".join(f"{line}\n" for line in print_lines(program)), False, None
     text = text if listed == text.split("\n") else "\n".join(listed)
-    in_sentences = bool(text.strip()) and (is_plan(listed) or not any(map(STEP.match, listed)))
+    is_mixed = (
+        steps is not None and (has_actions or "steps" in value) and not all(map(STEP.match, filter(None, listed)))
+    )
+    in_sentences = bool(text.strip()) and (is_mixed or is_plan(listed) or not any(map(STEP.match, listed)))
     places = None
     if in_sentences and (steps is not None or not is_plan(listed)):
-        text, places = _numbered(listed, words)
+        text, places = numbered(listed, words)
     elif any(isinstance(step, Text) for step in listed):
-        places = [place for step in listed for place in _places_of(step, 0)]
+        places = [place for step in listed for place in places_of(step, 0)]
     return (text.rstrip("\n") + "\n" if text.strip() else ""), in_sentences, places
-
-
-def _numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[str, Places]:
-    """Steps in words as a text with a title, and the places of its lines."""
-    top = f"Task: {words['title'] or 'Untitled'}\n{words['description'] or ''}".split("\n")
-    found: list[str] = []
-    places: list[list[int]] = []
-    for step in listed:
-        if step.strip():
-            said = " ".join((plan_line(step).text or step).split())
-            lead = f"Step {len(found) + 1}: "
-            found.append(lead + said)
-            places += _places_of(pieces_of(step, [said])[0], len(lead))[:1]
-    first = places[:1] or [[0, 1, 1]]
-    return "\n".join([*top, *found]), [*first * len(top), *places] if any(
-        isinstance(step, Text) for step in listed
-    ) else None
-
-
-def _places_of(text: str, skip: int) -> list[list[int]]:
-    return text.places(skip) if isinstance(text, Text) else [[skip, 1, 1]] * (text.count("\n") + 1)
-
-
-_IN_LINE = re.compile(r"\s*(?:plan|steps|answer)\s*:\s*1[.)]\s+\S.*\s2[.)]\s", re.IGNORECASE)
-"""A whole plan on a line, as `Plan: 1. walk to kitchen 2. find milk`."""
-
-_NUMBERS = re.compile(r"(?<!\S)\d{1,3}[.)]\s+")
-_ENDS = frozenset({"done", "end", "stop", ""})
-_QUOTED = re.compile(r"""'((?:[^'\\]|\\.)*+)'|"((?:[^"\\]|\\.)*+)\"""")
-_IN_ONE_LINE = re.compile(
-    r"(?<=[)\]}])[\s,;.]*(?=\[)|(?<=\S)\s+(?=\d{1,3}[.)]\s)|(?<!\s)\s*(?:;|->|→)\s*|(?<=[a-z]\.)\s+(?=[A-Z])"
-)
-
-
-def steps_of(text: str) -> list[str]:
-    """The lines of a text; of a single line its steps: a list, or separated by numbers, `;`, `->`, brackets, stops.
-
-    Raises:
-        HearthError: BAD_JSON, a mapping of actions to objects that is cut off.
-    """
-    if looks_like_mapping(text):
-        return mapped_steps(text)
-    lines = text.strip().split("\n")
-    in_line = next((line for line in lines if _IN_LINE.match(line)), "")
-    if in_line and not any(plan_line(line).number for line in lines if line != in_line):
-        # What is said before and below such a plan explains it.
-        steps = [step.strip() for step in _NUMBERS.split(in_line)[1:]]
-        return pieces_of(text, [step for step in steps if step.rstrip(".").lower() not in _ENDS])
-    if len(lines) > 1:
-        return pieces_of(text, text.split("\n"))
-    if lines[0].startswith(('["', "['")):
-        return pieces_of(text, [re.sub(r"\\(.)", r"\1", one or other) for one, other in _QUOTED.findall(lines[0])])
-    return pieces_of(text, [step for step in _IN_ONE_LINE.split(lines[0]) if step.strip()])
 
 
 def _step(value: Mapping[str, Any]) -> Step:

@@ -10,7 +10,7 @@ from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, level
 from hearth.kb.language.program_lines import header
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
-from hearth.pipelines.readers.located import Text
+from hearth.pipelines.readers.placed_texts import Text
 from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow

@@ -1,11 +1,18 @@
 """Tables of people's own: a program or a description a row, in columns that are given or guessed."""
 
-from collections.abc import Iterator
+import itertools
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.columns import FieldColumns, Found, guessed, lacks, rivals
 from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, refused
+from hearth.pipelines.readers.json_actions import is_action
+from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
+from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names
+from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
@@ -19,12 +26,104 @@ def names_it(line: str) -> bool:
     return len(columns) > 1 and {"program", "description"} & guessed(columns, {}, exact=True).keys() != set()
 
 
+class Table(NamedTuple):
+    """What the columns of a table hold.
+
+    Attributes:
+        first: the number of the line that names the columns.
+        layout: the columns and what separates them.
+        columns: the column of each field.
+        steps: columns that hold a step each, in order; empty if a cell holds a whole program, or a row is a step.
+        number: the column that counts the steps of a program whose steps are rows.
+    """
+
+    first: int
+    layout: Layout
+    columns: Found
+    steps: tuple[str, ...] = ()
+    number: str = ""
+
+    @property
+    def has_actions(self) -> bool:
+        """Return whether a row is an action with its objects, in columns of their own."""
+        return not self.steps and is_action(dict.fromkeys(self.layout.columns, "x")) and "program" not in self.columns
+
+
+class Row(dict[str, str]):
+    """The cells of a row by their columns."""
+
+
+_SAMPLE = 40
+_ROWS_ARE_STEPS = "A row is a step: rows of one task in order are one program."
+_BY_CELLS = "No name says which column holds the programs: its cells read as steps."
+
+
 def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
     """The column of each field that a table has."""
-    names = _begun(Rows(path))[1].columns
-    found = Found(guessed(names, given))
-    found.rivals, found.is_table = rivals(names, found, given), True
-    return found
+    return table_of(path, given).columns
+
+
+def table_of(path: Place, given: FieldColumns) -> Table:
+    """What the columns of a table hold: as given, by their names, or by the cells of its first rows."""
+    rows = Rows(path)
+    first, layout = _begun(rows)
+    names = layout.columns
+    good = (cells for _, _, cells in rows.parsed(layout) if cells and len(cells) == len(names))
+    sample = list(itertools.islice(good, _SAMPLE))
+    cells = {name: [row[at] for row in sample if row[at].strip()] for at, name in enumerate(names)}
+    counts = [name for name in names if cells[name] and all(map(is_count, cells[name]))]
+    steps = tuple(numbered_names(names)) if "program" not in given else ()
+    texts = [name for name in names if name not in {*counts, *steps} or name in given.values()]
+    found = Found(guessed(texts, given))
+    found.rivals, found.is_table = rivals(texts, found, given), True
+    table = Table(first, layout, found, steps, _number(sample, layout, found, counts))
+    if steps:
+        found.pop("program", None)
+        found["program"], found.note = " ".join(steps), "A column is a step."
+    elif "program" not in found and "program" not in given:
+        _guess_program(table, {name: cells[name] for name in texts})
+    if "title" not in found and "title" not in given and found:
+        title = next((name for name in texts if name not in found.values() and _is_title(cells[name])), "")
+        found.update({"title": title} if title else {})
+    return table
+
+
+def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns, counts: Sequence[str]) -> str:
+    """The column that counts steps: one whose name says so, else one that goes up by one while the task stays."""
+    names = dict.fromkeys(counts, "1")
+    sure, may = number_of(names), number_of(names, any_number=True)
+    if sure or not may or "title" not in found:
+        return sure
+    title, number, program = (layout.columns.index(each) for each in (found["title"], may, found.get("program", may)))
+    rows = [(row[title], row[number], row[program]) for row in sample if is_count(row[number])]
+    follows = [one[0] == two[0] and int(two[1]) == int(one[1]) + 1 for one, two in itertools.pairwise(rows)]
+    begins = all(goes_on or row[1].strip() in ("0", "1") for goes_on, row in zip([False, *follows], rows, strict=True))
+    single = "program" not in found or all(is_one_step(step) for _, _, step in rows if step.strip())
+    return may if any(follows) and begins and single else ""
+
+
+def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:
+    """Add the column of programs by the cells of the first rows; or of steps, where a column counts them."""
+    found = table.columns
+    if table.has_actions:
+        found.note = _ROWS_ARE_STEPS
+    elif table.number:
+        rest = {name: reading_of(texts) for name, texts in cells.items() if name != found.get("title")}
+        likeliest = max(rest, key=lambda name: rest[name].understood, default="")
+        found.update({"program": found.pop("description", likeliest)} if likeliest else {})
+        found.note = _ROWS_ARE_STEPS
+    else:
+        program = column_of_steps({name: texts for name, texts in cells.items() if name not in found.values()})
+        found.update({"program": program} if program else {})
+        found.note = _BY_CELLS if program else ""
+
+
+_WORDS = re.compile(r"[^\d_]{2,}")
+
+
+def _is_title(cells: Sequence[str]) -> bool:
+    """Whether cells are words, as names of tasks are, and ids such as `w_12` are not."""
+    return bool(cells) and 2 * sum(bool(_WORDS.fullmatch(cell.strip())) for cell in cells) >= len(cells)
 
 
 def _begun(rows: Rows) -> tuple[int, Layout]:
@@ -39,11 +138,12 @@ def _begun(rows: Rows) -> tuple[int, Layout]:
 
 
 def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
-    """One item for each row with text; `ours` reads it as a record."""
-    rows = Rows(path)
-    first, layout = _begun(rows)
-    columns = guessed(layout.columns, given)
-    if not {"program", "description"} & columns.keys():
+    """One item for each row with text, or for the rows of one program; `ours` reads it as a record."""
+    table = table_of(path, given)
+    columns, layout, first = table.columns, table.layout, table.first
+    if not {"program", "description"} & columns.keys() and not table.has_actions:
+        rows = Rows(path)
+        _begun(rows)
         yield refused(place, _unnamed(rows, first, layout, place, given))
         return
     names = dict.fromkeys(layout.columns)
@@ -51,19 +151,41 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
         if name not in names:
             yield refused(place, lacks(field, name, names, place, first), f"{place}~{name}")
     empty = True
+    for value, line, name in joined(_rows(path, place, table), _reader_of(table)):
+        empty = False
+        if isinstance(value, Reject):
+            yield refused(place, value, line=line)
+        else:
+            yield from ours.items(_record(value, table) if isinstance(value, Row) else value, place, line, name, {})
+    if empty:
+        yield refused(place, Reject.of(Code.EMPTY, "a table with its first line only", file=place, line=first))
+
+
+def _reader_of(table: Table) -> Callable[[Any], StepRow | None]:
+    """What reads a row as a step; no row is one where cells hold whole programs."""
+    is_counted = table.number and "program" in table.columns and not table.steps
+    return row_of_table(table.columns, table.number) if is_counted or table.has_actions else lambda _: None
+
+
+def _rows(path: Place, place: str, table: Table) -> Iterator[Entry]:
+    """Each row with text, by its columns; a fault for one that can't be read."""
+    rows, layout = Rows(path), table.layout
+    _begun(rows)
     for line, raw, cells in rows.parsed(layout):
         full = cells and [*cells, *[""] * (len(layout.columns) - len(cells))]
         wrong = row_fault(line, raw, full, layout, place)
-        if wrong or (full and any(full)):
-            empty = False
         if wrong:
-            yield refused(place, Reject((wrong,)), line=line)
+            yield Entry(Reject((wrong,)), line, "")
         elif full and any(full):
-            placed = cells_at(raw, full, line, layout)
-            values = {field: placed[layout.columns.index(name)] for field, name in columns.items()}
-            yield from ours.items(values, place, line, f"{place}:{line}", {})
-    if empty:
-        yield refused(place, Reject.of(Code.EMPTY, "a table with its first line only", file=place, line=first))
+            placed = Row(zip(layout.columns, cells_at(raw, full, line, layout), strict=True))
+            yield Entry(placed, line, f"{place}:{line}")
+
+
+def _record(row: Row, table: Table) -> dict[str, Any]:
+    """A row as a record, by our names of the fields."""
+    fields = {field: name for field, name in table.columns.items() if not (table.steps and field == "program")}
+    steps = {"steps": [row[name] for name in table.steps if row[name].strip()]} if table.steps else {}
+    return {**{field: row[name] for field, name in fields.items()}, **steps}
 
 
 def _unnamed(rows: Rows, line: int, layout: Layout, place: str, given: FieldColumns) -> Reject:

@@ -95,13 +95,11 @@ def test_an_answer_that_is_cut_off_is_a_fault(write, cut):
 @pytest.mark.parametrize(
     "value",
     [
-        {"1_2": ["walk_towards character shower"]},
-        {"1_2": ["walk_towards character sink", "open character sink"], "2_1": ["grab character soap"]},
         {"1_2": ["walk_towards", "put_on"], "2_1": ["open"]},
         {"wash": ["navigate_to sink_n_01_1 agent_n_01_1"]},
     ],
 )
-def test_actions_of_a_planner_are_no_programs(write, value):
+def test_names_of_actions_and_of_wordnet_are_no_programs(write, value):
     assert programs(write("a.json", json.dumps(value))) == ["UNSUPPORTED_FILE"]
 
 

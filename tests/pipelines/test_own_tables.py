@@ -99,15 +99,18 @@ def test_columns_that_name_no_field(text):
     assert read_columns(" title = My task , program=Plan,") == {"title": "My task", "program": "Plan"}
 
 
+PRICES = [["Anna", "Two pounds of plums", "12 for the whole crate"], ["Ben", "One pear", "3 a piece"]]
+
+
 def test_a_table_without_known_columns_names_them(write):
-    (reject,) = read(write("sheet.csv", table(["Alpha", "Beta", "Gamma"])))
+    (reject,) = read(write("sheet.csv", table(["Alpha", "Beta", "Gamma"], rows=PRICES)))
     (fault,) = reject.diagnostics
     assert (reject.code, fault.line, fault.found) == ("BAD_TABLE", 1, "Alpha, Beta, Gamma")
     assert "--columns title=Alpha" in fault.suggestion
 
 
 def test_a_table_of_other_names_is_told_by_its_longest_cell_and_what_was_asked_for(write):
-    file = write("sheet.csv", table(["Alpha", "Beta", "Gamma"]))
+    file = write("sheet.csv", table(["Alpha", "Beta", "Gamma"], rows=PRICES))
     (reject,) = read(file)
     assert "--columns title=Alpha,program=Gamma" in reject.diagnostics[0].suggestion
     (reject,) = read(file, program="Delta")

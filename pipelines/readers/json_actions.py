@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from hearth.kb.loading.load import default
-from hearth.pipelines.readers.located import Pairs, Text, composed, pairs_of, pieces_of
+from hearth.pipelines.readers.placed_texts import Pairs, Text, composed, pairs_of, pieces_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import normal_name
@@ -16,11 +16,11 @@ ACTIONS = ("action", "verb", "act", "function", "name")
 """Keys of the action of a step, the likeliest first."""
 
 OBJECTS = frozenset({
-    "object", "objects", "obj", "object1", "object2", "target", "targets", "arg", "args", "arguments", "parameters",
+    "object", "objects", "obj", "target", "targets", "arg", "args", "arguments", "parameters",
     "params", "item", "items", "receptacle", "location", "destination", "recipient", "room", "place", "to", "into",
-    "on", "from",
+    "on", "from", "value",
 })  # fmt: skip
-"""Keys of the objects of a step."""
+"""Keys of the objects of a step; or one with a number, as `arg1`."""
 
 _NAME = re.compile(r"[A-Za-z][\w .'-]*")
 _ACTION = re.compile(r"[A-Z][A-Z_]+", re.ASCII)
@@ -46,7 +46,7 @@ def step_of(value: dict[str, Any]) -> str:
         return _step(call["name"], _arguments(call.get("arguments")))
     key = _action(value)
     assert key is not None
-    return _step(value[key], [name for key in value if key.lower() in OBJECTS for name in _names(value[key])])
+    return _step(value[key], [name for key in value if _holds_object(key) for name in _names(value[key])])
 
 
 def _action(value: dict[str, Any]) -> str | None:
@@ -55,8 +55,12 @@ def _action(value: dict[str, Any]) -> str | None:
         return "function" if isinstance(call.get("name"), str) else None
     for key in ACTIONS:
         if isinstance(value.get(key), str):
-            return key if key != "name" or not OBJECTS.isdisjoint(map(str.lower, value)) else None
+            return key if key != "name" or any(map(_holds_object, value)) else None
     return None
+
+
+def _holds_object(key: str) -> bool:
+    return key.lower().rstrip("_0123456789") in OBJECTS
 
 
 def _arguments(given: Any) -> list[str]:
@@ -194,12 +198,12 @@ def _of_python(text: str) -> Any:
     return None
 
 
-_OF_PLANNER = re.compile(r"\(?\s*[a-z]+(?:_[a-z]+)*(?: \S+)* (?:character|agent_n_\d+_\d+)(?: \S+)*\s*\)?")
+_OF_PLANNER = re.compile(r"\(?\s*[a-z]+(?:_[a-z]+)*(?: \S+)* agent_n_\d+_\d+(?: \S+)*\s*\)?")
 _ACTION_NAME = re.compile(r"[a-z]+(?:_[a-z]+)*")
 
 
 def of_planner(plans: Iterable[Any]) -> bool:
-    """Whether lists are all actions of a planner, as `walk_towards character shower`, or names of such actions."""
+    """Whether lists are all actions of BEHAVIOR's planner, whose things have names of WordNet, or names of actions."""
     steps = [step for plan in plans if isinstance(plan, list) for step in plan]
     if not steps or not all(isinstance(step, str) for step in steps):
         return False

@@ -1,0 +1,64 @@
+"""Texts that hold a plan as its steps, and steps as one text, with their places in the file."""
+
+import re
+from collections.abc import Mapping, Sequence
+
+from hearth.kb.language.plan_lines import plan_line
+from hearth.pipelines.readers.json_actions import looks_like_mapping, mapped_steps
+from hearth.pipelines.readers.placed_texts import Text, pieces_of
+
+Places = list[list[int]] | None
+"""Where the lines of a program's text stand in the file, as in `hearth.schemas.text_places`."""
+
+IN_LINE = re.compile(r"\s*(?:plan|steps|answer)\s*:\s*1[.)]\s+\S.*\s2[.)]\s", re.IGNORECASE)
+"""A whole plan on a line, as `Plan: 1. walk to kitchen 2. find milk`."""
+
+_NUMBERS = re.compile(r"(?<!\S)\d{1,3}[.)]\s+")
+_ENDS = frozenset({"done", "end", "stop", ""})
+_QUOTED = re.compile(r"""'((?:[^'\\]|\\.)*+)'|"((?:[^"\\]|\\.)*+)\"""")
+_IN_ONE_LINE = re.compile(
+    r"(?<=[)\]}])[\s,;.]*(?=\[)|(?<=\S)\s+(?=\d{1,3}[.)]\s)|(?<!\s)\s*(?:;|->|→)\s*|(?<=[a-z]\.)\s+(?=[A-Z])"
+)
+
+
+def steps_of(text: str) -> list[str]:
+    """The lines of a text; of a single line its steps: a list, or separated by numbers, `;`, `->`, brackets, stops.
+
+    Raises:
+        HearthError: BAD_JSON, a mapping of actions to objects that is cut off.
+    """
+    if looks_like_mapping(text):
+        return mapped_steps(text)
+    lines = text.strip().split("\n")
+    in_line = next((line for line in lines if IN_LINE.match(line)), "")
+    if in_line and not any(plan_line(line).number for line in lines if line != in_line):
+        # What is said before and below such a plan explains it.
+        steps = [step.strip() for step in _NUMBERS.split(in_line)[1:]]
+        return pieces_of(text, [step for step in steps if step.rstrip(".").lower() not in _ENDS])
+    if len(lines) > 1:
+        return pieces_of(text, text.split("\n"))
+    if lines[0].startswith(('["', "['")):
+        return pieces_of(text, [re.sub(r"\\(.)", r"\1", one or other) for one, other in _QUOTED.findall(lines[0])])
+    return pieces_of(text, [step for step in _IN_ONE_LINE.split(lines[0]) if step.strip()])
+
+
+def numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[str, Places]:
+    """Steps in words as a text with a title, and the places of its lines."""
+    top = f"Task: {words['title'] or 'Untitled'}\n{words['description'] or ''}".split("\n")
+    found: list[str] = []
+    places: list[list[int]] = []
+    for step in listed:
+        if step.strip():
+            said = " ".join((plan_line(step).text or step).split())
+            lead = f"Step {len(found) + 1}: "
+            found.append(lead + said)
+            places += places_of(pieces_of(step, [said])[0], len(lead))[:1]
+    first = places[:1] or [[0, 1, 1]]
+    return "\n".join([*top, *found]), [*first * len(top), *places] if any(
+        isinstance(step, Text) for step in listed
+    ) else None
+
+
+def places_of(text: str, skip: int) -> list[list[int]]:
+    """Return the places of a text's lines, the first of which has so many characters before it."""
+    return text.places(skip) if isinstance(text, Text) else [[skip, 1, 1]] * (text.count("\n") + 1)

@@ -1,0 +1,166 @@
+"""Tables whose columns no name explains, whose rows or columns are steps: read by what the cells say, and printed."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from hearth.commands import inputs
+from hearth.kb.loading.load import default
+from hearth.schemas.syntax import print_step
+from hearth.storage.rejects import Reject
+
+
+def read(path, columns=""):
+    """Title, and line and step of each step, of the programs of a file; code and line of each fault."""
+    programs, faults = [], []
+    for given in inputs.read_programs(path, default(), path.name, columns):
+        if isinstance(given, Reject):
+            faults += [(fault.code, fault.line) for fault in given.diagnostics]
+            continue
+        steps = zip(given.program.lines, map(print_step, given.program.steps), strict=True)
+        programs.append((given.program.title, list(steps)))
+        faults += [(fault.code, fault.line) for fault in given.faults]
+    return programs, faults
+
+
+LAMP = ["Walk to lamp", "Switch on lamp"]
+LINES = ["[Walk] <lamp> (1)", "[SwitchOn] <lamp> (1)"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "columns"),
+    [
+        ("a.csv",
+         "who,aufgabe,so geht es\nw_12,Light,Walk to lamp; Switch on lamp\n", "program=so geht es, title=aufgabe"),
+        ("a.csv", 'Household task,Typed by\nLight,"- Walk to lamp\n- Switch on lamp"\n', "program=Typed by"),
+        ("a.tsv", "nr\tTodo\tHow\n1\tLight\tWalk to lamp; Switch on lamp\n", "program=How, title=Todo"),
+        ("a.csv",
+         "Task;Schritte;Ort\nLight;Walk to lamp -> Switch on lamp;Living room\n", "title=Task, program=Schritte"),
+    ],
+)  # fmt: skip
+def test_a_column_that_reads_as_steps_is_the_program_and_printed(write, capsys, name, text, columns):
+    programs, faults = read(write(name, text))
+    assert [(title, [step for _, step in steps]) for title, steps in programs] == [("Light", LINES)] and not faults
+    printed = capsys.readouterr().err
+    assert columns in printed and "its cells read as steps" in printed
+
+
+def test_a_column_of_another_language_is_not_guessed(write):
+    programs, faults = read(write("a.csv", "x,y\nLampe,Zur Lampe gehen; Lampe anschalten\n"))
+    assert (programs, faults) == ([], [("BAD_TABLE", 1)])
+
+
+def test_a_column_of_single_sentences_is_not_the_program(write):
+    programs, faults = read(write("a.csv", "x,y\nA1,Walk to lamp\nA2,Find lamp\n"))
+    assert (programs, faults) == ([], [("BAD_TABLE", 1)])
+
+
+STEPS = [("Light", [(2, LINES[0]), (3, LINES[1])]), ("Nap", [(4, "[Sleep]")])]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "task,step,instruction\nLight,1,Walk to lamp\nLight,2,Switch on lamp\nNap,1,Sleep\n",
+        "id,activity,step_no,step_text\n1,Light,1,Walk to lamp\n2,Light,2,Switch on lamp\n3,Nap,1,Sleep\n",
+        "Task,Step #,What\nLight,1,Walk to lamp\n,2,Switch on lamp\nNap,1,Sleep\n",
+        "task,no,action\nLight,1,Walk to lamp\nLight,2,Switch on lamp\nNap,1,Sleep\n",
+        "title,action,object\nLight,walk,lamp\nLight,switch_on,lamp\nNap,sleep,\n",
+        "title,step,verb,arg1\nLight,1,walk,lamp\nLight,2,switch_on,lamp\nNap,1,sleep,\n",
+    ],
+)
+def test_rows_of_one_task_are_one_program(write, capsys, text):
+    programs, faults = read(write("a.csv", text))
+    assert programs == STEPS and not faults
+    assert "Columns of a.csv" in capsys.readouterr().err
+
+
+def test_a_row_of_steps_that_cannot_be_read_costs_its_step(write):
+    text = "task,step,instruction\nLight,1,Walk to lamp\nLight,2,Dance,badly\nLight,3,Yodel\nLight,4,Switch on lamp\n"
+    programs, faults = read(write("a.csv", text))
+    assert programs == [("Light", [(2, LINES[0]), (5, LINES[1])])]
+    assert sorted(faults, key=lambda fault: fault[1]) == [("BAD_TABLE", 3), ("NOT_UNDERSTOOD", 4)]
+
+
+def test_answers_of_several_people_to_one_task_are_no_steps(write):
+    text = 'no,task,plan\n1,Light,"Walk to lamp; Switch on lamp"\n2,Light,"Find lamp; Switch on lamp"\n'
+    assert [len(steps) for _, steps in read(write("a.csv", text))[0]] == [2, 2]
+
+
+@pytest.mark.parametrize("names", ["step1,step2,step3", "Step 1,Step 2,Step 3", "1,2,3", "action_0,action_1,action_2"])
+def test_columns_of_steps_are_one_program_a_row(write, names):
+    text = f"task,{names}\nLight,Walk to lamp,Switch on lamp,\nNap,Sleep,,\nNothing,,,\n"
+    programs, faults = read(write("a.csv", text))
+    assert programs == [("Light", [(2, LINES[0]), (2, LINES[1])]), ("Nap", [(3, "[Sleep]")])]
+    assert faults == [("EMPTY", 4)]
+
+
+ROWS = [{"task": "Light", "step": 1, "text": LAMP[0]}, {"task": "Light", "step": 2, "text": LAMP[1]},
+        {"task": "Nap", "step": 1, "text": "Sleep"}]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ROWS,
+        [{"task_id": row["task"], "step_id": row["step"], "instruction": row["text"]} for row in ROWS],
+        [{"goal": row["task"], "index": row["step"], "action": row["text"]} for row in ROWS],
+    ],
+)
+def test_lines_of_json_with_a_step_each_are_joined(write, rows):
+    programs, faults = read(write("a.jsonl", "".join(json.dumps(row) + "\n" for row in rows)))
+    assert [steps for _, steps in programs] == [[(1, LINES[0]), (2, LINES[1])], [(3, "[Sleep]")]] and not faults
+    listed, _ = read(write("a.json", json.dumps(rows)))
+    assert [[step for _, step in steps] for _, steps in listed] == [LINES, ["[Sleep]"]]
+
+
+def numbered(template):
+    return {template.format(n): step for n, step in enumerate(LAMP, 1)}
+
+
+@pytest.mark.parametrize(
+    "record",
+    [
+        {"task": "Light", **numbered("step{}")},
+        {"task": "Light", **numbered("Step {}")},
+        {"task": "Light", "plan": numbered("{}")},
+        {"task": "Light", "plan": {"steps": LAMP}},
+        {"task": "Light", "plan": [{"step": n, "text": text} for n, text in enumerate(LAMP)]},
+        {"task": "Light", "steps": [{"step": n, "description": text} for n, text in enumerate(LAMP)]},
+        {"task": "Light", "steps": [{"id": n, "instruction": text} for n, text in enumerate(LAMP)]},
+        {"task": "Light", "steps": [{"step_number": n, "content": text, "why": "so"} for n, text in enumerate(LAMP)]},
+        {"task": "Light", "steps": [{"text": text} for text in LAMP]},
+        {"task": "Light", "plan": [{"action": "walk", "arg1": "lamp"}, {"action": "switch_on", "arg1": "lamp"}]},
+        {"task": "Light", "plan": [{"verb": "walk", "args": ["lamp"]}, {"verb": "switch on", "args": ["lamp"]}]},
+        {"task": "Light", "plan": [{"name": "walk", "arguments": {"object": "lamp"}},
+                                   {"name": "switch_on", "arguments": {"object": "lamp"}}]},
+        {"task": "Light", "plan": [["walk", "lamp"], ["switch_on", "lamp"]]},
+        {"task": "Light", "steps": "1. Walk to lamp 2. Switch on lamp"},
+        {"task": "Light", "steps": ["(walk_towards character lamp)", "(switch_on character lamp)"]},
+        {"task": "Light", "schritte": LAMP},
+        {"task": "Light", "by": "w_1", "so": "Walk to lamp; Switch on lamp"},
+    ],
+)  # fmt: skip
+def test_steps_of_a_record_by_other_keys(write, record):
+    for name, text in (("a.json", json.dumps(record)), ("a.jsonl", json.dumps(record) + "\n" + json.dumps(record))):
+        programs, faults = read(write(name, text))
+        assert {(title, *(step for _, step in steps)) for title, steps in programs} == {
+            ("Light", *LINES)
+        } and not faults
+
+
+@pytest.mark.parametrize("key", ["steps", "program"])
+def test_an_unknown_action_among_known_ones_is_a_fault_and_no_title(write, key):
+    steps = [{"action": "tickle", "object": "lamp"}, {"action": "switch_on", "object": "lamp"}]
+    programs, faults = read(write("a.json", json.dumps({key: steps}, indent=1)))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES[1:]] and faults == [("NOT_UNDERSTOOD", 4)]
+    assert "tickle" not in programs[0][0]
+
+
+@pytest.mark.parametrize(("text", "line"), [('[\n{"title": "A", "steps": ["Sleep"]},\n{"title": "B",}\n]', 3),
+                                            ('{"title": "A", "steps": ["Sleep"]}\n{"title": NaN}\n', 2)])  # fmt: skip
+def test_a_record_that_is_no_json_is_one_fault_at_its_place(write, text, line):
+    programs, faults = read(write("a.json", text))
+    assert [title for title, _ in programs] == ["A"] and faults == [("BAD_JSON", line)]
