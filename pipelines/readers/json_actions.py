@@ -90,12 +90,13 @@ def _names(value: Any) -> Iterator[str]:
 
 
 def _step(action: str, names: Sequence[str]) -> str:
-    if _known(action) and all(map(_NAME.fullmatch, names)):
+    if is_known(action) and all(map(_NAME.fullmatch, names)):
         return _written(action, [(name, "1") for name in names])
     return composed(action, *(piece for name in names for piece in (" ", name)))
 
 
-def _known(action: str) -> bool:
+def is_known(action: str) -> bool:
+    """Return whether a word is the name of an action."""
     return normal_name(action).replace("_", "") in {name.lower() for name in default().actions}
 
 
@@ -111,7 +112,7 @@ def is_mapping(value: Any) -> bool:
     pairs = pairs_of(value) if isinstance(value, dict) else []
     if not pairs or not all(_ACTION.fullmatch(key) and _are_names(part) for key, part in pairs):
         return False
-    return any(_known(key) for key, _ in pairs)
+    return any(is_known(key) for key, _ in pairs)
 
 
 def _are_names(value: Any) -> bool:

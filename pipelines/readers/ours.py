@@ -109,8 +109,8 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
         yield "", Reject.of(Code.UNSUPPORTED_FILE, _OF_PLANNER, suggestion="write steps as [Walk] <shower> (1)")
     elif is_record(value, given):
         yield "", value
-    elif value and all(map(_is_steps, value.values())):
-        for number, (title, steps) in enumerate(value.items(), 1):
+    elif value and all(map(_is_steps, (by_title := with_step_lists(value)).values())):
+        for number, (title, steps) in enumerate(by_title.items(), 1):
             yield f"[{number}]", {"title": title, "steps" if isinstance(steps, list) else "program": steps}
     elif depth:
         for key, part in value.items():

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from hearth.pipelines.readers.json_actions import is_action
+from hearth.pipelines.readers.json_actions import is_action, is_known
 
 TEXTS = ("text", "description", "instruction", "content", "action", "step", "task", "name", "detail", "value", "what")
 """Keys of the words of a step that is an object, the likeliest first."""
@@ -74,10 +74,15 @@ def step_list(value: Any, is_named: bool) -> list[Any] | None:
     if len(numbered_names(value)) == len(value):
         return _under_numbers(value)
     inside = [part for key, part in value.items() if plain_name(key) in ("steps", "plan", "actions")]
-    if len(inside) != 1 or not isinstance(inside[0], (list, dict)):
+    if (
+        not is_named
+        or len(inside) != 1
+        or not isinstance(inside[0], (list, dict))
+        or any(map(_is_text, value.values()))
+    ):
         return None
     steps = inside[0]
-    is_list = isinstance(steps, list) and all(isinstance(each, str) for each in steps)
+    is_list = isinstance(steps, list) and all(map(_is_text, steps))
     return list(steps) if is_list else step_list(steps, True)
 
 
@@ -134,10 +139,14 @@ def _of_objects(parts: list[Any], is_named: bool) -> list[Any] | None:
     for part in parts:
         if isinstance(part, str) or is_action(part):
             found.append(part)
-        elif isinstance(part, list) and part and all(isinstance(each, str) for each in part) and len(part) <= 4:
+        elif isinstance(part, list) and 0 < len(part) <= 4 and all(map(_is_text, part)) and is_known(part[0]):
             found.append({"action": part[0], "args": part[1:]})
         elif isinstance(part, dict) and (text := text_of(part, is_named)) is not None:
             found.append(text)
         else:
             return None
     return found
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)

@@ -151,6 +151,26 @@ def test_steps_of_a_record_by_other_keys(write, record):
         } and not faults
 
 
+@pytest.mark.parametrize(
+    "value",
+    [
+        {"data": {"title": "Light", "steps": LAMP}},
+        {"plan": {"title": "Light", "steps": LAMP}},
+        {"plans": [{"id": 1, "task": "Light", "plan": LAMP}, {"id": 2, "task": "Light", "plan": LAMP}]},
+        {"1": {"title": "Light", "steps": LAMP}, "2": {"title": "Light", "steps": LAMP}},
+        {"Light": {"1": LAMP[0], "2": LAMP[1]}},
+    ],
+)
+def test_the_title_beside_nested_steps_is_theirs(write, value):
+    programs, faults = read(write("a.json", json.dumps(value)))
+    assert {(title, *(step for _, step in steps)) for title, steps in programs} == {("Light", *LINES)} and not faults
+
+
+def test_lists_under_numbers_are_programs(write):
+    programs, faults = read(write("a.json", json.dumps({"1": LAMP, "2": ["Sleep"]})))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES, ["[Sleep]"]] and not faults
+
+
 @pytest.mark.parametrize("key", ["steps", "program"])
 def test_an_unknown_action_among_known_ones_is_a_fault_and_no_title(write, key):
     steps = [{"action": "tickle", "object": "lamp"}, {"action": "switch_on", "object": "lamp"}]
