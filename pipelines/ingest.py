@@ -16,7 +16,18 @@ from hearth.pipelines.engine.context import knowledge
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
-from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, spreadsheets, text
+from hearth.pipelines.readers import (
+    crowd,
+    ours,
+    plans,
+    published,
+    release,
+    scenes,
+    sketches,
+    spreadsheets,
+    text,
+    yaml_documents,
+)
 from hearth.pipelines.readers.columns import Asked, FieldColumns, read_columns
 from hearth.pipelines.readers.item import Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
@@ -41,13 +52,14 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     LISTED: ours.scan_list,
     DOCUMENT: ours.scan_document,
     spreadsheets.NAME: spreadsheets.scan,
+    yaml_documents.NAME: yaml_documents.scan,
     published.NAME: published.scan,
     sketches.NAME: sketches.scan,
     scenes.NAME: scenes.scan,
 }
 """The function that finds the records of a file or folder, by reader."""
 
-_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME})
+_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME})
 """Readers of records whose fields may have other names."""
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {

@@ -49,7 +49,7 @@ _ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "syntheti
 
 def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """The items of each line that is not blank."""
-    yield from _items(_lines(path, place), place, asked)
+    yield from of_entries(_lines(path, place), place, asked)
 
 
 def _lines(path: Place, place: str) -> Iterator[Entry]:
@@ -59,7 +59,7 @@ def _lines(path: Place, place: str) -> Iterator[Entry]:
             yield Entry(Reject((fault,)) if fault else located(line, place, number), number, f"{place}:{number}")
 
 
-def _items(entries: Iterable[Entry], place: str, asked: Asked) -> Iterator[Item]:
+def of_entries(entries: Iterable[Entry], place: str, asked: Asked) -> Iterator[Item]:
     """The items of the records of a file, of which several may be the steps of one program."""
     for value, line, name in joined(entries, lambda value: row_of_json(value, asked)):
         yield from items(value, place, line, name, asked)
@@ -84,7 +84,7 @@ def absent(asked: Asked, place: str) -> Iterator[Item]:
 def scan_list(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """The items of each entry of a list."""
     entries = enumerate(located_entries(path, place), 1)
-    yield from _items((Entry(value, line, f"{place}[{number}]") for number, (line, value) in entries), place, asked)
+    yield from of_entries((Entry(value, line, f"{place}[{number}]") for number, (line, value) in entries), place, asked)
 
 
 def items(found: Any, place: str, line: int, name: str, given: FieldColumns) -> Iterator[Item]:
@@ -117,6 +117,12 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
             for number, entry in enumerate(part if isinstance(part, list) else [part], 1):
                 for inside, record_in_it in records_in(entry, given, depth - 1):
                     yield f".{as_text(key)}[{number}]{inside}", record_in_it
+
+
+def holds_program(value: Any) -> bool:
+    """Whether steps are among the records of a value."""
+    records = (entry for _, entry in records_in(value, {}) if isinstance(entry, dict))
+    return any(not _PROGRAMS.isdisjoint(_named(entry, {})) for entry in records)
 
 
 def is_record(value: dict[str, Any], given: FieldColumns) -> bool:

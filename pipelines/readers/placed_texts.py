@@ -59,7 +59,7 @@ class Text(str):
     def _offsets(self) -> Sequence[int]:
         if self.raw == self:
             return range(len(self) + 1)
-        unit = CELL_UNIT if self.unit == '""' else JSON_UNIT
+        unit = _unit(self.unit)
         return [0, *accumulate(len(match[0]) for match in unit.finditer(self.raw))]
 
     def _at(self, offset: int) -> tuple[int, int]:
@@ -68,6 +68,13 @@ class Text(str):
         if not breaks:
             return self.line, self.column + offset
         return self.line + breaks, offset - self.raw.rfind("\n", 0, offset)
+
+
+def _unit(name: str) -> re.Pattern[str]:
+    """Return what one character of a text is in the file; `name` may be a line break with the indent behind it."""
+    if name.startswith("\n"):
+        return re.compile(f"{name}|.", re.DOTALL)
+    return CELL_UNIT if name == '""' else JSON_UNIT
 
 
 def text_at(value: str, line: int, column: int, raw: str, unit: str = "") -> Text:

@@ -9,7 +9,18 @@ from typing import Any, NamedTuple
 
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import is_plan
-from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, spreadsheets, text
+from hearth.pipelines.readers import (
+    crowd,
+    ours,
+    plans,
+    published,
+    release,
+    scenes,
+    sketches,
+    spreadsheets,
+    text,
+    yaml_documents,
+)
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
@@ -44,6 +55,9 @@ _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 _NUMBER = re.compile(r"\s*\[\d{1,4}\]\s+[^\s,\]}]")
 """The number of a step in brackets, `[1] Walk to fridge`."""
 
+_MARKUP = re.compile(
+    r"\s*(?:(?P<HTML><!doctype html|<html\b)|(?P<SVG><svg\b)|(?P<XML><\?xml\b)|(?P<RTF>\{\\rtf))", re.IGNORECASE
+)
 _LOOKED_AT = 60
 _LONGEST = 100_000
 
@@ -147,6 +161,8 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     whole = [line for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
     first = [line[:_LONGEST] for line in whole if line.strip()]
     line = first[0] if first else ""
+    if markup := _MARKUP.match(line):
+        return _refused(path, place, f"{markup.lastgroup}, in which no plans are read: save it as plain text or CSV")
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
     if looks_like_json(line) and not _NUMBER.match(line):
@@ -157,6 +173,8 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return Recognised(path, place, spreadsheets.NAME)
     if suffix in _JSON and first:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
+    if suffix in _YAML and yaml_documents.holds_programs(path, place):
+        return Recognised(path, place, yaml_documents.NAME)
     if suffix in _YAML:
         return _refused(path, place, "a YAML file, which holds no programs")
     if first and is_plan(first):

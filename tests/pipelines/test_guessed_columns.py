@@ -8,6 +8,7 @@ import pytest
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
 
@@ -184,3 +185,50 @@ def test_an_unknown_action_among_known_ones_is_a_fault_and_no_title(write, key):
 def test_a_record_that_is_no_json_is_one_fault_at_its_place(write, text, line):
     programs, faults = read(write("a.json", text))
     assert [title for title, _ in programs] == ["A"] and faults == [("BAD_JSON", line)]
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("- Walk to lamp\n- Switch on lamp\n", [1, 2]),
+        ("Light:\n  - Walk to lamp\n  - 'Switch on lamp'\n", [2, 3]),
+        ("# plans\n- title: Light\n  steps:\n    - Walk to lamp\n    - Switch on lamp\n", [4, 5]),
+        ("task: Light\nplan:\n  1: Walk to lamp\n  2: Switch on lamp\n", [3, 4]),
+        ("task: Light\nplan:\n- step: 1\n  text: Walk to lamp\n- step: 2\n  text: Switch on lamp\n", [4, 6]),
+        ("task: Light\nplan: |\n  1. Walk to lamp\n  2. Switch on lamp\n", [3, 4]),
+        ("task: Light\nplan:\n- {action: walk, object: lamp}\n- {action: switch_on, object: lamp}\n", [3, 4]),
+    ],
+)
+def test_plans_in_yaml_are_read_as_those_in_json(write, text, lines):
+    programs, faults = read(write("Light.yaml", text))
+    assert programs == [("Light", list(zip(lines, LINES, strict=True)))] and not faults
+
+
+def test_a_fault_in_yaml_stands_at_its_place(write):
+    file = write("a.yaml", "task: Light\nplan: |\n   1. Walk to lamp\n   2. Yodel\n")
+    (given,) = inputs.read_programs(file, default(), file.name)
+    assert [(fault.line, fault.column) for fault in given.faults] == [(4, 7)]
+    assert read(write("b.yaml", "task: Light\nplan: [Walk to lamp\n"))[1] == [("BAD_TABLE", 3)]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "form"),
+    [
+        ("settings.yaml",
+         "name: CI\ndescription: Build\njobs:\n  build:\n    steps:\n    - name: x\n      run: y\n", "YAML"),
+        ("a.html", "<!DOCTYPE html>\n<ol><li>Walk to lamp</li></ol>\n", "HTML"),
+        ("a.xml", '<?xml version="1.0"?>\n<plan><step>Walk to lamp</step></plan>\n', "XML"),
+        ("a.txt", "{\\rtf1 Walk to lamp}\n", "RTF"),
+    ],
+)  # fmt: skip
+def test_a_form_that_is_not_read_is_named(write, name, text, form):
+    with pytest.raises(HearthError) as error:
+        read(write(name, text))
+    assert [fault.code for fault in error.value.diagnostics] == ["UNSUPPORTED_FILE"] and form in str(error.value)
+
+
+def test_an_alias_that_stands_for_much_is_refused(write):
+    text = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
+        f"{new}: &{new} [{', '.join([f'*{old}'] * 10)}]\n" for old, new in zip("abcdefg", "bcdefgh", strict=True)
+    )
+    assert read(write("a.yaml", text)) == ([], [("FILE_TOO_LARGE", 1)])
