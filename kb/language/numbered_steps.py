@@ -1,5 +1,6 @@
 """Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
+import re
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import PlanLine, header_of, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
+from hearth.kb.language.unmarked_lines import clauses
 from hearth.kb.language.understanding import Candidate
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -63,6 +65,11 @@ def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
     message = f"the plan is in {language}; only English is read"
     others = [fault for fault in faults if fault.code != Code.NOT_UNDERSTOOD]
     return [replace(lines[0], message=message, suggestion="translate it into English"), *others]
+
+
+_ORDINAL = re.compile(
+    r"(?:first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth|last)(?:ly)?\s*,\s+", re.IGNORECASE
+)
 
 
 class _StepParser:
@@ -122,13 +129,16 @@ class _StepParser:
         """Add the steps of a line; the faults of one that is not understood."""
         if line.bracketed:
             return self._written(line.text, raw, number)
-        words, said = line.text, self._said
+        words, said = _ORDINAL.sub("", line.text, count=1), self._said
         asked = asked_steps(self.known, words.removesuffix(":"), said, Fuzzy.OFF)
         if not asked and self.fuzzy is not Fuzzy.OFF:
             shorter = unexplained(words)
             asked = self._asked(shorter, said) if shorter not in ("", words) else ()
             if not asked and not words.endswith(":"):
                 asked = asked_steps(self.known, words, said, self.fuzzy)
+        parts = [] if asked or words.endswith(":") else clauses(words)
+        if parts and any(asked_steps(self.known, part, said, Fuzzy.OFF) for part in parts):
+            return [fault for part in parts for fault in self._read(line._replace(text=part), raw, number)]
         fault = [] if asked else self._nearest(words, raw, number, said)
         for each in asked:
             self._add(each, number)

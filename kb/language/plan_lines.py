@@ -15,20 +15,19 @@ _COUNTS = {word: number for words in _COUNTED for number, word in enumerate(word
 _NUMBER = (
     rf"(?:(?:step|schritt|paso|étape)\s*#?\s*\d{{1,4}}\s*[.:)\]–—=-]?|[(\[]?\d{{1,4}}\s*[.:)\]]|#\d{{1,3}}[.:)]?"
     rf"|\d{{1,3}}\s+[–—-])(?=\s|\*)|step\s*\d{{1,4}}\s*[=:]|\d{{1,3}}[.)](?=[a-z])"
-    rf"|step\s+(?:{_ONE})\s*[.:)–—-]|(?:step\s+)?(?:{_FIRST})(?:ly)?(?:\s+step)?\s*[,:](?=\s)"
+    rf"|step\s+(?:{_ONE})\s*[.:)–—-]|(?:step\s+)(?:{_FIRST})(?:ly)?\s*[,:](?=\s)"
 )
 _ITEM = r"\(?(?:[a-z]|[ivx]{2,5})[.)](?=\s)|\d{1,3}(?:\.\d{1,3})+[.:)]?(?=\s)"
 """Letters, roman numerals and `1.2`: the items of a list without a number that counts its steps."""
 
-_NUMBERED = re.compile(rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})|{_ITEM})\s+(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE)
+_NUMBERED = re.compile(rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})\s*|{_ITEM}\s+)(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE)
 _PLAIN = re.compile(r"([ \t]*)(?:[Ss]tep )?(\d{1,4})[.:)] +([A-Za-z][A-Za-z0-9 ,.;()'-]*)")
 """A numbered step of plain words, of which nothing has to be undone."""
 
 _MARKER = re.compile(
     r"(?:[\u2190-\u21ff\u2500-\u2604\u2606-\u2617\u2705\u2713-\u2718\u2794-\u27bf\u2b00-\u2bff"
     r"\U0001f446-\U0001f449\U0001f518\U0001f532-\U0001f53d\U0001f7e0-\U0001f7ff·◦‣⁃∙▪]\ufe0f?\s*)+(?=\S)"
-    r"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|(?:[01]?\d|2[0-3])[:.][0-5]\d(?:\s*[ap]m)?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])"
-    r"|(?:lastly|finally|next|then|after that)\s*[,:]\s+(?=[a-z])",
+    r"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|(?:[01]?\d|2[0-3])[:.][0-5]\d(?:\s*[ap]m)?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])",
     re.IGNORECASE,
 )
 """What stands before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
@@ -123,9 +122,11 @@ def plan_line(raw: str) -> PlanLine:
     text = " ".join(_EMPHASIS.sub("", line[marked.end() :].rstrip("# ") if marked else line).split())
     text = text.translate(_KEYCAP)
     marker = _MARKER.match(text) if not marked else None
-    symbols = _SYMBOLS.match(text := text[marker.end() :] if marker else text)
-    text = text[symbols.end() :] if symbols else text
+    text = text[marker.end() :] if marker else text
     step = _NUMBERED.match(text)
+    symbols = _SYMBOLS.match(text) if not step else None
+    text = text[symbols.end() :] if symbols else text
+    step = step or _NUMBERED.match(text)
     if step and TITLE.match(text[step.end() :]) and not step["number"]:
         return PlanLine(text[step.end() :], None, indent, True)
     if marker and not step:
@@ -201,6 +202,11 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
     return Header(title, "\n".join(line.text for line in found[at + 1 :]))
+
+
+def is_aside(text: str) -> bool:
+    """Return whether a heading stands inside a plan, as `Tips:`, and is no title."""
+    return _ASIDE.fullmatch(text) is not None
 
 
 _OF_BOLD = 7

@@ -9,9 +9,10 @@ from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
+from hearth.kb.language.unmarked_lines import are_steps, chained, chained_strongly, is_like_step, is_title, sentences
 from hearth.schemas.blocks import is_sentence
 
-_JOINT = re.compile(rf"{CHAIN.pattern}|;\s+")
+_JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
 _END = re.compile(
     r"(?:\[?(?:all )?(?:done(?: task)?|end(?: of (?:plan|task))?|finished|task (?:is )?(?:complete|done)d?)\]?)\W*",
     re.I,
@@ -52,19 +53,85 @@ def lines_of_program(text: str) -> list[ProgramLine]:
     form = form_of(raw)
     if form:
         return [ProgramLine(*each, _kind(each.line)) for each in form.lines(raw) if not _ends(each)]
-    return list(_kinds([Placed(row, plan_line(line)) for row, line in enumerate(raw)]))
+    return list(_kinds(_marked([Placed(row, plan_line(line)) for row, line in enumerate(raw)])))
 
 
 def header(text: str) -> Header:
     """Return title and description of a program's text."""
     raw = _without_thoughts(text.split("\n"))
     form = form_of(raw)
-    return header_of([line for _, line in form.lines(raw)] if form else list(map(plan_line, raw)))
+    placed = form.lines(raw) if form else _marked([Placed(row, plan_line(line)) for row, line in enumerate(raw)])
+    return header_of([line for _, line in placed])
 
 
 def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan in any form but that of program text."""
-    return any(map(_THOUGHT.match, lines)) or form_of(lines) is not None or is_list(lines) or _is_joined(lines)
+    return any(map(_THOUGHT.match, lines)) or form_of(lines) is not None or is_list(lines) or _is_joined(lines) or is_unmarked(lines)
+
+
+def is_unmarked(lines: Sequence[str]) -> bool:
+    """Return whether a text's first lines hold a plan of plain lines, which nothing marks as steps."""
+    read = [Placed(row, plan_line(line)) for row, line in enumerate(lines)]
+    if any(line.number is not None for _, line in read):
+        return False
+    return any(any(line.number is not None for _, line in _marked(part)) for part in _sections(read))
+
+
+def _sections(placed: list[Placed]) -> Iterator[list[Placed]]:
+    """Part lines before each heading."""
+    part: list[Placed] = []
+    for each in placed:
+        if each.line.heading and part:
+            yield part
+            part = []
+        part.append(each)
+    if part:
+        yield part
+
+
+def _marked(placed: list[Placed]) -> list[Placed]:
+    """Mark the plain lines that are steps, where no line of the text has a mark."""
+    if any(line.number is not None for _, line in placed):
+        return placed
+    plain = [n for n, (_, line) in enumerate(placed) if line.text and _is_plain(line)]
+    is_titled = any(line.heading for _, line in placed)
+    if plain and not is_titled:
+        top, texts = plain[0], [placed[n].line.text for n in plain]
+        is_apart = top + 1 < len(placed) and not placed[top + 1].line.text
+        is_titled = is_title(texts[0], texts[1:], is_apart)
+        plain = plain[1:] if is_titled else plain
+    texts = [_after_label(placed[n].line.text) for n in plain]
+    if not are_steps(texts) and not (is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])):
+        return placed
+    steps = {n for n, text in zip(plain, texts, strict=True) if is_like_step(text) or chained(text)}
+    return [part for n, each in enumerate(placed) for part in (_steps_on(each) if n in steps else [each])]
+
+
+def _is_plain(line: PlanLine) -> bool:
+    """Return whether a line without a mark may be a step: it is no title, but `Plan: walk to sofa` may be."""
+    return not META.match(line.text) and (not line.heading or _LABEL.match(line.text) is not None)
+
+
+_LABEL = re.compile(
+    r"(?:plan|steps|answer|actions?|action sequence|sequence|procedure|instructions|method|solution|program)\s*[:=]\s*",
+    re.IGNORECASE,
+)
+"""What stands before the steps of a line, `Plan: walk to sofa; sit on sofa`."""
+
+
+def _after_label(text: str) -> str:
+    return _LABEL.sub("", text, count=1)
+
+
+def _is_order(text: str, placed: Placed) -> bool:
+    """Return whether the one line below a title is a step, and not its description."""
+    return text != placed.line.text or (is_like_step(text) and not is_sentence(text))
+
+
+def _steps_on(placed: Placed) -> list[Placed]:
+    """Return a line as steps: the sentences of prose, else the whole line."""
+    text = _after_label(placed.line.text)
+    return [Placed(placed.row, PlanLine(part, 0)) for part in sentences(text)]
 
 
 def _is_joined(lines: Sequence[str]) -> bool:
@@ -132,14 +199,15 @@ def _between(line: PlanLine, steps_follow: bool) -> Kind:
 
 def _parts(line: PlanLine) -> Iterator[PlanLine]:
     """Part a line of several steps: `walk to kitchen 2. open fridge`, or `walk to kitchen -> open fridge`."""
-    if not _SEVERAL.search(line.text):
+    if not _SEVERAL.search(line.text) and " then " not in line.text:
         yield line
         return
     pieces = [line.text]
     if line.numbered:
         pieces = list(_numbered(line.text, line.number or 0))
     for piece in pieces:
-        for part in _JOINT.split(piece) if not piece.startswith("[") else CHAIN.split(piece):
+        parts = CHAIN.split(piece) if piece.startswith("[") else chained_strongly(piece) or _JOINT.split(piece)
+        for part in parts:
             if part.strip():
                 yield line._replace(text=part.strip())
 

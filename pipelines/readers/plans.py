@@ -6,11 +6,12 @@ from typing import Any
 
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
-from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, level_of, plan_line
-from hearth.kb.language.program_lines import header
+from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
+from hearth.kb.language.program_lines import header, is_unmarked
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.located import Text
+from hearth.pipelines.readers.unmarked_plans import unmarked_blocks
 from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow
@@ -78,7 +79,9 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
     first = list(itertools.islice(lines, _LOOKED_AT))
     form = form_of([line for _, line in first])
     rest = itertools.chain(first, lines)
-    return blocks(rest) if form is None else _blocks_of(form, rest)
+    if form:
+        return _blocks_of(form, rest)
+    return unmarked_blocks(rest) if is_unmarked([line for _, line in first]) else blocks(rest)
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
@@ -143,6 +146,7 @@ class _Block:
         self._bulleted, self._by_headings = True, False
         self._level = self._number = 0
         self._texts: list[PlanLine] = []
+        self._has_heading_below = False
 
     @property
     def first(self) -> int:
@@ -157,12 +161,14 @@ class _Block:
             is_nested = self._by_headings and not line.heading
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
-            self._level, self._texts = 0, []
+            self._level, self._texts, self._has_heading_below = 0, [], False
         elif line.text and self._last and not self._below and (line.heading or not line.indent):
             self._below = len(self.lines)
             is_apart = bool(self.lines) and not self.lines[-1].strip()
             is_remark = is_sentence(line.text) or META.match(line.text) is not None
             self.has_title_below = line.heading or (is_apart and not is_remark)
+        if line.heading and line.number is None and self._last and not is_aside(line.text):
+            self._has_heading_below = True
         if line.number is None and line.text:
             self._level = self._level or (level_of(raw) if line.heading else 0)
             self._texts.append(line)
@@ -190,6 +196,8 @@ class _Block:
         """Whether a step belongs to the next program."""
         if self._by_headings and not step.heading and not self._below:
             return False
+        if self._has_heading_below and (not step.number or step.number <= self._number):
+            return True
         if step.number:
             return step.number <= 1 and (self._last > 1 or self._below > 0)
         if step.numbered and self._number > 0:

@@ -11,6 +11,7 @@ from hearth.kb.language.forms.pddl import PDDL
 from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
+from hearth.kb.language.forms.titled_lines import TITLED_LINES
 
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
@@ -20,10 +21,11 @@ FORMS: dict[str, Form] = {
     "PDDL": PDDL,
     "code": CODE,
     "Markdown table": MARKDOWN_TABLE,
+    "titled lines": TITLED_LINES,
 }
 """Forms by name, in the order in which they are tried."""
 
-_HINT = re.compile(r"[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|.*\bcharacter\b", re.IGNORECASE).match
+_HINT = re.compile(r"[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|.*\bcharacter\b|(?!\s*\d)\D+(?::|=| [-–—] ).*(?:[,;>→]|then)", re.IGNORECASE).match
 """Whether a line has what some line of each form has: most plans have none, and are not tried."""
 
 

@@ -1,0 +1,64 @@
+"""A plan on each line, behind its title: `Rest: walk to couch -> lie on couch`, `get book = ["find book", "read book"]`."""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from hearth.kb.language.forms.code import called
+from hearth.kb.language.forms.form import Form, Placed, step, title
+from hearth.kb.language.plan_lines import META, plan_line
+from hearth.kb.language.unmarked_lines import chained, clauses, is_like_step
+
+_TITLED = re.compile(
+    r"\s*(?:[-*+•–▪]\s+)?(?P<title>\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**)\s*(?::\**|=|\s[-–—])\s*(?P<steps>\S.{8,})"
+)
+_LABEL = re.compile(r"(?:task|title|activity|goal|plan|steps?|answer|actions?|note|tip|thought|act|obs\w*)\b", re.IGNORECASE)
+_LISTED = re.compile(r"""[\[(]\s*(["'].*["'])\s*,?\s*[\])]\s*[,;]?""")
+_QUOTED = re.compile(r"\"((?:[^\"\\]|\\.)*)\"|'((?:[^'\\]|\\.)*)'")
+_NUMBER = re.compile(r"(?:^|\s)[(\[]?\d{1,2}[.):\]]\s+")
+_CALLS = re.compile(r"\w+\([^()]*\)(?:\s*[,;]\s*\w+\([^()]*\))+[.;]?")
+_CALL = re.compile(r"\w+\([^()]*\)")
+_HALF = 0.5
+
+
+def parts_of(text: str) -> list[str]:
+    """Return the steps of a line that holds several in a list, calls, numbers, or joined; none where it does not."""
+    listed = _LISTED.fullmatch(text)
+    if listed:
+        return [one or other for one, other in _QUOTED.findall(listed[1])]
+    if _CALLS.fullmatch(text):
+        return list(map(called, _CALL.findall(text)))
+    if _NUMBER.match(text) and len(_NUMBER.findall(text)) > 1:
+        return [part.strip() for part in _NUMBER.split(text) if part.strip()]
+    return [part for each in chained(text) for part in (clauses(each) or [each])]
+
+
+def _titled(raw: str) -> re.Match[str] | None:
+    found = _TITLED.match(raw) if len(raw) < 5_000 else None
+    if not found or _LABEL.match(found["title"].strip("*")) or META.match(raw.strip()):
+        return None
+    return found if len(parts_of(found["steps"].strip())) > 1 else None
+
+
+def _fits(lines: Sequence[str]) -> bool:
+    """Return whether half of the lines at least are titled plans."""
+    texts = [line for line in lines if line.strip()]
+    found = sum(_titled(line) is not None for line in texts)
+    return found > 0 and found >= _HALF * len(texts)
+
+
+def _lines(lines: Sequence[str]) -> list[Placed]:
+    return [each for row, raw in enumerate(lines) for each in _line(row, raw)]
+
+
+def _line(row: int, raw: str) -> Iterator[Placed]:
+    found = _titled(raw)
+    if found is None:
+        read = plan_line(raw)
+        yield Placed(row, read._replace(number=0) if read.text and is_like_step(read.text) else read)
+        return
+    yield title(row, found["title"].strip("* "))
+    for part in parts_of(found["steps"].strip()):
+        yield step(row, part.rstrip("."))
+
+
+TITLED_LINES = Form(_fits, _lines, lambda raw: _titled(raw) is not None, _TITLED)
