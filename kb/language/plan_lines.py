@@ -20,7 +20,7 @@ _NUMBER = (
 _ITEM = r"\(?(?:[a-z]|[ivx]{2,5})[.)](?=\s)|\d{1,3}(?:\.\d{1,3})+[.:)]?(?=\s)"
 """Letters, roman numerals and `1.2`: the items of a list without a number that counts its steps."""
 
-_NUMBERED = re.compile(rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})\s*|{_ITEM}\s+)(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE)
+_NUMBERED = re.compile(rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})\s*|(?:{_ITEM})\s+)(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE)
 _PLAIN = re.compile(r"([ \t]*)(?:[Ss]tep )?(\d{1,4})[.:)] +([A-Za-z][A-Za-z0-9 ,.;()'-]*)")
 """A numbered step of plain words, of which nothing has to be undone."""
 

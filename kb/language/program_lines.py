@@ -1,5 +1,6 @@
 """The lines of a program: one function that `check`, `run`, `build` and `score` all read a text with."""
 
+import itertools
 import re
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
@@ -53,14 +54,14 @@ def lines_of_program(text: str) -> list[ProgramLine]:
     form = form_of(raw)
     if form:
         return [ProgramLine(*each, _kind(each.line)) for each in form.lines(raw) if not _ends(each)]
-    return list(_kinds(_marked([Placed(row, plan_line(line)) for row, line in enumerate(raw)])))
+    return list(_kinds(_marked(_read(raw))))
 
 
 def header(text: str) -> Header:
     """Return title and description of a program's text."""
     raw = _without_thoughts(text.split("\n"))
     form = form_of(raw)
-    placed = form.lines(raw) if form else _marked([Placed(row, plan_line(line)) for row, line in enumerate(raw)])
+    placed = form.lines(raw) if form else _marked(_read(raw))
     return header_of([line for _, line in placed])
 
 
@@ -71,10 +72,40 @@ def is_plan(lines: Sequence[str]) -> bool:
 
 def is_unmarked(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines hold a plan of plain lines, which nothing marks as steps."""
-    read = [Placed(row, plan_line(line)) for row, line in enumerate(lines)]
+    read = _read(lines)
     if any(line.number is not None for _, line in read):
         return False
     return any(any(line.number is not None for _, line in _marked(part)) for part in _sections(read))
+
+
+def _read(raw: Sequence[str]) -> list[Placed]:
+    lines = list(map(plan_line, raw))
+    if titles_are_numbered(raw, lines):
+        lines = [as_title(line) if line.heading else line for line in lines]
+    return [Placed(row, line) for row, line in enumerate(lines)]
+
+
+def as_title(line: PlanLine) -> PlanLine:
+    """Return a heading with a number as a title: `# 1. Find the remote` above its steps."""
+    return line._replace(number=None, numbered=False, heading=True)
+
+
+_OF_STEP = re.compile(r"[\s#*]*step\b", re.IGNORECASE)
+
+
+def titles_are_numbered(raw: Sequence[str], lines: Sequence[PlanLine]) -> bool:
+    """Return whether headings with numbers are titles, as steps stand below most of them."""
+    at = [n for n, line in enumerate(lines) if line.heading and line.numbered and not _OF_STEP.match(raw[n])]
+    sections = [lines[start + 1 : end] for start, end in itertools.pairwise([*at, len(lines)])]
+    filled = [section for section in sections if any(line.text for line in section)]
+    return len(filled) > 0 and 2 * sum(map(_has_steps, filled)) > len(filled)
+
+
+def _has_steps(section: Sequence[PlanLine]) -> bool:
+    steps = [line for line in section if line.number is not None and not line.heading]
+    if any(line.numbered for line in steps) or sum(is_like_step(line.text) for line in steps) > 1:
+        return True
+    return not steps and any(chained(line.text) for line in section)
 
 
 def _sections(placed: list[Placed]) -> Iterator[list[Placed]]:

@@ -80,7 +80,7 @@ def sentences(text: str) -> list[str]:
 def are_steps(texts: Sequence[str]) -> bool:
     """Return whether lines without marks are steps: two of three at least begin as one does, or join several."""
     like = sum(is_like_step(text) or bool(chained(text)) for text in texts)
-    joined = any(len(sentences(text)) > 1 or chained(text) for text in texts)
+    joined = any(len(sentences(text)) > 1 or len(parts := chained(text)) > 2 or (parts and text[-1] != ".") for text in texts)
     return like >= _WHOLE * len(texts) and (like > 1 or (like == 1 and joined))
 
 

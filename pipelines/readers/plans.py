@@ -7,7 +7,8 @@ from typing import Any
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
-from hearth.kb.language.program_lines import header, is_unmarked
+from hearth.kb.language.program_lines import as_title, header, is_unmarked, titles_are_numbered
+from hearth.kb.language.unmarked_lines import are_steps
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.located import Text
@@ -81,7 +82,10 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
     rest = itertools.chain(first, lines)
     if form:
         return _blocks_of(form, rest)
-    return unmarked_blocks(rest) if is_unmarked([line for _, line in first]) else blocks(rest)
+    looked_at = [line for _, line in first]
+    if is_unmarked(looked_at):
+        return unmarked_blocks(rest)
+    return blocks(rest, titled=titles_are_numbered(looked_at, list(map(plan_line, looked_at))))
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
@@ -105,7 +109,9 @@ def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_0
         yield first, block
 
 
-def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+def blocks(
+    lines: Iterator[tuple[int, str]], most: int = 1_000_000, *, titled: bool = False
+) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs: (number of the first line, lines), cut after `most` characters.
 
     A program begins where the numbers begin again, or with a line below the steps that is not one of them; not if the
@@ -115,10 +121,16 @@ def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[
     block = _Block()
     for number, raw in lines:
         line = plan_line(raw)
-        if line.number is not None and block.ends_before(line):
-            rest = block.split()
-            yield block.first, block.lines
-            block = rest
+        line = as_title(line) if titled and line.heading else line
+        if line.number is not None:
+            if block.ends_before(line):
+                rest = block.split()
+                yield block.first, block.lines
+                block = rest
+            if block.begins_again():
+                rest = block.split()
+                yield block.first, block.lines
+                block = rest
         elif line.number is None and block.is_without_steps(raw, line):
             if block.has_steps:
                 rest = block.split()
@@ -190,7 +202,9 @@ class _Block:
         if RULE.match(raw):
             is_apart = bool(self.lines) and not self.lines[-1].strip()
             return not self._last and is_apart and len(self._texts) > 1 and not is_answer(self._texts[0])
-        return line.heading and self._level > 0 and level_of(raw) <= self._level
+        if not line.heading or not self._level or is_aside(line.text):
+            return False
+        return level_of(raw) <= self._level or are_steps([each.text for each in self._texts if not each.heading])
 
     def ends_before(self, step: PlanLine) -> bool:
         """Whether a step belongs to the next program."""
@@ -204,11 +218,24 @@ class _Block:
             return True
         return self._below > 0 and (self._bulleted or step.bracketed)
 
+    def begins_again(self) -> bool:
+        """Return whether the text above a first step holds a title with a description, and below it another title."""
+        if self._last or len(self._texts) < 3:
+            return False
+        at = max(n for n, raw in enumerate(self.lines) if raw.strip())
+        first, *middle, last = self._texts
+        is_apart = not self.lines[at - 1].strip()
+        names = [line for line in (first, last) if not is_sentence(line.text) and not META.match(line.text)]
+        if len(names) < 2 or not is_apart or last.heading or is_aside(last.text) or is_answer(first):
+            return False
+        self._below = at if all(is_sentence(line.text) for line in middle) else 0
+        return self._below > 0
+
     def split(self) -> "_Block":
         """Cut off the lines below the steps, which begin the next program."""
         rest, at = _Block(), self._below or len(self.lines)
         rest.lines, rest.numbers = self.lines[at:], self.numbers[at:]
         self.lines, self.numbers = self.lines[:at], self.numbers[:at]
         rest._size = sum(map(len, rest.lines))
-        rest._level, rest._texts = self._level, self._texts
+        rest._level, rest._texts = self._level, self._texts if self._last else self._texts[-1:]
         return rest

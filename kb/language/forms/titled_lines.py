@@ -9,7 +9,7 @@ from hearth.kb.language.plan_lines import META, plan_line
 from hearth.kb.language.unmarked_lines import chained, clauses, is_like_step
 
 _TITLED = re.compile(
-    r"\s*(?:[-*+•–▪]\s+)?(?P<title>\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**)\s*(?::\**|=|\s[-–—])\s*(?P<steps>\S.{8,})"
+    r"\s*(?:[-*+•–▪]\s+)?(?P<title>\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**)\s*(?::\**\s*|=(?!>)\s*|\s[-–—]\s+)(?P<steps>\S.{8,})"
 )
 _LABEL = re.compile(r"(?:task|title|activity|goal|plan|steps?|answer|actions?|note|tip|thought|act|obs\w*)\b", re.IGNORECASE)
 _LISTED = re.compile(r"""[\[(]\s*(["'].*["'])\s*,?\s*[\])]\s*[,;]?""")
