@@ -176,9 +176,9 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
     if _FIELDS.isdisjoint(value):
         value[_KEYS] = keys
     own = current_id(str(value.get("program_id") or value.get("id") or ""))
-    fault = id_fault(own, place, line)
-    if fault:
-        return refused(place, fault, name, line)
+    wrong = id_fault(own, place, line)
+    if wrong:
+        return refused(place, wrong, name, line)
     return Item(own or f"{NAME}:{name}", NAME, place, value, _version(value), line=line)
 
 
@@ -311,7 +311,7 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
     if steps is None and isinstance(value.get("program"), list):
         steps = value["program"]
     text = "" if steps is not None else _word(value, "text") or _word(value, "program") or ""
-    listed = steps_of(text) if steps is None else steps
+    listed: Any = steps_of(text) if steps is None else steps
     if not isinstance(listed, list):
         raise TypeError(f"`steps` is {type(steps).__name__}, not a list")
     listed = [step_of(step) if is_action(step) else step for step in listed]

@@ -28,6 +28,10 @@ def programs(path, columns=""):
 
 TEA = ["[Walk] <kettle> (1)", "[SwitchOn] <kettle> (1)"]
 MAPPING = '{"WALK": ["kettle"], "SWITCHON": ["kettle"]}'
+PLAN = "1. Walk to kettle\n2. Switch on kettle"
+ASKED = {"role": "user", "content": "Tea"}
+OBJECTS = [{"action": "Walk", "object": "kettle"}, {"action": "SwitchOn", "object": "kettle"}]
+CALLED = [{"verb": "walk", "target": "kettle"}, {"verb": "switch_on", "args": ["kettle"]}]
 CALLS = [
     {"type": "function", "function": {"name": name, "arguments": json.dumps({"object": "kettle"})}}
     for name in ("walk", "switch_on")
@@ -38,12 +42,12 @@ CALLS = [
     ("value", "title"),
     [
         ({"title": "Tea", "steps": TEA}, "Tea"),
-        ({"task": "Tea", "plan": [{"action": "Walk", "object": "kettle"}, {"action": "SwitchOn", "object": "kettle"}]}, "Tea"),
-        ({"goal": "Tea", "actions": [{"verb": "walk", "target": "kettle"}, {"verb": "switch_on", "args": ["kettle"]}]}, "Tea"),
+        ({"task": "Tea", "plan": OBJECTS}, "Tea"),
+        ({"goal": "Tea", "actions": CALLED}, "Tea"),
         ({"tool_calls": CALLS}, ""),
-        ({"messages": [{"role": "user", "content": "Tea"}, {"role": "assistant", "content": "1. Walk to kettle\n2. Switch on kettle"}]}, "Tea"),
-        ({"messages": [{"role": "user", "content": "Tea"}, {"role": "assistant", "content": None, "tool_calls": CALLS}]}, "Tea"),
-        ({"prompt": "Tea", "completion": "1. Walk to kettle\n2. Switch on kettle"}, "Tea"),
+        ({"messages": [ASKED, {"role": "assistant", "content": PLAN}]}, "Tea"),
+        ({"messages": [ASKED, {"role": "assistant", "content": None, "tool_calls": CALLS}]}, "Tea"),
+        ({"prompt": "Tea", "completion": PLAN}, "Tea"),
         ({"identifier": "7", "llm_output": MAPPING}, ""),
         ({"identifier": "7", "llm_output": f"```json\n{MAPPING}\n```"}, ""),
         ({"identifier": "7", "llm_output": MAPPING.replace('"', "'")}, ""),
@@ -59,7 +63,7 @@ def test_forms_of_models(write, value, title, indent):
 
 
 def test_output_of_a_batch_has_the_ids_of_its_requests(write):
-    body = {"choices": [{"message": {"role": "assistant", "content": "1. Walk to kettle\n2. Switch on kettle"}}]}
+    body = {"choices": [{"message": {"role": "assistant", "content": PLAN}}]}
     lines = [json.dumps({"custom_id": f"r{n}", "response": {"status_code": 200, "body": body}}) for n in (1, 2)]
     file = write("a.jsonl", "\n".join(lines))
     assert [steps for _, steps in programs(file)][:1] == [TEA]
@@ -72,7 +76,7 @@ def test_output_of_a_batch_has_the_ids_of_its_requests(write):
          ["[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Walk] <milk> (1)", "[Grab] <milk> (1)"]),
         ('{"WALK": ["sofa", "37"], "SIT": ["sofa", 37], "STANDUP": []}',
          ["[Walk] <sofa> (1.37)", "[Sit] <sofa> (1.37)", "[StandUp]"]),
-        ('{\n  "GRAB": ["soap", "5", "sink", "6"]}'.replace("GRAB", "PUTBACK"), ["[PutBack] <soap> (1.5) <sink> (1.6)"]),
+        ('{\n  "PUTBACK": ["soap", "5", "sink", "6"]}', ["[PutBack] <soap> (1.5) <sink> (1.6)"]),
         ('{"WALK": ["chair", "8"], "WALK": ["chair", "9"]}', ["[Walk] <chair> (1.8)", "[Walk] <chair> (2.9)"]),
     ],
 )  # fmt: skip
