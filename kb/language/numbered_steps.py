@@ -9,10 +9,10 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import PlanLine, header_of, unexplained
+from hearth.kb.language.plan_lines import LOOSE, PlanLine, header_of, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
-from hearth.kb.language.unmarked_lines import clauses
+from hearth.kb.language.unmarked_lines import clauses, is_order
 from hearth.kb.language.understanding import Candidate
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -94,11 +94,18 @@ class _StepParser:
             self.faults += [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, self._said)
         elif line.number is not None and self._is_open:
             self._take_item(line, raw, number)
-        elif kind == Kind.DETAIL and not self._detail(line.text, number):
+        elif kind == Kind.DETAIL and not self._detail(line.text, number) and not self._lacks(line, raw, number):
             self._is_open = self._is_open and line.indent > 0
             self._notes += [(line.text, raw, number)] if line.indent or line.number is not None else []
         elif kind == Kind.TEXT and line.text:
             self._is_open = self._is_open and line.indent > 0
+
+    def _lacks(self, line: PlanLine, raw: str, number: int) -> bool:
+        """Add the fault of an item below a step that asks for something, as a step does; return whether it does."""
+        if line.number is None or not is_order(line.text):
+            return False
+        self.faults += self._read(line, raw, number)
+        return True
 
     def _take_item(self, line: PlanLine, raw: str, number: int) -> None:
         found = self._read(line, raw, number)
@@ -161,7 +168,8 @@ class _StepParser:
 
     def _written(self, text: str, raw: str, number: int) -> list[Diagnostic]:
         """Add the steps of a line in the syntax of programs."""
-        found = parse_ticks(text)
+        loose = LOOSE.fullmatch(text)
+        found = parse_ticks(f"[{loose[1]}] <{loose[2].rstrip('.')}>" if loose else text)
         faults: tuple[Diagnostic, ...] = (found,) if isinstance(found, Diagnostic) else ()
         if not isinstance(found, Diagnostic):
             written = Program(steps=found, lines=(1,) * len(found))

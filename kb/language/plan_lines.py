@@ -47,6 +47,9 @@ _ASIDE = re.compile(
 _SYMBOLS = re.compile(r"(?:[^\w\s\[\]<>(){}|*+•'\"’“‘…–-])+\s*")
 _KEYCAP = str.maketrans({"\ufe0f": "", "\u20e3": "."})
 _BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
+LOOSE = re.compile(r"\s*\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s+([A-Za-z][\w .'-]*?)\s*")
+"""A step that lacks the marks of its object, `[grab] milk`."""
+
 _DIGITS = re.compile(r"\d+")
 _CHECKBOX = re.compile(r"\[[ xX]\]\s+")
 
@@ -71,7 +74,7 @@ CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
-_EMPHASIS = re.compile(r"\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
+_EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
 _ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are))\b", re.IGNORECASE)
 _ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s+(\S.*)", re.IGNORECASE)
 _USUAL = re.compile(
@@ -241,7 +244,9 @@ def is_step(line: PlanLine, is_ordered: bool) -> bool:
 def is_plan(lines: Sequence[str]) -> bool:
     """Whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
     found = list(map(plan_line, lines))
-    if any(line.number == 0 and _BRACKETED.match(raw.strip()) for line, raw in zip(found, lines, strict=True)):
-        return any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
+    pairs = zip(found, lines, strict=True)
+    written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and _BRACKETED.match(raw.strip())]
+    if written:
+        return all(map(LOOSE.fullmatch, written)) or any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
     steps = sum(line.number is not None for line in found)
     return steps > 1 or (steps == 1 and TITLE.match(lines[0]) is not None)

@@ -7,10 +7,11 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from hearth.kb.language.forms import form_of
+from hearth.kb.language.forms.code import calls_of
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
-from hearth.kb.language.unmarked_lines import are_steps, chained, chained_strongly, is_like_step, is_title, sentences
+from hearth.kb.language.unmarked_lines import are_steps, chained, chained_strongly, is_like_step, is_order, is_title, sentences
 from hearth.schemas.blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
@@ -224,12 +225,16 @@ def _between(line: PlanLine, steps_follow: bool) -> Kind:
     """Return the kind of a line without a number below the first step."""
     if not line.text or line.heading or META.match(line.text):
         return Kind.TEXT
-    is_missing = steps_follow and not line.indent and not is_sentence(line.text)
+    is_missing = steps_follow and not line.indent and (not is_sentence(line.text) or is_order(line.text))
     return Kind.MISSING if is_missing else Kind.DETAIL
 
 
 def _parts(line: PlanLine) -> Iterator[PlanLine]:
     """Part a line of several steps: `walk to kitchen 2. open fridge`, or `walk to kitchen -> open fridge`."""
+    calls = calls_of(line.text) if line.text.endswith((")", ");", ").")) else []
+    if calls:
+        yield from (line._replace(text=call) for call in calls)
+        return
     if not _SEVERAL.search(line.text) and " then " not in line.text:
         yield line
         return

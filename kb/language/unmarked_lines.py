@@ -36,6 +36,15 @@ _SENTENCES = re.compile(r"(?<=[a-z)][.!])\s+(?=[A-Z])")
 _WHOLE = 2 / 3
 
 
+def is_order(text: str) -> bool:
+    """Return whether words below a step ask for one more, and do not say how it is done."""
+    return is_like_step(text) and len(text.split()) <= _SHORT and not _HOW.match(text) and ":" not in text
+
+
+_SHORT = 9
+_HOW = re.compile(r"(?:use|using|set|check|repeat|continue|allow|leave|avoid|wait|hold|choose|consider|look for)\b", re.IGNORECASE)
+
+
 @lru_cache(maxsize=65_536)
 def is_like_step(text: str) -> bool:
     """Return whether words begin as a step does, with a verb that somebody does or is asked to do."""

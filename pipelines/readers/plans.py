@@ -8,7 +8,7 @@ from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
 from hearth.kb.language.program_lines import as_title, header, is_unmarked, titles_are_numbered
-from hearth.kb.language.unmarked_lines import are_steps
+from hearth.kb.language.unmarked_lines import are_steps, is_order
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.located import Text
@@ -158,7 +158,7 @@ class _Block:
         self._bulleted, self._by_headings = True, False
         self._level = self._number = 0
         self._texts: list[PlanLine] = []
-        self._has_heading_below = False
+        self._has_heading_below = self._is_titled = False
 
     @property
     def first(self) -> int:
@@ -174,13 +174,14 @@ class _Block:
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
             self._level, self._texts, self._has_heading_below = 0, [], False
-        elif line.text and self._last and not self._below and (line.heading or not line.indent):
+        elif line.text and self._last and not self._below and self._may_be_below(line):
             self._below = len(self.lines)
             is_apart = bool(self.lines) and not self.lines[-1].strip()
             is_remark = is_sentence(line.text) or META.match(line.text) is not None
             self.has_title_below = line.heading or (is_apart and not is_remark)
         if line.heading and line.number is None and self._last and not is_aside(line.text):
             self._has_heading_below = True
+        self._is_titled = self._is_titled or line.heading
         if line.number is None and line.text:
             self._level = self._level or (level_of(raw) if line.heading else 0)
             self._texts.append(line)
@@ -189,6 +190,13 @@ class _Block:
             self.lines.append(raw)
             self.numbers.append(number)
             self._size += len(raw) + 1
+
+    def _may_be_below(self, line: PlanLine) -> bool:
+        """Return whether a line stands below the steps, and is none that only lacks its mark."""
+        is_apart = bool(self.lines) and not self.lines[-1].strip()
+        if line.heading or is_apart:
+            return True
+        return not line.indent and not ((self._is_titled or line.text.endswith(".")) and is_order(line.text))
 
     @property
     def has_steps(self) -> bool:
@@ -236,6 +244,7 @@ class _Block:
         rest, at = _Block(), self._below or len(self.lines)
         rest.lines, rest.numbers = self.lines[at:], self.numbers[at:]
         self.lines, self.numbers = self.lines[:at], self.numbers[:at]
+        rest._is_titled = any(plan_line(raw).heading for raw in rest.lines)
         rest._size = sum(map(len, rest.lines))
         rest._level, rest._texts = self._level, self._texts if self._last else self._texts[-1:]
         return rest

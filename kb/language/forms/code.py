@@ -44,6 +44,15 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
     return found
 
 
+_CALLS = re.compile(r"[A-Za-z_]\w*\([^()]*\)(?:\s*[,;]\s*[A-Za-z_]\w*\([^()]*\))*[.;]?")
+_ONE = re.compile(r"\w+\([^()]*\)")
+
+
+def calls_of(text: str) -> list[str]:
+    """Return the steps of a line that is calls alone, `walk(kitchen), grab(milk)`; none where it is not."""
+    return list(map(called, _ONE.findall(text))) if _CALLS.fullmatch(text) else []
+
+
 def called(call: str) -> str:
     """Return the step of a call; its arguments are texts or names, and nothing is run."""
     try:

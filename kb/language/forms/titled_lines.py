@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 
-from hearth.kb.language.forms.code import called
+from hearth.kb.language.forms.code import calls_of
 from hearth.kb.language.forms.form import Form, Placed, step, title
 from hearth.kb.language.plan_lines import META, plan_line
 from hearth.kb.language.unmarked_lines import chained, clauses, is_like_step
@@ -11,29 +11,41 @@ from hearth.kb.language.unmarked_lines import chained, clauses, is_like_step
 _TITLED = re.compile(
     r"\s*(?:[-*+•–▪]\s+)?(?P<title>\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**)\s*(?::\**\s*|=(?!>)\s*|\s[-–—]\s+)(?P<steps>\S.{8,})"
 )
+_ROW = re.compile(r"\s*\|(?:\s*\d+\s*\|)?(?P<title>[^|]{2,80})\|(?P<steps>[^|]+(?:<br|;|->|→|\d[.)]\s)[^|]*)\|\s*")
+"""A row of a Markdown table with a whole plan in a cell."""
+
+_LAYOUT = re.compile(r"[\s|:-]*|\s*\|[^.]*\|\s*")
+_BREAK = re.compile(r"\s*<br\s*/?>\s*", re.IGNORECASE)
+_MARK = re.compile(r"(?:[(\[]?\d{1,2}[.):\]]|[-*•])\s+")
 _LABEL = re.compile(r"(?:task|title|activity|goal|plan|steps?|answer|actions?|note|tip|thought|act|obs\w*)\b", re.IGNORECASE)
 _LISTED = re.compile(r"""[\[(]\s*(["'].*["'])\s*,?\s*[\])]\s*[,;]?""")
 _QUOTED = re.compile(r"\"((?:[^\"\\]|\\.)*)\"|'((?:[^'\\]|\\.)*)'")
 _NUMBER = re.compile(r"(?:^|\s)[(\[]?\d{1,2}[.):\]]\s+")
-_CALLS = re.compile(r"\w+\([^()]*\)(?:\s*[,;]\s*\w+\([^()]*\))+[.;]?")
-_CALL = re.compile(r"\w+\([^()]*\)")
 _HALF = 0.5
+_LONGEST = 5_000
+
+
+_BEGINS = re.compile(r"(?!\s*\|\s*:?-)\s*(?:[-*+•–▪]\s+)?(?:\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**\s*[:=–—-]|\|)")
 
 
 def parts_of(text: str) -> list[str]:
     """Return the steps of a line that holds several in a list, calls, numbers, or joined; none where it does not."""
+    if _BREAK.search(text):
+        return [_MARK.sub("", part, count=1) for part in _BREAK.split(text) if part.strip()]
     listed = _LISTED.fullmatch(text)
     if listed:
         return [one or other for one, other in _QUOTED.findall(listed[1])]
-    if _CALLS.fullmatch(text):
-        return list(map(called, _CALL.findall(text)))
+    if calls := calls_of(text):
+        return calls
     if _NUMBER.match(text) and len(_NUMBER.findall(text)) > 1:
         return [part.strip() for part in _NUMBER.split(text) if part.strip()]
     return [part for each in chained(text) for part in (clauses(each) or [each])]
 
 
 def _titled(raw: str) -> re.Match[str] | None:
-    found = _TITLED.match(raw) if len(raw) < 5_000 else None
+    if len(raw) > _LONGEST:
+        return None
+    found = _ROW.fullmatch(raw) if raw.lstrip().startswith("|") else _TITLED.match(raw)
     if not found or _LABEL.match(found["title"].strip("*")) or META.match(raw.strip()):
         return None
     return found if len(parts_of(found["steps"].strip())) > 1 else None
@@ -41,9 +53,13 @@ def _titled(raw: str) -> re.Match[str] | None:
 
 def _fits(lines: Sequence[str]) -> bool:
     """Return whether half of the lines at least are titled plans."""
-    texts = [line for line in lines if line.strip()]
+    texts = [line for line in lines if line.strip() and (_titled(line) or not _is_table(line))]
     found = sum(_titled(line) is not None for line in texts)
     return found > 0 and found >= _HALF * len(texts)
+
+
+def _is_table(raw: str) -> bool:
+    return raw.lstrip().startswith("|") and _LAYOUT.fullmatch(raw) is not None
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
@@ -52,6 +68,8 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
 
 def _line(row: int, raw: str) -> Iterator[Placed]:
     found = _titled(raw)
+    if found is None and _is_table(raw):
+        return
     if found is None:
         read = plan_line(raw)
         yield Placed(row, read._replace(number=0) if read.text and is_like_step(read.text) else read)
@@ -61,4 +79,4 @@ def _line(row: int, raw: str) -> Iterator[Placed]:
         yield step(row, part.rstrip("."))
 
 
-TITLED_LINES = Form(_fits, _lines, lambda raw: _titled(raw) is not None, _TITLED)
+TITLED_LINES = Form(_fits, _lines, lambda raw: _titled(raw) is not None, _BEGINS)
