@@ -112,7 +112,7 @@ class _StepParser:
         if not found and not self._is_heading:
             self._is_heading = True
             self.faults.pop()
-        self.faults += found if self._is_heading else []
+        self.faults += found if self._is_heading or is_order(line.text) else []
 
     def explained(self) -> list[Diagnostic]:
         """Return a warning that counts the lines that explain steps and are none, if there are any."""

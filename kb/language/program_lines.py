@@ -2,7 +2,7 @@
 
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -81,14 +81,43 @@ def is_unmarked(lines: Sequence[str]) -> bool:
 
 def _read(raw: Sequence[str]) -> list[Placed]:
     lines = list(map(plan_line, raw))
-    if titles_are_numbered(raw, lines):
-        lines = [as_title(line) if line.heading else line for line in lines]
+    lines = list(titled(lines, titles_of(raw, lines)))
     return [Placed(row, line) for row, line in enumerate(lines)]
 
 
-def as_title(line: PlanLine) -> PlanLine:
-    """Return a heading with a number as a title: `# 1. Find the remote` above its steps."""
-    return line._replace(number=None, numbered=False, heading=True)
+class Titles(StrEnum):
+    """Marks of steps that stand before titles in a text: `# 1. Find the remote`, or bullets above bullets."""
+
+    NONE = "none"
+    HEADINGS = "headings"
+    BULLETS = "bullets"
+
+
+def titled(lines: Iterable[PlanLine], titles: Titles) -> Iterator[PlanLine]:
+    """Yield the lines, those that are titles without their marks."""
+    for line in lines:
+        is_bullet = line.number is not None and not line.numbered and not line.indent
+        is_title = line.heading if titles == Titles.HEADINGS else titles == Titles.BULLETS and is_bullet
+        yield line._replace(number=None, numbered=False, heading=True) if is_title else line
+
+
+def titles_of(raw: Sequence[str], lines: Sequence[PlanLine]) -> Titles:
+    """Return which marks stand before titles in a text, by its first lines."""
+    if titles_are_numbered(raw, lines):
+        return Titles.HEADINGS
+    return Titles.BULLETS if _are_bullets(lines) else Titles.NONE
+
+
+def _are_bullets(lines: Sequence[PlanLine]) -> bool:
+    """Return whether two steps at least stand below each bullet, and everything is a bullet."""
+    texts = [line for line in lines if line.text]
+    if not texts or any(line.number != 0 or line.numbered or line.bracketed for line in texts) or texts[0].indent:
+        return False
+    tops = [n for n, line in enumerate(texts) if not line.indent]
+    return all(
+        sum(is_order(line.text) for line in texts[start + 1 : end]) > 1
+        for start, end in itertools.pairwise([*tops, len(texts)])
+    )
 
 
 _OF_STEP = re.compile(r"[\s#*]*step\b", re.IGNORECASE)

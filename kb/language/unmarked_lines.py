@@ -24,7 +24,7 @@ _LEAD = re.compile(
 _WORD = re.compile(r"[A-Za-z][A-Za-z'’-]*")
 _NO_ACT = frozenset(
     "be is are was were been can could may might must shall should will would need needs make sure note remember ensure "
-    "try keep hope let thank sorry like enjoy it this that these those there here no not we".split()
+    "mind beware try keep hope let thank sorry like enjoy it this that these those there here no not we".split()
 )
 """Beginnings of what explains, as `Make sure`, `Note`, `It is`, though some are verbs."""
 
@@ -38,10 +38,10 @@ _WHOLE = 2 / 3
 
 def is_order(text: str) -> bool:
     """Return whether words below a step ask for one more, and do not say how it is done."""
-    return is_like_step(text) and len(text.split()) <= _SHORT and not _HOW.match(text) and ":" not in text
+    return _PLAIN.fullmatch(text) is not None and is_like_step(text) and not _HOW.match(text)
 
 
-_SHORT = 9
+_PLAIN = re.compile(r"[\w,.'’-]+(?: [\w,.'’-]+){0,8}")
 _HOW = re.compile(r"(?:use|using|set|check|repeat|continue|allow|leave|avoid|wait|hold|choose|consider|look for)\b", re.IGNORECASE)
 
 
@@ -102,6 +102,8 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
         is_apart: whether a blank line stands below it.
     """
     if not below or chained(text) or len(text) > 80:
+        return False
+    if len(below) == 1 and is_like_step(text) and not chained(below[0]):
         return False
     if is_apart or not is_like_step(text) or (" " not in text and is_noun(text.lower())):
         return True

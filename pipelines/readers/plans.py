@@ -7,7 +7,7 @@ from typing import Any
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
-from hearth.kb.language.program_lines import as_title, header, is_unmarked, titles_are_numbered
+from hearth.kb.language.program_lines import Titles, header, is_unmarked, titled, titles_of
 from hearth.kb.language.unmarked_lines import are_steps, is_order
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
@@ -85,7 +85,7 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
     looked_at = [line for _, line in first]
     if is_unmarked(looked_at):
         return unmarked_blocks(rest)
-    return blocks(rest, titled=titles_are_numbered(looked_at, list(map(plan_line, looked_at))))
+    return blocks(rest, titles=titles_of(looked_at, list(map(plan_line, looked_at))))
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
@@ -110,7 +110,7 @@ def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_0
 
 
 def blocks(
-    lines: Iterator[tuple[int, str]], most: int = 1_000_000, *, titled: bool = False
+    lines: Iterator[tuple[int, str]], most: int = 1_000_000, *, titles: Titles = Titles.NONE
 ) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs: (number of the first line, lines), cut after `most` characters.
 
@@ -121,7 +121,7 @@ def blocks(
     block = _Block()
     for number, raw in lines:
         line = plan_line(raw)
-        line = as_title(line) if titled and line.heading else line
+        line = next(titled([line], titles)) if titles != Titles.NONE else line
         if line.number is not None:
             if block.ends_before(line):
                 rest = block.split()
