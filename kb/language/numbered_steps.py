@@ -9,7 +9,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import LOOSE, PlanLine, header_of, unexplained
+from hearth.kb.language.plan_lines import LOOSE, PlanLine, header_of, is_said_around, plan_line, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
 from hearth.kb.language.unmarked_lines import clauses, is_order
@@ -48,7 +48,11 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuz
     lines = lines_of_program(text)
     for row, line, kind in lines:
         parser.take(line, kind, raw[row], before + row + 1)
-    top = header_of([line for _, line, _ in lines])
+    if parser.is_description(sum(line.prose for _, line, _ in lines)):
+        parser = _StepParser(known, place, fuzzy)
+        top = header_of(list(map(plan_line, raw)))
+    else:
+        top = header_of([line for _, line, _ in lines])
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
@@ -58,13 +62,15 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuz
 
 
 def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
-    """The faults; one that names the language where most lines are not understood, as they are not English."""
+    """The faults; those of lines name the language where most are not understood, as they are not English."""
     lines = [fault for fault in faults if fault.code == Code.NOT_UNDERSTOOD]
     if len(lines) <= understood or not (language := foreign_language([fault.found for fault in lines])):
         return faults
     message = f"the plan is in {language}; only English is read"
-    others = [fault for fault in faults if fault.code != Code.NOT_UNDERSTOOD]
-    return [replace(lines[0], message=message, suggestion="translate it into English"), *others]
+    return [
+        replace(fault, message=message, suggestion="translate it into English") if fault in lines else fault
+        for fault in faults
+    ]
 
 
 _ORDINAL = re.compile(
@@ -96,9 +102,13 @@ class _StepParser:
             self._take_item(line, raw, number)
         elif kind == Kind.DETAIL and not self._detail(line.text, number) and not self._lacks(line, raw, number):
             self._is_open = self._is_open and line.indent > 0
-            self._notes += [(line.text, raw, number)] if line.indent or line.number is not None else []
+            self._notes += [] if is_said_around(line.text) else [(line.text, raw, number)]
         elif kind == Kind.TEXT and line.text:
             self._is_open = self._is_open and line.indent > 0
+
+    def is_description(self, prose: int) -> bool:
+        """Return whether the sentences of a text are its description: less than two thirds of them are steps."""
+        return prose > 0 and 3 * len(self.faults) > prose
 
     def _lacks(self, line: PlanLine, raw: str, number: int) -> bool:
         """Add the fault of an item below a step that asks for something, as a step does; return whether it does."""

@@ -95,6 +95,7 @@ class PlanLine(NamedTuple):
         indent: characters before it.
         heading: whether Markdown marks it as a heading, or `Task:` does.
         numbered: whether the line has a number, which may be 0.
+        prose: whether it is a sentence of several on a line, which nothing marks as a step.
     """
 
     text: str
@@ -102,6 +103,7 @@ class PlanLine(NamedTuple):
     indent: int = 0
     heading: bool = False
     numbered: bool = False
+    prose: bool = False
 
     @property
     def bracketed(self) -> bool:
@@ -224,6 +226,18 @@ def level_of(raw: str) -> int:
     if not marked or TITLE.match(raw[marked.end() :]):
         return 1
     return raw[: marked.end()].count("#")
+
+
+_AROUND = re.compile(
+    r"(?:i hope|hope|enjoy|let me know|feel free|would you|do you|is there|good luck|that['’]s (?:it|all)|and that"
+    r"|you(?:['’]re| are| have| now)|now you|note that|please note|thanks?|thank you|the (?:plan|task) is|done)\b",
+    re.IGNORECASE,
+)
+
+
+def is_said_around(text: str) -> bool:
+    """Return whether a line is what a chat says around a plan, as `I hope this helps!`, or a heading inside it."""
+    return _AROUND.match(text) is not None or _ANSWER.match(text) is not None or is_aside(text)
 
 
 def is_answer(line: PlanLine) -> bool:

@@ -111,7 +111,9 @@ def titles_of(raw: Sequence[str], lines: Sequence[PlanLine]) -> Titles:
 def _are_bullets(lines: Sequence[PlanLine]) -> bool:
     """Return whether two steps at least stand below each bullet, and everything is a bullet."""
     texts = [line for line in lines if line.text]
-    if not texts or any(line.number != 0 or line.numbered or line.bracketed for line in texts) or texts[0].indent:
+    if not texts or texts[0].indent or any(line.number is None or line.bracketed for line in texts):
+        return False
+    if any(line.numbered and not line.indent for line in texts):
         return False
     tops = [n for n, line in enumerate(texts) if not line.indent]
     return all(
@@ -135,7 +137,8 @@ def _has_steps(section: Sequence[PlanLine]) -> bool:
     steps = [line for line in section if line.number is not None and not line.heading]
     if any(line.numbered for line in steps) or sum(is_like_step(line.text) for line in steps) > 1:
         return True
-    return not steps and any(chained(line.text) for line in section)
+    texts = [line.text for line in section if line.text and not line.heading]
+    return not steps and (any(map(chained, texts)) or are_steps(texts))
 
 
 def _sections(placed: list[Placed]) -> Iterator[list[Placed]]:
@@ -192,7 +195,8 @@ def _is_order(text: str, placed: Placed) -> bool:
 def _steps_on(placed: Placed) -> list[Placed]:
     """Return a line as steps: the sentences of prose, else the whole line."""
     text = _after_label(placed.line.text)
-    return [Placed(placed.row, PlanLine(part, 0)) for part in sentences(text)]
+    parts = sentences(text)
+    return [Placed(placed.row, PlanLine(part, 0, prose=len(parts) > 1)) for part in parts]
 
 
 def _is_joined(lines: Sequence[str]) -> bool:

@@ -103,15 +103,13 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
     """
     if not below or chained(text) or len(text) > 80:
         return False
-    if len(below) == 1 and is_like_step(text) and not chained(below[0]):
-        return False
+    if len(below) == 1 and is_like_step(text):
+        return len(sentences(below[0])) > 1 or bool(chained(below[0]))
     if is_apart or not is_like_step(text) or (" " not in text and is_noun(text.lower())):
         return True
     ends = sum(line.endswith((".", "!")) for line in below)
     if ends >= _WHOLE * len(below):
         return not is_sentence(text)
-    if len(below) == 1 and chained(below[0]):
-        return True
     return len(below) > 1 and text[:1].isupper() and all(line[:1].islower() for line in below)
 
 

@@ -40,6 +40,10 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
             words = made_true[1] if made_true else raw
             call = _CALL.match(words) if len(raw) <= _LONGEST else None
             is_step = made_true is not None or not _LEFT_OUT.match(raw)
+            several = calls_of(words.strip()) if is_step and call else []
+            if len(several) > 1:
+                found += [step(row, each) for each in several]
+                continue
             found.append(step(row, called(call[1]) if call else words) if is_step else note(row, raw))
     return found
 
