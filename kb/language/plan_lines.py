@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.schemas.blocks import TITLE, is_sentence
@@ -113,6 +114,19 @@ class PlanLine(NamedTuple):
 
 def plan_line(raw: str) -> PlanLine:
     """Read a line; one of layout alone, or a heading such as `Steps:`, is empty."""
+    return _short_line(raw) if len(raw) <= _SHORT else _line(raw)
+
+
+_SHORT = 200
+"""Characters of a line that is remembered: a file is read several times, and plans say the same again and again."""
+
+
+@lru_cache(maxsize=16_384)
+def _short_line(raw: str) -> PlanLine:
+    return _line(raw)
+
+
+def _line(raw: str) -> PlanLine:
     plain = _PLAIN.fullmatch(raw)
     if plain:  # as most lines are: without what Markdown could mean
         return PlanLine(" ".join(plain[3].split()), int(plain[2]), len(plain[1]), numbered=True)

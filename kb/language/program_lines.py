@@ -51,6 +51,8 @@ class ProgramLine(NamedTuple):
 
 def lines_of_program(text: str) -> list[ProgramLine]:
     """Return the lines of a program's text in order; each step of a line of several is one."""
+    if PLAIN.fullmatch(text) and not form_of([text.partition("\n")[0]]):
+        return list(_plain_lines(text))
     raw = _without_thoughts(text.split("\n"))
     form = form_of(raw)
     if form:
@@ -58,8 +60,31 @@ def lines_of_program(text: str) -> list[ProgramLine]:
     return list(_kinds(_marked(_read(raw))))
 
 
+PLAIN = re.compile(
+    r"(?![^\n]*[<|])[^\n]*(?:\n(?:[Ss]tep )?+\d{1,4}[.:)] ++[A-Za-z][a-z][A-Za-z ,.'-]*+(?<!\bcharacter))++\n*+"
+)
+"""A line above numbered steps of plain words, as most plans are: no form has to be tried."""
+
+
+def _plain_lines(text: str) -> Iterator[ProgramLine]:
+    """Yield the lines of a plain plan."""
+    several = _SEVERAL.search(text.partition("\n")[2]) is not None or " then " in text
+    for row, raw in enumerate(text.split("\n")):
+        line = plan_line(raw)
+        if line.number is None:
+            yield ProgramLine(row, line, Kind.TEXT)
+            continue
+        for part in _parts(line) if several or not row else [line]:
+            if not _END.fullmatch(part.text):
+                yield ProgramLine(row, part, Kind.STEP)
+
+
 def header(text: str) -> Header:
     """Return title and description of a program's text."""
+    top = text.partition("\n")[0]
+    if PLAIN.fullmatch(text) and not form_of([top]):
+        line = plan_line(top)
+        return header_of([line]) if line.number is None else Header("", "")
     raw = _without_thoughts(text.split("\n"))
     form = form_of(raw)
     placed = form.lines(raw) if form else _marked(_read(raw))
@@ -73,6 +98,8 @@ def is_plan(lines: Sequence[str]) -> bool:
 
 def is_unmarked(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines hold a plan of plain lines, which nothing marks as steps."""
+    if any(_is_numbered(line) for line in lines[:_FIRST]):
+        return False
     read = _read(lines)
     if any(line.number is not None for _, line in read):
         return False
@@ -103,7 +130,9 @@ def titled(lines: Iterable[PlanLine], titles: Titles) -> Iterator[PlanLine]:
 
 def titles_of(raw: Sequence[str], lines: Sequence[PlanLine]) -> Titles:
     """Return which marks stand before titles in a text, by its first lines."""
-    if titles_are_numbered(raw, lines):
+    if lines and lines[0].numbered and not lines[0].heading:
+        return Titles.NONE
+    if any(line.heading and line.numbered for line in lines) and titles_are_numbered(raw, lines):
         return Titles.HEADINGS
     return Titles.BULLETS if _are_bullets(lines) else Titles.NONE
 
@@ -139,6 +168,14 @@ def _has_steps(section: Sequence[PlanLine]) -> bool:
         return True
     texts = [line.text for line in section if line.text and not line.heading]
     return not steps and (any(map(chained, texts)) or are_steps(texts))
+
+
+_FIRST = 4
+_NUMBERED = re.compile(r"(?:step )?\d{1,4}[.:)] ", re.IGNORECASE)
+
+
+def _is_numbered(raw: str) -> bool:
+    return _NUMBERED.match(raw) is not None
 
 
 def _sections(placed: list[Placed]) -> Iterator[list[Placed]]:
