@@ -21,6 +21,8 @@ _END = re.compile(
 )
 """Words that end a plan and are no step."""
 
+_MAY_END = re.compile(r"done|end|finish|complete", re.IGNORECASE)
+
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
 _SEVERAL = re.compile(r"[>→⟶➔➡;]|\d[.):\]]")
 """What a line of several steps has in any case."""
@@ -69,13 +71,14 @@ PLAIN = re.compile(
 def _plain_lines(text: str) -> Iterator[ProgramLine]:
     """Yield the lines of a plain plan."""
     several = _SEVERAL.search(text.partition("\n")[2]) is not None or " then " in text
+    may_end = _MAY_END.search(text) is not None
     for row, raw in enumerate(text.split("\n")):
         line = plan_line(raw)
         if line.number is None:
             yield ProgramLine(row, line, Kind.TEXT)
             continue
         for part in _parts(line) if several or not row else [line]:
-            if not _END.fullmatch(part.text):
+            if not (may_end and _END.fullmatch(part.text)):
                 yield ProgramLine(row, part, Kind.STEP)
 
 
