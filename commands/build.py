@@ -273,11 +273,9 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
         )
         for name, counts in found.stages.items()
     ]
-    from hearth.pipelines.readers.columns import shown
-
     sys.stdout.write("\n")
-    for place, columns in found.columns.items():
-        print(output.shown(shown(place, columns)))
+    for line in found.guesses:
+        print(output.shown(line))
     if fuzzy := found.fuzzy:
         print(f"Read with words corrected or left out: {output.counted(fuzzy, 'program')}; `--strict` refuses them.")
     for line in found.unread:

@@ -42,11 +42,6 @@ def read_ids(program: Program, home: Home, place: str = "") -> NodeIds:
         program: canonical names.
         home: whose nodes are named.
         place: the program's file, for the faults.
-
-    Examples:
-        >>> from hearth.grounding.node_ids import read_ids
-        >>> [(ref.name, ref.node) for ref in read_ids(program, world.home).named]
-        []
     """
     objects = tuple(dict.fromkeys(ref for step in program.steps for ref in step.objects))
     given = [ref for ref in objects if ref.node is not None]

@@ -46,6 +46,7 @@ class Funnel:
         dataset: the folder of the published dataset; None before it is published.
         columns: the columns of each table that was read, by field.
         unread: files that were not read, with the reason.
+        guesses: a sentence on each file with the columns that were taken for its fields.
     """
 
     stages: dict[str, Counts]
@@ -53,6 +54,7 @@ class Funnel:
     dataset: Path | None
     columns: dict[str, dict[str, str]]
     unread: tuple[str, ...]
+    guesses: tuple[str, ...] = ()
 
     @property
     def fuzzy(self) -> int:
@@ -150,8 +152,9 @@ def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
     counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
     published = manifests["publish"]
     ingested = manifests["ingest"]
-    columns = ingested.content.get("columns", {}) if ingested else {}
-    return Funnel(counts, fresh, published.folder if published else None, columns, tuple(_unread(ingested)))
+    columns, guesses = (ingested.content.get(key, {}) if ingested else {} for key in ("columns", "guesses"))
+    folder = published.folder if published else None
+    return Funnel(counts, fresh, folder, columns, tuple(_unread(ingested)), tuple(guesses))
 
 
 def _unread(ingested: Manifest | None) -> Iterator[str]:

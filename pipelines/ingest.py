@@ -1,7 +1,7 @@
 """Stage 1: reads descriptions and programs of any known form, one row each, their text unchanged."""
 
 import shutil
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any, NamedTuple, TypedDict
 
@@ -28,7 +28,7 @@ from hearth.pipelines.readers import (
     text,
     yaml_documents,
 )
-from hearth.pipelines.readers.columns import Asked, FieldColumns, read_columns
+from hearth.pipelines.readers.columns import Asked, FieldColumns, read_columns, shown
 from hearth.pipelines.readers.item import Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
 from hearth.pipelines.readers.scanning_time import SECONDS, ScanningTime
@@ -270,6 +270,11 @@ def prepare(settings: Settings) -> dict[str, Any]:
     return {"salt": value_digest(salt(settings))[:16]}
 
 
+def guesses(columns: Mapping[str, FieldColumns]) -> list[str]:
+    """A sentence for each file whose columns or keys are not those of our own records."""
+    return [shown(place, found) for place, found in columns.items() if found and not getattr(found, "is_ours", False)]
+
+
 def write_scenes(job: Job, counts: Counts) -> None:
     """Write the scene graphs as homes; a name that two of them share is numbered."""
     folder = job.folder / DERIVED
@@ -293,7 +298,7 @@ STAGE = Stage(
     partitions=partitions,
     records=records,
     finish=write_scenes,
-    facts=lambda job: {"columns": job.context.columns},
+    facts=lambda job: {"columns": job.context.columns, "guesses": guesses(job.context.columns)},
     batch=lambda partition: max(BATCH, (partition.size or 0) // 16),
     label=lambda row: row["kind"],
 )

@@ -149,6 +149,8 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
 WHY: Mapping[Code, Words] = {
     # Reading
     Code.EMPTY: "there is nothing in it",
+    Code.NO_STEP: "a line explains a step and is none",
+    Code.FINISHED: "the episode has ended",
     Code.NOT_TEXT: "it is not text",
     Code.LINE_TOO_LONG: "a line is too long",
     Code.BAD_ARCHIVE: "the archive cannot be opened",

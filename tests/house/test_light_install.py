@@ -22,7 +22,7 @@ PROGRAM = "Watch TV\nSit down.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n[Watch]
 
 WORK = (
     "check watch.txt",
-    "run watch.txt --home maple",
+    "run watch.txt --home maple --sample",
     "build watch.txt --out out --home maple --variants 1 --pictures 1 --videos 1 --workers 1",
     "query out 'SELECT stage, code, suggestion FROM rejects' --json",
     "query out 'SELECT records_rejected FROM ledger ORDER BY \"order\"' --json",

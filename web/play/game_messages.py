@@ -9,6 +9,7 @@ from typing import Any
 
 from hearth.challenges.observations import last_json
 from hearth.homes.geometry import footprint
+from hearth.kb.groups import relation_of
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
@@ -158,8 +159,8 @@ def floor_plan(home: Home) -> list[list[Any]]:
     return [[kinds[node.category], node.class_name, _rect(node), node.id] for node in order]
 
 
-PUT = {"PutBack": ("SURFACES",), "PutIn": ("CONTAINERS", "CAN_OPEN")}
-"""What a place is, for people, on or in which something can be put; the engine takes anything that is close."""
+PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}
+"""Properties of the places that people put things on or in; the engine takes anything that is close."""
 
 
 def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
@@ -173,8 +174,9 @@ def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
     found = {}
     for name, masks in legal.masks.items():
         shown = [mask & things for mask in masks]
-        if name in PUT:
-            shown[1] &= _with(home, PUT[name]) | (home.characters if name == "PutBack" else 0)
+        relation = relation_of(home.knowledge.actions[name])
+        if relation in PLACES:
+            shown[1] &= _with(home, PLACES[relation]) | (home.characters if relation == "ON" else 0)
         if all(shown):
             found[name] = [[home.ids[i] for i in indices(mask)] for mask in shown]
     return found
