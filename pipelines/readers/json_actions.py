@@ -90,14 +90,31 @@ def _names(value: Any) -> Iterator[str]:
 
 
 def _step(action: str, names: Sequence[str]) -> str:
-    if is_known(action) and all(map(_NAME.fullmatch, names)):
+    if _takes(action, len(names)) and all(map(_NAME.fullmatch, names)):
         return _written(action, [(name, "1") for name in names])
+    *verb, last = re.split(r"[\s_-]+", action.strip())
+    if len(names) == 2 and verb and last.lower() in _BETWEEN:
+        return composed(" ".join(verb), " ", names[0], f" {last} ", names[1])
     return composed(action, *(piece for name in names for piece in (" ", name)))
+
+
+_BETWEEN = frozenset({"on", "in", "into", "onto", "to", "from", "at", "with", "inside"})
+"""Words that stand between the objects of an action that ends with one: `put_on(cup, table)` is put cup on table."""
+
+
+def _takes(action: str, count: int) -> bool:
+    """Return whether a word is the name of an action with no fewer objects."""
+    name = _plain(action)
+    return any(each.arity >= count for each in default().actions.values() if each.name.lower() == name)
+
+
+def _plain(action: str) -> str:
+    return normal_name(action).replace("_", "")
 
 
 def is_known(action: str) -> bool:
     """Return whether a word is the name of an action."""
-    return normal_name(action).replace("_", "") in {name.lower() for name in default().actions}
+    return _plain(action) in {name.lower() for name in default().actions}
 
 
 def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:

@@ -167,6 +167,21 @@ def test_the_title_beside_nested_steps_is_theirs(write, value):
     assert {(title, *(step for _, step in steps)) for title, steps in programs} == {("Light", *LINES)} and not faults
 
 
+@pytest.mark.parametrize(
+    ("action", "names", "step"),
+    [
+        ("put_on", ["cup", "table"], "[PutBack] <cup> (1) <table> (1)"),
+        ("put_on", ["shoes"], "[PutOn] <shoes> (1)"),
+        ("pour_into", ["milk", "glass"], "[Pour] <milk> (1) <glass> (1)"),
+        ("take_from", ["milk", "fridge"], "[Grab] <milk> (1)"),
+        ("walk_to", ["kitchen"], "[Walk] <kitchen> (1)"),
+    ],
+)
+def test_a_word_between_two_objects_is_read_there(write, action, names, step):
+    programs, faults = read(write("a.json", json.dumps({"plan": [{"action": action, "args": names}]})))
+    assert [[step for _, step in steps] for _, steps in programs] == [[step]] and not faults
+
+
 def test_lists_under_numbers_are_programs(write):
     programs, faults = read(write("a.json", json.dumps({"1": LAMP, "2": ["Sleep"]})))
     assert [[step for _, step in steps] for _, steps in programs] == [LINES, ["[Sleep]"]] and not faults
