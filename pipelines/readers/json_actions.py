@@ -53,14 +53,13 @@ def _action(value: dict[str, Any]) -> str | None:
     call = value.get("function")
     if isinstance(call, dict):
         return "function" if isinstance(call.get("name"), str) else None
-    for key in ACTIONS:
-        if isinstance(value.get(key), str):
-            return key if key != "name" or any(map(_holds_object, value)) else None
-    return None
+    keys = {key.lower(): key for key, part in value.items() if isinstance(part, str)}
+    found = next((name for name in ACTIONS if name in keys), "")
+    return keys[found] if found and (found != "name" or any(map(_holds_object, value))) else None
 
 
 def _holds_object(key: str) -> bool:
-    return key.lower().rstrip("_0123456789") in OBJECTS
+    return key.lower().rstrip("_-# 0123456789") in OBJECTS
 
 
 def _arguments(given: Any) -> list[str]:

@@ -13,6 +13,8 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
     if answered is not None:
         own = value.get("custom_id")
         return {**_answer(answered), **({"id": own} if isinstance(own, str) else {})}
+    if isinstance(value.get("content"), list) and _used(value["content"]):
+        return _answer(value)
     if _is_chat(value.get("messages")):
         return _chat(value["messages"])
     if _are_calls(value.get("tool_calls")):
@@ -37,10 +39,18 @@ def _answer(message: dict[str, Any]) -> dict[str, Any]:
     if _are_calls(message.get("tool_calls")):
         return {"steps": message["tool_calls"]}
     content = message.get("content")
+    if isinstance(content, list) and (used := _used(content)):
+        return {"steps": used}
     if isinstance(content, list):
         parts = [part["text"] for part in content if isinstance(part, dict) and isinstance(part.get("text"), str)]
         content = parts[0] if parts else None
     return {"program": content} if isinstance(content, str) and content.strip() else {}
+
+
+def _used(content: list[Any]) -> list[dict[str, Any]]:
+    """The calls of tools among the parts of a message."""
+    parts = [part for part in content if isinstance(part, dict) and part.get("type") == "tool_use"]
+    return [{"action": part["name"], "args": part.get("input")} for part in parts if isinstance(part.get("name"), str)]
 
 
 def _is_chat(value: Any) -> bool:

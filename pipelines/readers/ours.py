@@ -9,20 +9,18 @@ from typing import Any
 from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
 from hearth.kb.language.program_lines import header as plan_header
-from hearth.kb.language.program_lines import is_plan
+from hearth.kb.language.program_lines import is_plan, is_unmarked
 from hearth.pipelines.readers import plans
-from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, lacks, value_at
+from hearth.pipelines.readers.columns import Asked, FieldColumns, lacks
 from hearth.pipelines.readers.document import located, located_document
 from hearth.pipelines.readers.elements import located_entries
+from hearth.pipelines.readers.found_records import FIELDS, named, records_in
 from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless, worker_hash
-from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner, step_of
-from hearth.pipelines.readers.models import of_others
+from hearth.pipelines.readers.json_actions import is_action, step_of
 from hearth.pipelines.readers.placed_texts import Located, Text, pieces_of, texts_in
-from hearth.pipelines.readers.program_columns import column_of_steps
 from hearth.pipelines.readers.release import graphs_of
-from hearth.pipelines.readers.step_lists import with_step_lists
 from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
-from hearth.pipelines.readers.step_texts import IN_LINE, Places, numbered, places_of, steps_of
+from hearth.pipelines.readers.step_texts import Places, numbered, places_of, steps_of
 from hearth.pipelines.readers.text import header
 from hearth.schemas.blocks import STEP
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -95,95 +93,7 @@ def items(found: Any, place: str, line: int, name: str, given: FieldColumns) -> 
         yield _item(entry, place, first, f"{name}{inside}", given)
 
 
-def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tuple[str, Any]]:
-    """The records of a JSON value with their places in it: itself, or those in the lists and objects that it holds.
-
-    An object of programs by their titles holds a record for each.
-    """
-    if not isinstance(value, dict):
-        return
-    other = of_others(value)
-    if other is not None:
-        yield "", other
-    elif of_planner(value.values()):
-        yield "", Reject.of(Code.UNSUPPORTED_FILE, _OF_PLANNER, suggestion="write steps as [Walk] <shower> (1)")
-    elif is_record(value, given):
-        yield "", value
-    elif value and all(map(_is_steps, (by_title := with_step_lists(value)).values())):
-        for number, (title, steps) in enumerate(by_title.items(), 1):
-            yield f"[{number}]", {"title": title, "steps" if isinstance(steps, list) else "program": steps}
-    elif depth:
-        for key, part in value.items():
-            for number, entry in enumerate(part if isinstance(part, list) else [part], 1):
-                for inside, record_in_it in records_in(entry, given, depth - 1):
-                    yield f".{as_text(key)}[{number}]{inside}", record_in_it
-
-
-def holds_program(value: Any) -> bool:
-    """Whether steps are among the records of a value."""
-    records = (entry for _, entry in records_in(value, {}) if isinstance(entry, dict))
-    return any(not _PROGRAMS.isdisjoint(_named(entry, {})) for entry in records)
-
-
-def is_record(value: dict[str, Any], given: FieldColumns) -> bool:
-    """Whether an object has a program or a description, by whatever name."""
-    return not _FIELDS.isdisjoint(_named(value, given))
-
-
-_OF_PLANNER = "plans of a planner, or names of its actions: no programs of the home"
 _KEYS = "keys of the record"
-_FIELDS = frozenset({"steps", "text", "program", "description"})
-
-
-def _is_steps(value: Any) -> bool:
-    listed = value.split("\n") if isinstance(value, str) else value
-    if not isinstance(listed, list) or not all(isinstance(step, str) or is_action(step) for step in listed):
-        return False
-    return (
-        isinstance(value, list)
-        or looks_like_mapping(value)
-        or any(map(IN_LINE.match, listed))
-        or is_plan(listed)
-        or any(map(STEP.match, listed))
-    )
-
-
-def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
-    """A record with its fields by our names; those of others are guessed where ours are missing."""
-    value = with_step_lists(value)
-    inside = {name: value_at(value, name) for name in given.values() if "." in name and name not in value}
-    value = {**value, **{name: part for name, part in inside.items() if part is not None}}
-    texts = [key for key, part in value.items() if isinstance(part, str) or (part and _is_steps(part))]
-    found = guessed(texts, given, exact=True) if texts else {}
-    if not _PROGRAM_NAMES & (found.keys() | given.keys() | value.keys()) and not all(map(_is_steps, value.values())):
-        program = _key_of_steps({key: value[key] for key in texts if key not in found.values()})
-        found.update({"program": program} if program else {})
-    if "program" in found and "program" not in given and "steps" in texts:
-        found["program"] = "steps"
-    if isinstance(given, Asked):
-        given.note(value, found, texts)
-    named = {field: value[name] for field, name in found.items() if field in given or field not in value}
-    if "program" in given:
-        value = {key: part for key, part in value.items() if key not in _PROGRAMS or key == given["program"]}
-    if "steps" in value:
-        named.pop("program", None)
-    if "text" not in value or "text" in given.values():
-        return {**value, **named}
-    if "program" in named and not _is_steps(value["text"]):
-        return {**{key: part for key, part in value.items() if key != "text"}, **named}
-    return {**value, **{field: part for field, part in named.items() if field != "program" and found[field] != "text"}}
-
-
-_PROGRAMS = frozenset({"steps", "program"})
-_PROGRAM_NAMES = _PROGRAMS | {"text"}
-
-
-def _key_of_steps(value: Mapping[str, Any]) -> str:
-    """The key whose texts read as steps, of a record that no key names."""
-    parts = {key: part if isinstance(part, list) else [part] for key, part in value.items()}
-    return column_of_steps(
-        {key: ["\n".join(part)] for key, part in parts.items() if all(isinstance(each, str) for each in part)}
-    )
 
 
 def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> Item:
@@ -199,8 +109,8 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
         fault = Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         return refused(place, fault, name, line)
     keys = [*value]
-    value = _named(value, given)
-    if _FIELDS.isdisjoint(value):
+    value = named(value, given)
+    if FIELDS.isdisjoint(value):
         value[_KEYS] = keys
     own = current_id(str(value.get("program_id") or value.get("id") or ""))
     wrong = id_fault(own, place, line)
@@ -351,7 +261,7 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
     )
     in_sentences = bool(text.strip()) and (is_mixed or is_plan(listed) or not any(map(STEP.match, listed)))
     places = None
-    if in_sentences and (steps is not None or not is_plan(listed)):
+    if in_sentences and (steps is not None or not is_plan(listed) or is_unmarked(listed)):
         text, places = numbered(listed, words)
     elif any(isinstance(step, Text) for step in listed):
         places = [place for step in listed for place in places_of(step, 0)]

@@ -11,6 +11,7 @@ from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import (
     crowd,
+    found_records,
     ours,
     plans,
     published,
@@ -217,7 +218,7 @@ def _form_of_list(path: Place, place: str) -> str:
 def _form_of(value: Any) -> str:
     if not isinstance(value, dict):
         return ""
-    return scenes.NAME if graph_in(value) is not None and not ours.is_record(value, {}) else DOCUMENT
+    return scenes.NAME if graph_in(value) is not None and not found_records.is_record(value, {}) else DOCUMENT
 
 
 TEXTS = "spoken list"

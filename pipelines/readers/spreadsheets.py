@@ -35,6 +35,7 @@ class Table(NamedTuple):
         columns: the column of each field.
         steps: columns that hold a step each, in order; empty if a cell holds a whole program, or a row is a step.
         number: the column that counts the steps of a program whose steps are rows.
+        by_title: whether rows of one title are the steps of one program, without a number.
     """
 
     first: int
@@ -42,6 +43,7 @@ class Table(NamedTuple):
     columns: Found
     steps: tuple[str, ...] = ()
     number: str = ""
+    by_title: bool = False
 
     @property
     def has_actions(self) -> bool:
@@ -85,6 +87,9 @@ def table_of(path: Place, given: FieldColumns) -> Table:
     if "title" not in found and "title" not in given and found:
         title = next((name for name in texts if name not in found.values() and _is_title(cells[name])), "")
         found.update({"title": title} if title else {})
+    if not (table.number or steps) and _is_by_title(sample, layout, found):
+        found.note = _ROWS_ARE_STEPS
+        return table._replace(by_title=True)
     return table
 
 
@@ -100,6 +105,17 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
     begins = all(goes_on or row[1].strip() in ("0", "1") for goes_on, row in zip([False, *follows], rows, strict=True))
     single = "program" not in found or all(is_one_step(step) for _, _, step in rows if step.strip())
     return may if any(follows) and begins and single else ""
+
+
+def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
+    """Whether most rows hold one step and stand beside another row of their title, which is nowhere else."""
+    if not {"title", "program"} <= found.keys():
+        return False
+    title, program = (layout.columns.index(found[field]) for field in ("title", "program"))
+    runs = [(name, len(list(rows))) for name, rows in itertools.groupby(sample, key=lambda row: row[title])]
+    beside = sum(count for name, count in runs if count > 1 and name)
+    are_apart = len({name for name, _ in runs}) == len(runs)
+    return are_apart and 2 * beside > len(sample) and all(is_one_step(row[program]) for row in sample if row[program])
 
 
 def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:
@@ -164,7 +180,8 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
 def _reader_of(table: Table) -> Callable[[Any], StepRow | None]:
     """What reads a row as a step; no row is one where cells hold whole programs."""
     is_counted = table.number and "program" in table.columns and not table.steps
-    return row_of_table(table.columns, table.number) if is_counted or table.has_actions else lambda _: None
+    are_steps = is_counted or table.has_actions or table.by_title
+    return row_of_table(table.columns, table.number) if are_steps else lambda _: None
 
 
 def _rows(path: Place, place: str, table: Table) -> Iterator[Entry]:

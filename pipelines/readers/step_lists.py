@@ -141,6 +141,8 @@ def _of_objects(parts: list[Any], is_named: bool) -> list[Any] | None:
             found.append(part)
         elif isinstance(part, list) and 0 < len(part) <= 4 and all(map(_is_text, part)) and is_known(part[0]):
             found.append({"action": part[0], "args": part[1:]})
+        elif isinstance(part, dict) and len(part) == 1 and _is_action_name(key := next(iter(part))):
+            found.append({"action": key, "args": part[key]})
         elif isinstance(part, dict) and (text := text_of(part, is_named)) is not None:
             found.append(text)
         else:
@@ -150,3 +152,7 @@ def _of_objects(parts: list[Any], is_named: bool) -> list[Any] | None:
 
 def _is_text(value: Any) -> bool:
     return isinstance(value, str)
+
+
+def _is_action_name(key: str) -> bool:
+    return plain_name(key) not in TEXTS and is_known(key)

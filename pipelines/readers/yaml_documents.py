@@ -9,6 +9,7 @@ import yaml
 
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.columns import Asked
+from hearth.pipelines.readers.found_records import holds_program
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, opened, suffixless
 from hearth.pipelines.readers.placed_texts import text_at, texts_in
 from hearth.pipelines.readers.program_columns import column_of_steps
@@ -49,7 +50,7 @@ def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
 
 def holds_programs(path: Place, place: str) -> bool:
     """Return whether a file has steps in it, or is broken; settings of other programs have none."""
-    return any(isinstance(value, Reject) or ours.holds_program(value) for value, _, _ in _entries(path, place))
+    return any(isinstance(value, Reject) or holds_program(value) for value, _, _ in _entries(path, place))
 
 
 def _entries(path: Place, place: str) -> Iterator[Entry]:

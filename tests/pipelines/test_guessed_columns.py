@@ -247,3 +247,40 @@ def test_an_alias_that_stands_for_much_is_refused(write):
         f"{new}: &{new} [{', '.join([f'*{old}'] * 10)}]\n" for old, new in zip("abcdefg", "bcdefgh", strict=True)
     )
     assert read(write("a.yaml", text)) == ([], [("FILE_TOO_LARGE", 1)])
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        {"task": "Light", "response": {"plan": LAMP}},
+        {"task": "Light", "response": {"content": "1. Walk to lamp\n2. Switch on lamp"}},
+        {"runs": {"one": {"goal": "Light", "trajectory": LAMP}, "two": {"goal": "Light", "trajectory": LAMP}}},
+        {"Light": {"description": "Evening.", "steps": LAMP}, "light": {"title": "Light", "steps": LAMP}},
+        {"task": "Light", "plan": [{"walk": "lamp"}, {"switch_on": ["lamp"]}]},
+        {"high_level_goal": "Light", "low_level_plan": LAMP},
+    ],
+)
+def test_a_record_within_an_object_has_the_title_beside_it(write, value):
+    programs, faults = read(write("a.json", json.dumps(value)))
+    assert {(title, *(step for _, step in steps)) for title, steps in programs} == {("Light", *LINES)} and not faults
+
+
+def test_an_object_among_records_that_is_none_is_a_fault(write):
+    value = {"runs": [{"goal": "Light", "plan": LAMP}, {"goal": "Nap", "answer": None}]}
+    programs, faults = read(write("a.json", json.dumps(value, indent=1)))
+    assert [title for title, _ in programs] == ["Light"] and [code for code, _ in faults] == ["EMPTY"]
+
+
+def test_rows_of_a_task_without_numbers_are_steps_and_single_answers_are_not(write):
+    text = "what,task,done\nWalk to lamp,Light,yes\nSwitch on lamp,Light,no\nSleep,Nap,yes\nStand up,Nap,\n"
+    header, rest = text.split("\n", 1)
+    programs, _ = read(write("a.csv", header.replace("what", "step") + "\n" + rest))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES, ["[Sleep]", "[StandUp]"]]
+    apart = "task,plan\nLight,Walk to lamp\nNap,Sleep\nLight,Switch on lamp\n"
+    assert [len(steps) for _, steps in read(write("b.csv", apart))[0]] == [1, 1, 1]
+
+
+def test_calls_of_tools_among_the_parts_of_a_message(write):
+    used = [{"type": "tool_use", "name": name, "input": {"object": "lamp"}} for name in ("walk", "switch_on")]
+    programs, faults = read(write("a.json", json.dumps({"role": "assistant", "content": used})))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES] and not faults

@@ -1,0 +1,139 @@
+"""The records in a JSON value, with their fields by our names, whatever their keys are."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hearth.kb.language.program_lines import is_plan
+from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, value_at
+from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner
+from hearth.pipelines.readers.models import of_others
+from hearth.pipelines.readers.program_columns import column_of_steps
+from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
+from hearth.pipelines.readers.step_texts import IN_LINE
+from hearth.schemas.blocks import STEP
+from hearth.schemas.failures import Code
+from hearth.storage.rejects import Reject, as_text
+
+
+def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tuple[str, Any]]:
+    """The records of a JSON value with their places in it: itself, or those in the lists and objects that it holds.
+
+    An object of programs by their titles holds a record for each.
+    """
+    if not isinstance(value, dict):
+        return
+    other = of_others(value)
+    if other is not None:
+        yield "", other
+    elif of_planner(value.values()):
+        yield "", Reject.of(Code.UNSUPPORTED_FILE, _OF_PLANNER, suggestion="write steps as [Walk] <shower> (1)")
+    elif is_record(value, given):
+        yield "", value
+    elif value and all(map(_is_steps, (by_title := with_step_lists(value)).values())):
+        for number, (title, steps) in enumerate(by_title.items(), 1):
+            record = {"steps" if isinstance(steps, list) else "program": steps}
+            yield f"[{number}]", record if plain_name(title) in _NO_TITLES else {"title": title, **record}
+    elif depth:
+        yield from _records_inside(value, given, depth - 1)
+
+
+def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> Iterator[tuple[str, Any]]:
+    """The records of the parts of an object, in which one that is no record stands beside those that are.
+
+    A record without a title has the title beside it, or its key.
+    """
+    titled = guessed([key for key, part in value.items() if isinstance(part, str)], {}, exact=True).get("title", "")
+    are_objects = all(isinstance(part, dict) for part in value.values())
+    for key, part in value.items():
+        listed = part if isinstance(part, list) else [part]
+        found = [list(records_in(entry, given, depth)) for entry in listed]
+        for number, (entry, records) in enumerate(zip(listed, found, strict=True), 1):
+            if not records and entry and isinstance(entry, dict) and any(found):
+                yield f".{as_text(key)}[{number}]", entry
+            title = value.get(titled, "" if plain_name(key) in _NO_TITLES or not are_objects else key)
+            for inside, each in records:
+                is_one = isinstance(part, dict) and len(records) == 1
+                yield f".{as_text(key)}[{number}]{inside}", _with_title(each, title, given) if is_one else each
+
+
+def _with_title(record: Any, title: str, given: FieldColumns) -> Any:
+    if not title or not isinstance(record, dict) or "title" in named(record, given):
+        return record
+    return {**record, "title": title}
+
+
+_NO_TITLES = frozenset({
+    "text", "description", "instruction", "instructions", "content", "value", "plan", "plans", "steps", "program",
+    "actions", "output", "answer", "response", "result", "results", "data", "completion", "solution", "message", "body",
+    "function calls", "tool calls", "calls", "trajectory", "script", "action sequence", "prediction", "generation",
+})  # fmt: skip
+"""Keys that say what they hold, and are no names of tasks."""
+
+
+def holds_program(value: Any) -> bool:
+    """Whether steps are among the records of a value."""
+    records = (entry for _, entry in records_in(value, {}) if isinstance(entry, dict))
+    return any(not _PROGRAMS.isdisjoint(named(entry, {})) for entry in records)
+
+
+def is_record(value: dict[str, Any], given: FieldColumns) -> bool:
+    """Whether an object has a program or a description, by whatever name."""
+    return not FIELDS.isdisjoint(named(value, given))
+
+
+_OF_PLANNER = "plans of a planner, or names of its actions: no programs of the home"
+FIELDS = frozenset({"steps", "text", "program", "description"})
+
+
+def _is_steps(value: Any) -> bool:
+    listed = value.split("\n") if isinstance(value, str) else value
+    if not isinstance(listed, list) or not all(isinstance(step, str) or is_action(step) for step in listed):
+        return False
+    return (
+        isinstance(value, list)
+        or looks_like_mapping(value)
+        or any(map(IN_LINE.match, listed))
+        or is_plan(listed)
+        or any(map(STEP.match, listed))
+    )
+
+
+def named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
+    """A record with its fields by our names; those of others are guessed where ours are missing."""
+    value = with_step_lists(value)
+    inside = {name: value_at(value, name) for name in given.values() if "." in name and name not in value}
+    value = {**value, **{name: part for name, part in inside.items() if part is not None}}
+    texts = [key for key, part in value.items() if isinstance(part, str) or (part and _is_steps(part))]
+    found = guessed(texts, given, exact=True) if texts else {}
+    if not _PROGRAM_KEYS & (found.keys() | given.keys() | value.keys()) and not all(map(_is_steps, value.values())):
+        program = _key_of_steps({key: value[key] for key in texts if key not in found.values()})
+        found.update({"program": program} if program else {})
+    if "program" in found and "program" not in given and "steps" in texts:
+        found["program"] = "steps"
+    if "program" in found and not {"title", "description"} & (found.keys() | given.keys() | value.keys()):
+        rest = [key for key in texts if key not in found.values() and is_line(value[key])]
+        found.update({field: key for field, key in guessed(rest, {}).items() if field == "title"})
+    if isinstance(given, Asked):
+        given.note(value, found, texts)
+    named = {field: value[name] for field, name in found.items() if field in given or field not in value}
+    if "program" in given:
+        value = {key: part for key, part in value.items() if key not in _PROGRAMS or key == given["program"]}
+    if "steps" in value:
+        named.pop("program", None)
+    if "text" not in value or "text" in given.values():
+        return {**value, **named}
+    if "program" in named and not _is_steps(value["text"]):
+        return {**{key: part for key, part in value.items() if key != "text"}, **named}
+    return {**value, **{field: part for field, part in named.items() if field != "program" and found[field] != "text"}}
+
+
+_PROGRAMS = frozenset({"steps", "program"})
+_PROGRAM_KEYS = _PROGRAMS | {"text"}
+
+
+def _key_of_steps(value: Mapping[str, Any]) -> str:
+    """The key whose texts read as steps, of a record that no key names."""
+    parts = {key: part if isinstance(part, list) else [part] for key, part in value.items()}
+    return column_of_steps(
+        {key: ["\n".join(part)] for key, part in parts.items() if all(isinstance(each, str) for each in part)}
+    )
