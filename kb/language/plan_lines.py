@@ -151,7 +151,7 @@ def _line(raw: str) -> PlanLine:
     if marker and not step:
         return PlanLine(_CHECKBOX.sub("", text, count=1), 0, indent)
     if step:
-        words = _CHECKBOX.sub("", text[step.end() :], count=1)
+        words = _unquoted(_CHECKBOX.sub("", text[step.end() :], count=1))
         digits = _DIGITS.search(step["number"] or "")
         number = int(digits[0]) if digits else _COUNTS.get((step["number"] or "").lower().strip(" .,:step").removesuffix("ly"), 0)
         is_numbered = step["number"] is not None
@@ -170,6 +170,16 @@ def _line(raw: str) -> PlanLine:
     is_bold = _BOLD.fullmatch(line) is not None and _ASIDE.fullmatch(text) is None and not is_sentence(text)
     heading = marked is not None or TITLE.match(text) is not None or is_bold
     return PlanLine(text, 0 if _BRACKETED.match(text) else None, indent, heading)
+
+
+def _unquoted(words: str) -> str:
+    """Return a step without the quotation marks around it."""
+    whole = words.rstrip(".,;")
+    is_quoted = whole[:1] in _OPENING and whole[-1:] in _CLOSING and len(whole) > 2
+    return whole[1:-1].strip() if is_quoted and not any(mark in whole[1:-1] for mark in "\"“”") else words
+
+
+_OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
 
 
 def _unmarked_up(line: str) -> str:
