@@ -76,7 +76,7 @@ CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
 _EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
-_ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are))\b", re.IGNORECASE)
+_ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE)
 _ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s+(\S.*)", re.IGNORECASE)
 _USUAL = re.compile(
     r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
@@ -211,7 +211,7 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     """Return title and description: the lines before the first step.
 
     The title is the line after `Task:`, else the first heading, else the first line that is not a sentence, else the
-    first; lines before it belong to no description. `Here is my plan:` is not a title.
+    first; the others are the description. `Here is my plan:` is neither.
     """
     is_ordered = ordered(lines)
     first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
@@ -230,7 +230,8 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
         return Header("", "\n".join(line.text for line in found))
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
-    return Header(title, "\n".join(line.text for line in found[at + 1 :]))
+    above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
+    return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
 
 
 def is_aside(text: str) -> bool:
