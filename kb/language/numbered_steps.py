@@ -9,7 +9,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import LOOSE, PlanLine, header_of, is_said_around, plan_line, unexplained
+from hearth.kb.language.plan_lines import LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
 from hearth.kb.language.unmarked_lines import clauses, is_order
@@ -102,9 +102,11 @@ class _StepParser:
             self._take_item(line, raw, number)
         elif kind == Kind.DETAIL and not self._detail(line.text, number) and not self._lacks(line, raw, number):
             self._is_open = self._is_open and line.indent > 0
-            self._notes += [] if is_said_around(line.text) else [(line.text, raw, number)]
+            self._note(line, raw, number)
         elif kind == Kind.TEXT and line.text:
             self._is_open = self._is_open and line.indent > 0
+            if (self.steps or self.faults) and not META.match(line.text):
+                self._note(line, raw, number)
 
     def is_description(self, prose: int) -> bool:
         """Return whether the sentences of a text are its description: less than two thirds of them are steps."""
@@ -121,8 +123,18 @@ class _StepParser:
         found = self._read(line, raw, number)
         if not found and not self._is_heading:
             self._is_heading = True
-            self.faults.pop()
-        self.faults += found if self._is_heading or is_order(line.text) else []
+            fault = self.faults.pop()
+            if not fault.source.lstrip().startswith("#"):
+                self._note(PlanLine(fault.found), fault.source, fault.line)
+        if self._is_heading or is_order(line.text):
+            self.faults += found
+        elif found:
+            self._note(line, raw, number)
+
+    def _note(self, line: PlanLine, raw: str, number: int) -> None:
+        """Count a line that is no step, unless it is a heading, or what a chat says around a plan."""
+        if not is_said_around(line.text) and not line.text.endswith(":"):
+            self._notes.append((line.text, raw, number))
 
     def explained(self) -> list[Diagnostic]:
         """Return a warning that counts the lines that explain steps and are none, if there are any."""

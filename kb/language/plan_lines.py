@@ -76,7 +76,7 @@ CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
 _EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
-_ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are))\b", re.IGNORECASE)
+_ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE)
 _ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s+(\S.*)", re.IGNORECASE)
 _USUAL = re.compile(
     r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
@@ -151,7 +151,7 @@ def _line(raw: str) -> PlanLine:
     if marker and not step:
         return PlanLine(_CHECKBOX.sub("", text, count=1), 0, indent)
     if step:
-        words = _CHECKBOX.sub("", text[step.end() :], count=1)
+        words = _unquoted(_CHECKBOX.sub("", text[step.end() :], count=1))
         digits = _DIGITS.search(step["number"] or "")
         number = int(digits[0]) if digits else _COUNTS.get((step["number"] or "").lower().strip(" .,:step").removesuffix("ly"), 0)
         is_numbered = step["number"] is not None
@@ -170,6 +170,16 @@ def _line(raw: str) -> PlanLine:
     is_bold = _BOLD.fullmatch(line) is not None and _ASIDE.fullmatch(text) is None and not is_sentence(text)
     heading = marked is not None or TITLE.match(text) is not None or is_bold
     return PlanLine(text, 0 if _BRACKETED.match(text) else None, indent, heading)
+
+
+def _unquoted(words: str) -> str:
+    """Return a step without the quotation marks around it."""
+    whole = words.rstrip(".,;")
+    is_quoted = whole[:1] in _OPENING and whole[-1:] in _CLOSING and len(whole) > 2
+    return whole[1:-1].strip() if is_quoted and not any(mark in whole[1:-1] for mark in "\"“”") else words
+
+
+_OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
 
 
 def _unmarked_up(line: str) -> str:
@@ -201,7 +211,7 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     """Return title and description: the lines before the first step.
 
     The title is the line after `Task:`, else the first heading, else the first line that is not a sentence, else the
-    first; lines before it belong to no description. `Here is my plan:` is not a title.
+    first; the others are the description. `Here is my plan:` is neither.
     """
     is_ordered = ordered(lines)
     first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
@@ -220,7 +230,8 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
         return Header("", "\n".join(line.text for line in found))
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
-    return Header(title, "\n".join(line.text for line in found[at + 1 :]))
+    above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
+    return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
 
 
 def is_aside(text: str) -> bool:

@@ -198,7 +198,8 @@ def _marked(placed: list[Placed]) -> list[Placed]:
     if any(line.number is not None for _, line in placed):
         return placed
     plain = [n for n, (_, line) in enumerate(placed) if line.text and _is_plain(line)]
-    is_titled = any(line.heading for _, line in placed)
+    named = next((n for n, (_, line) in enumerate(placed) if line.heading and not _is_plain(line)), -1)
+    is_titled, plain = named >= 0, [n for n in plain if n > named]
     if plain and not is_titled:
         top, texts = plain[0], [placed[n].line.text for n in plain]
         is_apart = top + 1 < len(placed) and not placed[top + 1].line.text
