@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from hearth.kb.language.forms import form_of
-from hearth.kb.language.forms.code import calls_of
+from hearth.kb.language.forms.code_plans import calls_of
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list

@@ -3,12 +3,12 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.code import CODE
+from hearth.kb.language.forms.code_plans import CODE
 from hearth.kb.language.forms.commands import COMMANDS
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
 from hearth.kb.language.forms.pairs import PAIRS
-from hearth.kb.language.forms.pddl import PDDL
+from hearth.kb.language.forms.pddl_plans import PDDL
 from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 
-from hearth.kb.language.forms.code import calls_of
+from hearth.kb.language.forms.code_plans import calls_of
 from hearth.kb.language.forms.form import Form, Placed, step, title
 from hearth.kb.language.plan_lines import META, plan_line
 from hearth.kb.language.unmarked_lines import chained, clauses, is_like_step
