@@ -16,13 +16,16 @@ def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> No
     Tables: activities, descriptions, programs, steps, homes, home_nodes, home_edges, environments, executions, ticks,
     perturbations, repairs, splits, sketches, frames, videos, clips, demonstration_frames, vocabulary, rejects, ledger.
     Macros: program_text(program_id), graph_nodes(execution_id, tick), graph_edges(execution_id, tick),
-    final_state(execution_id). View start_relations: edges per relation at the start of all executions. The dataset is
-    opened read-only. What `challenge build` writes has tasks, demonstrations, episodes, trajectories, posteriors, and
-    the views goal_predicates and demonstration_steps.
+    final_state(execution_id). View originals: the executions of original programs, a row each, without those in
+    perturbed environments. View execution_kinds: whether an execution is original, perturbed or repaired. View
+    start_relations: edges per relation at the start of all executions. The dataset is opened read-only. What `challenge
+    build` writes has tasks, demonstrations, episodes, trajectories, posteriors, and the views goal_predicates and
+    demonstration_steps.
 
     \b
     Examples:
       python cli.py query data_out "SELECT action, count(*) FROM steps GROUP BY action ORDER BY 2 DESC"
+      python cli.py query data_out "SELECT count(*) AS originals, count(*) FILTER (executable) AS run FROM originals"
       python cli.py query data_out "DESCRIBE programs"
     """
     import sys

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.damage import reading, refused_question, using
 from hearth.datasets.file_ranges import reading_between
-from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
+from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, describe, without_zones
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.program_entries import Entry, Run
 from hearth.datasets.published_manifest import published_manifest
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
 
 
-OWN = """NOT EXISTS (SELECT 1 FROM perturbations x
-    WHERE x.environment_id = e.environment_id AND x.parent_id = e.program_id)"""
+OWN = "NOT is_perturbed(e.environment_id, e.program_id)"
 """The condition in SQL on rows `e` of `executions` for those that are not of originals in perturbed environments."""
 
 
@@ -167,8 +166,8 @@ class Dataset:
         return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
 
     def __getattr__(self, name: str) -> Any:
-        if name not in (*TABLES, "steps", "ticks"):
-            raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, steps and ticks")
+        if name not in (*TABLES, *VIEWS):
+            raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, and views {', '.join(VIEWS)}")
         return steady(self.folder, lambda: self.connection.table(name))
 
     def __len__(self) -> int:

@@ -18,6 +18,9 @@ from hearth.storage.manifest import FORMAT
 CATALOG = "catalog.duckdb"
 SQL = "catalog.sql"
 
+VIEWS = ("steps", "ticks", "execution_kinds", "originals", "start_relations")
+"""Views that are not of one table's files."""
+
 
 _BESIDE = (
     r"regexp_replace(regexp_extract(current_setting('temp_directory'), '^(.*[/\\])catalog\.duckdb\.tmp$', 1), "
