@@ -10,6 +10,7 @@ from functools import reduce
 from itertools import product
 from operator import and_
 
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
@@ -29,6 +30,8 @@ class Binding:
 
     nodes: dict[Key, int]
     tried: int
+
+    __repr__ = brief
 
     def apply(self, program: Program) -> Program:
         """The program bound; what has a node keeps it."""

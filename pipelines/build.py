@@ -17,6 +17,7 @@ from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, stage
 from hearth.pipelines.engine.tiers import tiered
 from hearth.pipelines.render import no_pictures
+from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
@@ -53,6 +54,8 @@ class Funnel:
     dataset: Path | None
     columns: dict[str, dict[str, str]]
     unread: tuple[str, ...]
+
+    __repr__ = brief
 
     def to_json(self) -> dict[str, Any]:
         """Plain values."""

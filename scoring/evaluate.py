@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.brief import brief
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Program
 from hearth.scoring.bootstrap import Interval, intervals
@@ -82,6 +83,8 @@ class Scored:
     graph: GraphScore | None = None
     goal: Progress | None = None
     comparable: bool | None = None
+
+    __repr__ = brief
 
     @property
     def missing(self) -> bool:
@@ -163,6 +166,8 @@ class Summary:
     means: Mapping[str, Interval]
     errors: Mapping[ErrorClass, int]
     failed_at: Mapping[int, int]
+
+    __repr__ = brief
 
 
 def signatures(options: Options, own: int = 0) -> dict[str, str]:

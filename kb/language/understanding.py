@@ -9,6 +9,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.phrases import Parse, parses
 from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
+from hearth.schemas.brief import brief
 
 ACCEPTED = 0.75
 """The similarity from which the nearest valid instruction is accepted as the meaning."""
@@ -31,12 +32,16 @@ class Candidate(NamedTuple):
     action: Action
     names: tuple[str, ...]
 
+    __repr__ = brief
+
 
 class Understood(NamedTuple):
     """The meaning of a sentence; `meant` is None where no candidate is near or two are equally near."""
 
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
+
+    __repr__ = brief
 
     @property
     def ambiguous(self) -> bool:
