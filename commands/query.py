@@ -44,8 +44,8 @@ def query(
       python cli.py query data_out "DESCRIBE programs"
     """
     from hearth.challenges.challenge_tables import ChallengeData
-    from hearth.datasets.answers import distinct, plain
     from hearth.datasets.dataset import Dataset
+    from hearth.datasets.written_answers import distinct, plain
 
     if (csv and tsv) or (as_json and (csv or tsv)):
         raise typer.BadParameter("only one of --csv, --tsv and --json can be written")
@@ -67,7 +67,7 @@ def query(
 
 def _write(dataset: Dataset, text: str, files: Sequence[Path | None], separator: str) -> bool:
     """Write the answer as it was asked for, if it was: into files, or as separated lines to the terminal."""
-    from hearth.datasets.answers import write_answer, write_separated
+    from hearth.datasets.written_answers import write_answer, write_separated
 
     out, parquet = files
     for file, form in ((parquet, ".parquet"), (out, {"": "", ",": ".csv", "\t": ".tsv"}[separator])):
@@ -81,6 +81,6 @@ def _write(dataset: Dataset, text: str, files: Sequence[Path | None], separator:
 
 def _cell(value: Any) -> Any:
     """Text for a cell: one line, nested values as JSON; whole numbers as they are, for many are ids."""
-    from hearth.datasets.answers import line_of
+    from hearth.datasets.written_answers import line_of
 
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else line_of(value)

@@ -36,7 +36,8 @@ class GraphPair(NamedTuple):
     start: EnvironmentGraph
     final: EnvironmentGraph
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 class ExecutionGraphs(Sequence[GraphPair]):

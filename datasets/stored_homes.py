@@ -16,7 +16,8 @@ class StoredHome(NamedTuple):
     graph: EnvironmentGraph
     working: WorkingGraph
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
     @classmethod
     def read(cls, rows: Callable[[str, str], list[Any]], name: str) -> StoredHome:

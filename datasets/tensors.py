@@ -26,7 +26,8 @@ class GraphSample(NamedTuple):
     graph: EnvironmentGraph
     bound: Bindings
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 class Tensors(NamedTuple):
@@ -57,7 +58,8 @@ class Tensors(NamedTuple):
     objects: np.ndarray
     lengths: np.ndarray
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def to_tensors(samples: Iterable[GraphSample], vocabulary: Iterable[tuple[str, str, int]]) -> Tensors:

@@ -67,7 +67,8 @@ class Condition(NamedTuple):
     code: Code
     option: str = ""
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +161,8 @@ class Placement(NamedTuple):
     weight: int
     evidence: str
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def edge(self) -> str:
@@ -180,7 +182,8 @@ class Association(NamedTuple):
     weight: int
     evidence: str
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 EDGES = {"ON": "ON", "IN": "INSIDE", "NEARBY": "CLOSE"}
@@ -219,7 +222,8 @@ class Kind(NamedTuple):
     parent: str
     gloss: str
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @dataclass(frozen=True, slots=True)

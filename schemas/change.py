@@ -77,7 +77,8 @@ class Parts(NamedTuple):
     states: Set[State]
     nodes: Mapping[int, Node] = _NO_NODES
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:

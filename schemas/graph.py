@@ -39,7 +39,8 @@ class EdgeColumns(NamedTuple):
     relations: Any
     targets: Any
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
     def rows(self) -> Iterator[Edge]:
         """The edges, as plain tuples, which equal `Edge` and are made faster."""

@@ -76,7 +76,8 @@ class Literal(NamedTuple, Generic[T_co]):
     terms: tuple[T_co, ...] = ()
     negated: bool = False
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
     @classmethod
     def of(cls, name: str, *terms: T) -> Literal[T]:

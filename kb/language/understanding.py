@@ -32,7 +32,8 @@ class Candidate(NamedTuple):
     action: Action
     names: tuple[str, ...]
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 class Understood(NamedTuple):
@@ -41,7 +42,8 @@ class Understood(NamedTuple):
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def ambiguous(self) -> bool:

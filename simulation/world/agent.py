@@ -51,7 +51,8 @@ class Agent(NamedTuple):
     pose: Pose | None = None
     stride: float = STRIDE
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def held(self) -> int:

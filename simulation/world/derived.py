@@ -38,7 +38,8 @@ class Movable(NamedTuple):
     room: int
     near: int
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
     def edges(self, ids: Sequence[int]) -> Iterator[Edge]:
         """The same as edges, CLOSE one way round."""

@@ -24,7 +24,8 @@ class Moved(NamedTuple):
     facing: int = 0
     extra: dict[int, int] = {}  # noqa: RUF012 - shared and never written to
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 NOTHING = Moved()

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import hearth
 from hearth import cli
-from hearth.datasets import answers
+from hearth.datasets import written_answers as answers
 
 SQL = "SELECT program_id, title, steps, len(steps) AS length FROM programs ORDER BY program_id"
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import date, datetime, time
 from decimal import Decimal
 from pathlib import Path
+from types import MappingProxyType
 from typing import IO, Any
 
 import orjson
@@ -47,7 +48,9 @@ def distinct(columns: list[str]) -> list[str]:
     return found
 
 
-def write_separated(dataset: Dataset, query: str, to: IO[str], separator: str = ",") -> int:
+def write_separated(
+    dataset: Dataset, query: str, to: IO[str], separator: str = ",", asked: Mapping[str, Any] = MappingProxyType({})
+) -> int:
     """Write an answer as lines of cells, and return how many rows it has.
 
     No cell of text is a formula to a spreadsheet, or moves a terminal's cursor: see `storage.csv_files.writer_of`.
@@ -55,7 +58,7 @@ def write_separated(dataset: Dataset, query: str, to: IO[str], separator: str = 
     Raises:
         HearthError: as of `Dataset.sql`.
     """
-    columns, rows = dataset.batches(query, _BATCH)
+    columns, rows = dataset.batches(query, _BATCH, **asked)
     write = writer_of(to, separator)
     write(distinct(columns))
     number = 0
