@@ -34,7 +34,7 @@ def safe_cell(text: str) -> str:
 def writer_of(file: IO[str], delimiter: str = ",") -> Callable[[Iterable[object]], object]:
     """Return a function that writes a row of cells as a line.
 
-    No text is a spreadsheet's formula (`safe_cell`); characters that would move a terminal's cursor are escaped.
+    Spreadsheets read every cell as text (`safe_cell`); characters that would move a terminal's cursor are escaped.
     """
     writer = csv.writer(file, delimiter=delimiter, lineterminator="\n")
     return lambda row: writer.writerow(

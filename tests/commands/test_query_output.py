@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 import hearth
 from hearth import cli
+from hearth.commands import output
 from hearth.datasets import written_answers as answers
 
 SQL = "SELECT program_id, title, steps, len(steps) AS length FROM programs ORDER BY program_id"
@@ -122,3 +123,15 @@ def test_an_unknown_name_is_no_fault_of_syntax_and_has_near_names(dataset, sql, 
 
 def test_a_fault_of_syntax_stays_one(dataset):
     assert "error[SYNTAX]: Parser Error" in run(dataset, "SELEC 1").output
+
+
+def test_nothing_to_compare_is_an_empty_cell(capsys):
+    output.table(("activity", "LCS"), [("Read", float("nan")), ("Sleep", 0.5)])
+    assert capsys.readouterr().out.splitlines() == ["activity    LCS", "Read", "Sleep     0.500"]
+
+
+def test_a_class_without_conditions_is_said_so(dataset):
+    shown = CliRunner().invoke(cli.app, ["augmented", str(dataset)]).stdout.splitlines()
+    headings = [number for number, line in enumerate(shown) if line.startswith("Conditions of the start")]
+    assert all(shown[number + 1 : number + 2] and shown[number + 1].startswith("  ") for number in headings)
+    assert "No condition of the start names a sauce pan." in shown
