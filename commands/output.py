@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from math import isnan
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -131,7 +132,7 @@ def _text(cell: Any) -> str:
     if isinstance(cell, int):
         return f"{cell:,}"
     if isinstance(cell, float):
-        return f"{cell:,.3f}"
+        return "" if isnan(cell) else f"{cell:,.3f}"  # not a number: there was nothing to compare
     return shown(str(cell))
 
 

@@ -17,6 +17,7 @@ from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, stage
 from hearth.pipelines.engine.tiers import tiered
 from hearth.pipelines.render import no_pictures
+from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
@@ -58,6 +59,8 @@ class Funnel:
     def fuzzy(self) -> int:
         """Programs with a step that was corrected or shortened."""
         return self.stages["validate"].tally["fuzzy"] if "validate" in self.stages else 0
+
+    __repr__ = brief
 
     def to_json(self) -> dict[str, Any]:
         """Plain values."""

@@ -21,8 +21,8 @@ PACKAGES = (
 
 ENTRY_POINTS = {
     "A dataset": (
-        "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:Dataset.to_tensors", "hearth:ExecutionGraphs",
-        "hearth.datasets.program_entries:Run.graph", "hearth:verify", "hearth:export",
+        "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:attach", "hearth:Dataset.to_tensors",
+        "hearth:ExecutionGraphs", "hearth.datasets.program_entries:Run.graph", "hearth:verify", "hearth:export",
     ),
     "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
     "Homes": (

@@ -13,6 +13,7 @@ from hearth.kb.language.things import thing_of
 from hearth.kb.language.typos import corrected
 from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
+from hearth.schemas.brief import brief
 
 ACCEPTED = 0.75
 """The similarity from which the nearest valid instruction is accepted as the meaning where `fuzzy` is loose."""
@@ -38,6 +39,9 @@ class Candidate(NamedTuple):
     action: Action
     names: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return brief(self)
+
 
 class Understood(NamedTuple):
     """The meaning of a sentence.
@@ -51,6 +55,9 @@ class Understood(NamedTuple):
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
     ambiguous: bool = False
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @lru_cache(maxsize=65_536)
