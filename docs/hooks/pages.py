@@ -106,7 +106,7 @@ def commands() -> str:
     """The help of every command."""
     from hearth import cli
 
-    lines = ["# Commands", "", "`python cli.py COMMAND`, or `hearth COMMAND` once installed."]
+    lines = ["# Commands", "", "`hearth COMMAND`; in a checkout `.venv/bin/hearth` or `python cli.py`."]
     for section, entries in cli.COMMANDS.items():
         lines += ["", f"## {section}"]
         for name in entries:

@@ -12,6 +12,8 @@ from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES, nested
 
+ROOT = Path(__file__).resolve().parents[2]
+
 
 @pytest.fixture(scope="module")
 def pages(module):
@@ -38,7 +40,7 @@ def test_actions_objects_tables_and_failures_are_there(pages):
 
 @pytest.mark.parametrize("name", ["tables.md", "pictures/tables.svg"])
 def test_the_page_of_the_tables_is_current(pages, name):
-    kept = Path(__file__).resolve().parents[2] / "docs" / name
+    kept = ROOT / "docs" / name
     assert kept.read_text("utf-8") == pages.WRITTEN[name](), "write it with: python docs/hooks/pages.py"
 
 
@@ -56,3 +58,10 @@ def test_every_module_has_a_page_and_a_line(pages):
     listed = pages.library()
     for name in pages.modules():
         assert f"]({Path(name).name}): " in listed, name
+
+
+def test_pages_for_all_installations_name_the_command_that_all_have():
+    pages = [*(ROOT / "docs").rglob("*.md"), *(ROOT / "web/templates").rglob("*.html")]
+    of_a_checkout = {"docs/examples/new-action.md"}  # it changes Hearth, and runs what it changed
+    wrong = {page.relative_to(ROOT).as_posix() for page in pages if "python cli.py" in page.read_text("utf-8")}
+    assert wrong == of_a_checkout
