@@ -14,7 +14,7 @@ from hearth.pipelines.engine.overlays import kept_overlays, overlays
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.stages import STAGES, stage
+from hearth.pipelines.engine.stages import STAGES, record_of, stage
 from hearth.pipelines.engine.tiers import tiered
 from hearth.pipelines.render import no_pictures
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -42,6 +42,7 @@ class Funnel:
 
     Attributes:
         stages: counts by stage, in order, of the stages that have run.
+        records: what a record of each of them is, and what was left out.
         fresh: stages that were not up to date.
         dataset: the folder of the published dataset; None before it is published.
         columns: the columns of each table that was read, by field.
@@ -49,6 +50,7 @@ class Funnel:
     """
 
     stages: dict[str, Counts]
+    records: dict[str, str]
     fresh: tuple[str, ...]
     dataset: Path | None
     columns: dict[str, dict[str, str]]
@@ -58,6 +60,7 @@ class Funnel:
         """Plain values."""
         return {
             "stages": {name: counts.to_json() for name, counts in self.stages.items()},
+            "records": self.records,
             "fresh": list(self.fresh),
             "dataset": str(self.dataset) if self.dataset else None,
             "columns": self.columns,
@@ -143,10 +146,11 @@ def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
     """The counts in the manifests of a build."""
     manifests = {name: read_manifest(settings.folder(name)) for name in STAGES}
     counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
+    records = {name: record_of(name, manifest.content["plan"]) for name, manifest in manifests.items() if manifest}
     published = manifests["publish"]
     ingested = manifests["ingest"]
     columns = ingested.content.get("columns", {}) if ingested else {}
-    return Funnel(counts, fresh, published.folder if published else None, columns, tuple(_unread(ingested)))
+    return Funnel(counts, records, fresh, published.folder if published else None, columns, tuple(_unread(ingested)))
 
 
 def _unread(ingested: Manifest | None) -> Iterator[str]:

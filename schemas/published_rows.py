@@ -196,7 +196,7 @@ class LedgerRow(TypedDict):
     """What became of a stage's records: `records_in = records_through + records_rejected`."""
 
     stage: Annotated[str, "the stage"]
-    record: Annotated[str, "what its records are; the rows of other kinds go on as they are"]
+    record: Annotated[str, "what its records are, and what was left out; the rows of other kinds go on as they are"]
     order: Annotated[int, "place in the pipeline, from 0"]
     records_in: Annotated[Long, "records read"]
     records_through: Annotated[Long, "records that gave at least one row"]

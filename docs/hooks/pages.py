@@ -260,23 +260,29 @@ def diagram() -> str:
 
 
 def failures() -> str:
-    """All failure codes and their repairs."""
-    from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
+    """All failure codes, what they mean, and what a person and the repairs do about them."""
+    from hearth.schemas.failure_words import REMEDIES, meaning
     from hearth.schemas.failures import Code
 
     lines = [
         "# Failures",
         "",
-        "All codes of failures and rejects.",
+        "All codes of failures, of rejects and of faults of files. Where a program fails, `augment` and `hearth repair`",
+        "try the repair; a reject has its place, and often what to do, in its row.",
         "",
-        "| code | repair |",
-        "|---|---|",
+        "| code | meaning | what to do | repair |",
+        "|---|---|---|---|",
     ]
-    for code in Code:
-        handler = HANDLERS.get(code)
-        about = (handler.__doc__ or "").strip().splitlines()[0] if handler else UNREPAIRABLE.get(code, "")
-        lines.append(f"| `{code}` | {about} |")
+    lines += (f"| `{code}` | {meaning(code)} | {REMEDIES.get(code, '')} | {_repair(code)} |" for code in Code)
     return "\n".join(lines) + "\n"
+
+
+def _repair(code: Any) -> str:
+    from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
+
+    if handler := HANDLERS.get(code):
+        return str(handler.__doc__ or "").strip().splitlines()[0]
+    return f"none: {UNREPAIRABLE[code]}" if code in UNREPAIRABLE else ""
 
 
 def library() -> str:
