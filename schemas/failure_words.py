@@ -148,6 +148,9 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
     (Code.CONFLICT, "one instruction an agent and tick"): "one character is to do two things at the same time",
     (Code.NOT_SIMULATED, "a character at a place"): "the home does not say where the character stands",
     (Code.UNBOUND, "a step"): "the program has no step",
+    (Code.DUPLICATE, "a program of its own"): "{actual}",
+    (Code.UNPERTURBED, "a program of its own"): "{actual}",
+    (Code.UNPERTURBED, "a precondition that can be perturbed"): "it has no precondition that can be perturbed",
 }
 """Words of a failure whose code alone does not tell it from others, by what was expected."""
 

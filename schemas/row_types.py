@@ -220,7 +220,7 @@ class PinholeRow(TypedDict):
     """Intrinsics of a camera, pixels."""
 
     fx: Annotated[float, "focal length, horizontally"]
-    fy: Annotated[float, "focal length, vertically"]
+    fy: Annotated[float, "focal length, vertically; negative, for y points up and rows count downwards"]
     cx: Annotated[float, "principal point, from the left"]
     cy: Annotated[float, "principal point, from above"]
 
@@ -243,7 +243,7 @@ class TrackRow(TypedDict):
     tick: Annotated[int, "the tick that it shows"]
     camera: Annotated[str, "name of the camera"]
     intrinsics: Annotated[PinholeRow, "of the camera, pixels"]
-    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
+    pose: Annotated[list[float], "camera (x right, y up, z forward) to world (x east, y up, z north), 4x4 row by row"]
 
 
 class VariationRow(TypedDict):

@@ -150,7 +150,7 @@ class RenderedRow(TypedDict):
     width: Annotated[int, "pixels"]
     height: Annotated[int, "pixels"]
     intrinsics: Annotated[PinholeRow, "pinhole camera, pixels"]
-    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
+    pose: Annotated[list[float], "camera (x right, y up, z forward) to world (x east, y up, z north), 4x4 row by row"]
     start_time: Annotated[float | None, "seconds from the start of the execution; null for pictures between ticks"]
     end_time: Annotated[float | None, "the same"]
     layout_made: Annotated[bool, "whether the home had no geometry, and was laid out by its relations"]
@@ -209,7 +209,7 @@ class DemonstratedRow(TypedDict):
     width: Annotated[int, "pixels"]
     height: Annotated[int, "pixels"]
     intrinsics: Annotated[PinholeRow, "pinhole camera, pixels"]
-    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
+    pose: Annotated[list[float], "camera (x right, y up, z forward) to world (x east, y up, z north), 4x4 row by row"]
     layout_made: Annotated[bool, "whether the home had no geometry, and was laid out by its relations"]
     file: Annotated[
         str,

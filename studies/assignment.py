@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import lcm
 from random import Random
 
@@ -104,6 +104,28 @@ def _ordered(
         yield from sorted(stretch[first : first + size], key=lambda each: order[each.condition])
 
 
+def balanced(study: Study, groups: int = 1) -> list[str]:
+    """Return the nearest values of `people` and of `repeats`, one changed at a time, with which all is balanced."""
+    people = sorted(range(1, study.trials + 1), key=lambda number: abs(number - study.people))
+    changed = {"people": people, "repeats": range(study.repeats + 1, study.repeats + TRIED + 1)}
+    return [
+        f"`{name}: {number}`" for name, numbers in changed.items() for number in _fitting(study, name, numbers, groups)
+    ]
+
+
+def _fitting(study: Study, name: str, numbers: Sequence[int], groups: int) -> Iterator[int]:
+    """Find the first number that does; none of as many as are tried may."""
+    for number in numbers[:TRIED]:
+        other = replace(study, **{name: number})
+        if other.people <= other.trials and not imbalances(other, assignment(other, groups)):
+            yield number
+            return
+
+
+TRIED = 60
+"""Values of a field that are tried for a study that is not balanced."""
+
+
 def imbalances(study: Study, slots: Slots) -> list[str]:
     """What is not balanced in an assignment; empty where all is."""
     found = []
@@ -118,7 +140,8 @@ def imbalances(study: Study, slots: Slots) -> list[str]:
         under.update(each.condition for each in slot)
         fewest = min(under, key=lambda name: under[name])
         if under[fewest] < study.least:
-            found.append(f"place {number + 1} has {under[fewest]} trials under `{fewest}`, not {study.least}")
+            few = f"{under[fewest]} trial{'s' * (under[fewest] != 1)}"
+            found.append(f"place {number + 1} has {few} under `{fewest}`, where `at_least` is {study.least}")
         twice = [item for item, count in Counter(each.item for each in slot).items() if count > 1]
         if twice:
             found.append(f"place {number + 1} has task {twice[0] + 1} twice")

@@ -324,3 +324,12 @@ def test_arrays_are_the_same_bytes_in_every_process():
         return done.stdout.strip()
 
     assert digest("1") == digest("2") != ""
+
+
+def test_a_step_before_the_first_reset_is_a_fault(one):
+    env = HomeEnv(Setting(one))
+    with pytest.raises(HearthError, match=r"`step` came before the first `reset`.*call `reset\(\)`") as caught:
+        env.step(0)
+    assert caught.value.diagnostics[0].code == Code.OUT_OF_ORDER
+    env.reset(seed=1)
+    env.step(0)
