@@ -267,8 +267,8 @@ def failures() -> str:
     lines = [
         "# Failures",
         "",
-        "All codes of failures, of rejects and of faults of files. Where a program fails, `augment` and `hearth repair`",
-        "try the repair; a reject has its place, and often what to do, in its row.",
+        "All codes of failures, of rejects and of faults of files. Where a program fails, `augment` and `repair` try the",
+        "repair; a reject has its place, and often what to do, in its row.",
         "",
         "| code | meaning | what to do | repair |",
         "|---|---|---|---|",
