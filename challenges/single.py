@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from hearth.agents.protocol import Agent
 from hearth.challenges.action_codes import Number
-from hearth.challenges.parallel import MOST_SEED
 from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
 from hearth.challenges.seen_arrays import Arrays
-from hearth.challenges.session import Session, Setting
+from hearth.challenges.session import MOST_SEED, Session, Setting
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure

@@ -8,6 +8,7 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engine.build_homes import Homes, known_homes
 from hearth.pipelines.engine.engines import engine as make_engine
 from hearth.pipelines.engine.estimates import forecast
 from hearth.pipelines.engine.overlays import kept_overlays, overlays
@@ -120,6 +121,7 @@ def build(
         if only:
             settings = kept_overlays(settings, only)
         overlays(settings)  # their faults are reported before the sources are read
+        known_homes(settings)
         with locked(Path(folder)), make_engine(engine, workers, scheduler) as pool:
             for name in [only] if only else list(STAGES):
                 if name == "render" and progress and (settings.pictures or settings.videos):
@@ -131,6 +133,8 @@ def build(
                         progress.note(expected)
                 if result.fresh:
                     fresh.append(name)
+                if name == "ingest":
+                    Homes(settings).names()
                 if name == "ingest" or not only:
                     _check_left(name, settings)
         return funnel(settings, tuple(fresh))

@@ -239,7 +239,7 @@ def _pose(camera: Camera) -> list[float]:
 
 
 def prepare(settings: Settings) -> Plan:
-    """Choose the executions; none if libraries for pictures are not installed, which is no fault of the data."""
+    """Choose the executions; none if libraries for pictures are not installed, which is not a fault of the data."""
     chosen, absent = _chosen(settings), lacking("pictures")
     if absent:
         left = f"{len(chosen['executions']):,} left out: {', '.join(absent)} not installed"

@@ -267,8 +267,8 @@ def failures() -> str:
     lines = [
         "# Failures",
         "",
-        "All codes of failures, of rejects and of faults of files. Where a program fails, `augment` and `repair` try the",
-        "repair; a reject has its place, and often what to do, in its row.",
+        "All codes of failures, of rejects and of faults of files. Where a program fails, `augment` and `repair` try",
+        "the repair; a reject has its place, and often what to do, in its row.",
         "",
         "| code | meaning | what to do | repair |",
         "|---|---|---|---|",
@@ -311,11 +311,16 @@ def modules() -> dict[str, str]:
 
 COPIED = {
     "README.md": "index.md",
+    "data_raw/homes/README.md": "homes.md",
+    "kb/README.md": "knowledge.md",
     "CONTRIBUTING.md": "about/contributing.md",
     "CHANGELOG.md": "about/changes.md",
     "benchmarks/RESULTS.md": "about/speed.md",
 }
 """Documents of the checkout that are pages, too."""
+
+FOR_ALL = ("data_raw/homes/README.md", "kb/README.md")
+"""Those of them whose readers may have no checkout: `hearth` is the command that all have."""
 
 ELSEWHERE = {"docs/examples": "examples/own-corpus.md", "NOTICE": "about/notice.md", "LICENSE": "about/notice.md"}
 """What documents link to and the documentation has elsewhere."""
@@ -330,7 +335,8 @@ def copied(file: str) -> str:
         found = known.get(match[1], match[1].removeprefix("docs/"))
         return f"]({os.path.relpath(found, place)})"
 
-    return re.sub(r"\]\(((?:docs/|[A-Z]+)[^)#\s]*)\)", moved, (ROOT / file).read_text("utf-8"))
+    text = re.sub(r"\]\(((?:docs/|data_raw/|kb/|[A-Z]+)[^)#\s]*)\)", moved, (ROOT / file).read_text("utf-8"))
+    return text.replace("python cli.py", "hearth") if file in FOR_ALL else text
 
 
 def cost() -> str:

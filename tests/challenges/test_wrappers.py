@@ -168,6 +168,7 @@ def test_approach_goes_towards_the_thing_and_then_the_place(maple):
     progress = Progress.start(goal, world)
     far = metres_left(progress, world, 0)
     env = HomeEnv(Setting(opening(maple, "HOLDS(agent, milk)", agents=1)))
+    env.reset(seed=1)
     env.session._begin(world, Progress.start(env.session.progress.goal, world).goal)
     walk_and_grab(env, "milk")
     held = env.session.env.world

@@ -71,3 +71,10 @@ def test_pages_for_all_installations_name_the_command_that_all_have():
     of_a_checkout = {"docs/examples/new-action.md"}  # it changes Hearth, and runs what it changed
     wrong = {page.relative_to(ROOT).as_posix() for page in pages if "python cli.py" in page.read_text("utf-8")}
     assert wrong == of_a_checkout
+
+
+def test_homes_and_the_knowledge_have_pages_that_name_the_command_of_all(pages):
+    for page, words in (("homes.md", "home: hut"), ("knowledge.md", "waffle_iron")):
+        text = pages.PAGES[page]()
+        assert words in text and "python cli.py" not in text
+    assert "](homes.md)" in pages.PAGES["index.md"]() and "](knowledge.md)" in pages.PAGES["index.md"]()

@@ -153,7 +153,14 @@ def test_without_their_libraries_the_environments_say_what_to_install(module):
     code = f"import sys\nsys.modules.update(dict.fromkeys({names}))\nimport hearth.challenges.{module}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert re.search(r"this needs \w+, which is not installed", done.stderr)
-    assert "run `make setup`, or `pip install '.[agents]'`" in done.stderr
+    assert "run `make setup` in a checkout, else `pip install '.[agents]'`" in done.stderr
+
+
+def test_an_environment_of_one_learner_needs_no_pettingzoo():
+    pytest.importorskip("gymnasium", reason="the extra `agents` is not installed")
+    code = "import sys\nsys.modules['pettingzoo'] = None\nimport hearth.challenges.single"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_extras_are_those_of_the_package():
