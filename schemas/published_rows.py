@@ -136,7 +136,7 @@ class _Tried(TypedDict):
     environment_id: Annotated[str | None, "the perturbed environment"]
     parent_id: Annotated[str | None, "the program whose preconditions were perturbed"]
     home: Annotated[str, "the home"]
-    outcome: Annotated[str, "REPAIRED, or why no program came of repairing: DUPLICATE, NO_HANDLER, LOOP, ..."]
+    outcome: Annotated[str, "REPAIRED, or the code of the failure by which repairing gave no program, such as LOOP"]
 
 
 class RepairedRow(_Tried, RepairRow):
@@ -155,7 +155,7 @@ class SplitRow(TypedDict):
     ]
     execution_id: Annotated[str, "the execution"]
     program_id: Annotated[str, "its program"]
-    part: Annotated[str | None, "train, validation, test...; null where the split has no place for it"]
+    part: Annotated[str | None, "train, validation, test or another part of this split; null where the split has no place for it"]
 
 
 class FrameRow(RenderedRow):

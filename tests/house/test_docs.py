@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from hearth import cli
 from hearth.datasets.format.catalog import comments
 from hearth.kb.loading.load import default
+from hearth.repair.perturb import PERTURBATIONS
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES, nested
 
@@ -78,3 +80,10 @@ def test_homes_and_the_knowledge_have_pages_that_name_the_command_of_all(pages):
         text = pages.PAGES[page]()
         assert words in text and "python cli.py" not in text
     assert "](homes.md)" in pages.PAGES["index.md"]() and "](knowledge.md)" in pages.PAGES["index.md"]()
+
+
+def test_the_page_of_the_tables_names_what_there_is_and_no_module(pages):
+    text = pages.tables()
+    assert not re.findall(r"\| [^|]*(?:, \.\.\.|\w\.\.\.|see `)[^|]* \|", text)
+    (kinds,) = re.findall(r"what was changed: (.*?) \|", text)
+    assert re.split(", | or ", kinds) == [*PERTURBATIONS]
