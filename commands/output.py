@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from math import isnan
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -124,7 +125,7 @@ def _rich_table(columns: Sequence[str], rows: list[list[str]], numeric: list[boo
 
 
 def _text(cell: Any) -> str:
-    if cell is None:
+    if cell is None or (isinstance(cell, float) and isnan(cell)):
         return ""
     if isinstance(cell, bool):
         return "yes" if cell else "no"
