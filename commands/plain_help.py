@@ -20,8 +20,9 @@ def make_plain(command: Any) -> None:
 
 def _usage(argument: Any) -> str:
     """Return `FILE`, `FILE...`, `[FILE]` or `[FILE]...`."""
-    name = argument.metavar or argument.name.upper()
-    return (name if argument.required else f"[{name}]") + "..." * (argument.nargs != 1)
+    name: str = argument.metavar or argument.name.upper()
+    shown = name if argument.required else f"[{name}]"
+    return shown if argument.nargs == 1 else f"{shown}..."
 
 
 def _first_sentence(text: str) -> str:

@@ -155,7 +155,9 @@ class SplitRow(TypedDict):
     ]
     execution_id: Annotated[str, "the execution"]
     program_id: Annotated[str, "its program"]
-    part: Annotated[str | None, "train, validation, test or another part of this split; null where the split has no place for it"]
+    part: Annotated[
+        str | None, "train, validation, test or another part of this split; null where the split has no place for it"
+    ]
 
 
 class FrameRow(RenderedRow):

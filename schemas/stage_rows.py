@@ -58,7 +58,9 @@ class PartRow(TypedDict):
     """The part of a program in a split of its source's own."""
 
     split: Annotated[str, "name of the split"]
-    part: Annotated[str | None, "train, validation, test or another part of this split; null where the split has no place for it"]
+    part: Annotated[
+        str | None, "train, validation, test or another part of this split; null where the split has no place for it"
+    ]
 
 
 class IngestedRow(_Kind, NamedRow):

@@ -9,9 +9,9 @@ row of a Latin square, so that conditions come first, second, ... equally often.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import lcm
+from math import isqrt, lcm
 from random import Random
 
 from hearth.schemas.rng import rng
@@ -106,24 +106,32 @@ def _ordered(
 
 def balanced(study: Study, groups: int = 1) -> list[str]:
     """Return the nearest values of `people` and of `repeats`, one changed at a time, with which all is balanced."""
-    people = sorted(range(1, study.trials + 1), key=lambda number: abs(number - study.people))
-    changed = {"people": people, "repeats": range(study.repeats + 1, study.repeats + TRIED + 1)}
-    return [
-        f"`{name}: {number}`" for name, numbers in changed.items() for number in _fitting(study, name, numbers, groups)
-    ]
+    numbers = sorted(range(1, study.trials + 1), key=lambda number: abs(number - study.people))
+    people = next(
+        _fitting((replace(study, people=number) for number in numbers[: min(TRIED, LOOKED // study.trials)]), groups),
+        None,
+    )
+    more = (
+        replace(study, repeats=study.repeats + number)
+        for number in range(1, 1 + min(TRIED, isqrt(LOOKED // study.trials)))
+    )
+    repeats = next(_fitting(more, groups), None)
+    found = (people and f"`people: {people.people}`", repeats and f"`repeats: {repeats.repeats}`")
+    return [each for each in found if each]
 
 
-def _fitting(study: Study, name: str, numbers: Sequence[int], groups: int) -> Iterator[int]:
-    """Find the first number that does; none of as many as are tried may."""
-    for number in numbers[:TRIED]:
-        other = replace(study, **{name: number})
-        if other.people <= other.trials and not imbalances(other, assignment(other, groups)):
-            yield number
-            return
+def _fitting(studies: Iterable[Study], groups: int) -> Iterator[Study]:
+    """Give the studies that are balanced."""
+    for study in studies:
+        if study.people <= study.trials and not imbalances(study, assignment(study, groups)):
+            yield study
 
 
 TRIED = 60
 """Values of a field that are tried for a study that is not balanced."""
+
+LOOKED = 300_000
+"""Trials that are looked at for that, about: with more repeats there are more of them."""
 
 
 def imbalances(study: Study, slots: Slots) -> list[str]:
