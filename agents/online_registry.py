@@ -24,15 +24,20 @@ class OnlineKind:
         make: makes the helper of the goals that there may be.
         about: what it is, for tables.
         network: the goal proposal network that it asks, which needs the extra `models`; "" for none.
+        talks: whether it says something, which challenges allow by `messages`.
     """
 
     make: Callable[[GoalsIn], Agent]
     about: str
     network: str = ""
+    talks: bool = False
 
 
 LARGE, SMALL = "goal-proposals", "goal-proposals-small"
 """The networks that were trained on 6,000 and on 300 episodes."""
+
+PROPOSED = "owah"
+"""The challenge for whose goals these networks were trained."""
 
 
 def _nopa(about: str, settings: Settings) -> OnlineKind:
@@ -47,7 +52,7 @@ ONLINE: dict[str, OnlineKind] = {
     "watchful_stays": OnlineKind(
         lambda goals: Watchful(goals, Watching(seeks=False)), "the same, watches who is in view anyway"
     ),
-    "asking": OnlineKind(Asking, "the same, and asks where an answer is worth two ticks"),
+    "asking": OnlineKind(Asking, "the same, and asks where an answer is worth two ticks", talks=True),
     "nopa": _nopa("NOPA, proposals from the exact posterior", Settings()),
     "nopa_gpn": _nopa("NOPA, proposals from the network", Settings(proposals="gpn")),
     "nopa_gpn_s": _nopa("NOPA, proposals from the network of 300 episodes", Settings(proposals="gpn", model=SMALL)),

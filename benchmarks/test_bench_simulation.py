@@ -34,7 +34,7 @@ from hearth.simulation.world.world import World
 
 ENDS = ("init_graph", "final_graph")
 OPTIONS = {
-    "release": (REPLAY, Options(doors=False, watch_needs_on=False, made_bed=False)),
+    "release": (REPLAY, Options(doors=False, watch_needs_on=False, made_bed=False, near_hands=False)),
     "own homes": (DEFAULT, Options()),
 }
 

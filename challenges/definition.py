@@ -88,8 +88,8 @@ class Challenge:
 
     @property
     def rules(self) -> Rules:
-        """How actions are read; published tasks count the bedding on a bed."""
-        return DEFAULT._replace(bodies=self.bodies, one_grip=True, made_bed=False)
+        """How actions are read; published tasks count the bedding on a bed, and hands reach into other rooms."""
+        return DEFAULT._replace(bodies=self.bodies, one_grip=True, made_bed=False, near_hands=False)
 
     def goals_in(self, home: Home) -> Mapping[Goal, float]:
         """The goals of single sets that there may be in a home, with their probabilities."""

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
-from hearth.agents.online_registry import ONLINE
+from hearth.agents.online_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
-from hearth.challenges.definition import Challenge
+from hearth.challenges.definition import Challenge, challenge
 from hearth.challenges.guard import SECONDS, Guarded
 from hearth.challenges.play import Player
 from hearth.kb.knowledge import Knowledge
@@ -81,6 +81,24 @@ class Lineup:
         if network and lacking("models"):
             message = f"the helper `{self.helper}` asks the network `{network}`, and torch is not installed"
             raise HearthError.of(Code.MISSING_FILE, message, suggestion=remedy("models"))
+        return self
+
+    def fits(self, which: Challenge) -> Lineup:
+        """The same, if its helper can work in a challenge.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: it would end every episode there: it talks where nobody may, or its network was
+                trained for the goals of another challenge.
+        """
+        kind = ONLINE.get(self.helper)
+        why = ""
+        if kind and kind.talks and not which.messages:
+            why = f"it talks, and in `{which.name}` nobody may say anything"
+        elif kind and kind.network and which.grammar.sets != challenge(PROPOSED).grammar.sets:
+            why = f"its network was trained for the goals of `{PROPOSED}`"
+        if why:
+            message = f"the helper `{self.helper}` can't help in `{which.name}`: {why}"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="hp, nopa, expected_time, ...")
         return self
 
     @property

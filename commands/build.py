@@ -12,6 +12,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.program_name import program_name
+from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.pipelines.build import Funnel
@@ -30,6 +31,7 @@ def build(
     workers: int = 0,
     limit: int | None = None,
     columns: str = "",
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     only: str | None = None,
     home: list[str] | None = None,
     homes: Path | None = None,
@@ -105,7 +107,7 @@ def ingest(context: typer.Context, **_: Any) -> None:
     _run(context, "ingest")
 
 
-@_with_options("out", "kb")
+@_with_options("out", "fuzzy", "kb")
 def validate(context: typer.Context, **_: Any) -> None:
     """Check every ingested program against the action grammar.
 
@@ -248,7 +250,7 @@ def _built(only: str | None, chosen: Mapping[str, Any]) -> Funnel:
 _NAMES = {"homes": "homes_folder", "kb": "kb_folder", "home": "homes"}
 """Options with another name in `Settings`."""
 
-_OTHERS = frozenset({"sources", "out", "only", "tier", "size", "log_json", "strict", "as_json"})
+_OTHERS = frozenset({"sources", "out", "only", "tier", "size", "log_json", "as_json"})
 """Options that are not settings."""
 
 
@@ -274,6 +276,8 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
     sys.stdout.write("\n")
     for place, columns in found.columns.items():
         print(output.shown(shown(place, columns)))
+    if fuzzy := found.fuzzy:
+        print(f"Read with words corrected or left out: {output.counted(fuzzy, 'program')}; `--strict` refuses them.")
     for line in found.unread:
         print(output.shown(f"Not read: {line}"))
     head = ("records in", "passed", "rejected", "parts rejected", "rows out", "records are", "reasons")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.commands import grouped_faults, inputs, output
 from hearth.commands.grouped_faults import in_order
+from hearth.kb.language.fuzzy import Fuzzy
 from hearth.pipelines.checks.checked_text import Checked, check_text, warnings_of
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -28,6 +29,8 @@ def check(
     fix: bool = False,
     diff: bool = False,
     columns: str = "",
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
+    strict: bool = False,
     kb: Path | None = None,
     summary: bool = False,
     as_json: bool = False,
@@ -48,7 +51,7 @@ def check(
     """
     known = inputs.read_knowledge(kb)
     diffs = {file: _fix(file, known, write=fix) for file in files} if fix or diff else {}
-    how = {"affordances": affordances, "lint": lint}
+    how: dict[str, Any] = {"affordances": affordances, "lint": lint, "fuzzy": fuzzy, "strict": strict}
     checked = [replace(check_file(file, known, columns, **how), diff=diffs.get(file, "")) for file in files]
     faults = sum(len(each.faults) for each in checked)
     if as_json:
@@ -87,9 +90,19 @@ def _program_text(path: Path, name: str) -> str | None:
 
 
 def check_file(
-    path: Path, knowledge: Knowledge, columns: str = "", *, affordances: bool = False, lint: bool = False
+    path: Path,
+    knowledge: Knowledge,
+    columns: str = "",
+    *,
+    affordances: bool = False,
+    lint: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
+    strict: bool = False,
 ) -> Checked:
-    """Read an input of any form and find all faults of its programs; one that can't be read is a fault too."""
+    """Read an input of any form and find all faults of its programs; one that can't be read is a fault too.
+
+    With `strict`, a step that was corrected or shortened is a fault.
+    """
     name = inputs.name_of(path)
     try:
         with placed(path) as place:
@@ -97,8 +110,9 @@ def check_file(
             if text is not None:
                 # Parsed as a whole, so that a line that is too long hides no other fault.
                 return check_text(text, knowledge, name, affordances=affordances, lint=lint)
-            found = inputs.read_programs(place, knowledge, name, columns)
-            return _check_programs(found, name, knowledge, affordances=affordances, lint=lint)
+            found = inputs.read_programs(place, knowledge, name, columns, fuzzy)
+            checked = _check_programs(found, name, knowledge, affordances=affordances, lint=lint)
+            return _strictly(checked) if strict else checked
     except HearthError as error:
         return Checked(name, 0, 0, tuple(fault.at(name) for fault in error.diagnostics))
 
@@ -127,11 +141,19 @@ def _check_programs(
     return Checked(name, programs, steps, tuple(faults), tuple(warnings))
 
 
+def _strictly(checked: Checked) -> Checked:
+    """The same with fuzzy matches among the faults."""
+    fuzzy = tuple(each for each in checked.warnings if each.code == Code.FUZZY_MATCH)
+    others = tuple(each for each in checked.warnings if each.code != Code.FUZZY_MATCH)
+    return replace(checked, faults=(*checked.faults, *fuzzy), warnings=others)
+
+
 def _json(checked: Checked) -> dict[str, Any]:
     found = {name: getattr(checked, name) for name in ("file", "programs", "steps")}
-    faults = {name: in_order(getattr(checked, name)) for name in ("faults", "warnings")}
-    more = {"warnings": faults["warnings"], "diff": checked.diff}
-    return {**found, "faults": faults["faults"], **{name: value for name, value in more.items() if value}}
+    faults, warnings = in_order(checked.faults), in_order(checked.warnings)
+    fuzzy = sum(each.code == Code.FUZZY_MATCH for each in (*faults, *warnings))
+    more = {"warnings": warnings, "diff": checked.diff}
+    return {**found, "faults": faults, "fuzzy": fuzzy, **{name: value for name, value in more.items() if value}}
 
 
 def _print(checked: list[Checked], faults: int, *, summary: bool) -> None:

@@ -76,6 +76,9 @@ def show(home: str, out: Path | None = None, homes: Path | None = None, as_json:
 def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bool = False) -> None:
     """Report the faults of a home or of any scene graph; the status is 1 if there are any.
 
+    Nodes without category, properties or states have those of their class in the knowledge, here and wherever a graph
+    is read. Named beside the faults: how many these are, and things that nothing can be done with.
+
     With --layout, a graph without geometry is laid out, and every relation that the layout can't show is named; these
     are not faults.
 
@@ -84,18 +87,24 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
       python cli.py home lint TrimmedTestScene1_graph.json
       python cli.py home lint TrimmedTestScene1_graph.json --layout
     """
+    from hearth.commands.inputs import note_filled
     from hearth.homes import library
     from hearth.homes.lint import lint as check
+    from hearth.homes.lint import unusable
 
     graph = _graph(home, homes)
     known = read_knowledge(None)
+    note_filled(library.filled_nodes(home, known, homes))
+    useless = unusable(graph, known)
     faults = check(graph, known, file=home if Path(home).suffix else "")
     made = library.graph_layout(home, known, homes) if layout else None
     if as_json:
-        document = {"home": home, "faults": faults, "by_code": _codes(faults)}
+        document = {"home": home, "faults": faults, "by_code": _codes(faults), "unusable": useless}
         output.emit(document if made is None else {**document, "met": met(made), "unmet": made.unmet})
     else:
         report(faults, key=alike)
+        for sentence in useless:
+            output.note(sentence)
         if made is not None:
             for fault in made.unmet:
                 print(f"{fault.message} ({fault.suggestion})")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from hearth.schemas.goals import Goal
     from hearth.schemas.program import Program
     from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
+    from hearth.simulation.rules import Rules
     from hearth.simulation.world.home import Home
     from hearth.storage.rejects import Reject
 
@@ -24,15 +27,31 @@ def paths(sources: Sequence[Path] | None) -> list[str]:
     return [str(path) for path in sources or corpus()]
 
 
-def read_knowledge(overlay: Path | None) -> Knowledge:
-    """Our knowledge, with a user's own files laid over it.
+def read_knowledge(
+    overlay: Path | None, name: str = "", graph: Path | None = None, homes: Path | None = None
+) -> Knowledge:
+    """Our knowledge, with a user's own files laid over it, and with the classes of the graph that a program is for.
+
+    Args:
+        overlay: a folder of files of knowledge.
+        name, graph, homes: the home, as for `read_home`; without a name and a graph the knowledge stays as it is.
 
     Raises:
-        HearthError: every fault of the user's files.
+        HearthError: every fault of the user's files, or of the graph.
     """
     from hearth.kb.loading.load import overlaid
 
-    return overlaid(overlay)
+    known = overlaid(overlay)
+    return _with_classes(known, name, graph, homes) if name or graph else known
+
+
+def _with_classes(known: Knowledge, name: str, graph: Path | None, homes: Path | None) -> Knowledge:
+    from hearth.homes import library
+    from hearth.kb.graph_classes import with_classes
+
+    graph = graph or library.given_file(name)
+    found = library.graph_of(graph, known) if graph is not None else library.load_graph(name, known, homes)
+    return with_classes(known, found.nodes)
 
 
 class Given(NamedTuple):
@@ -59,27 +78,47 @@ class Given(NamedTuple):
 
         if name or graph or not self.grounding or not self.grounding["start"]:
             place = read_home(name or DEFAULT_HOME, graph, homes, known)
-            return _of_home(self.program, place), place, False
+            return _of_home(self.program, place, self.place), place, False
         place = Home.from_graph(graph_of(self.grounding["start"]), self.grounding["home"], known)
         found = bind_stored(self.program, World.start(place))
         return found.apply(self.program) if isinstance(found, Binding) else self.program, place, True
 
 
-def _of_home(program: Program, home: Home) -> Program:
-    """The program, without its node ids if one of them is nothing, or something else, in the home."""
+def _of_home(program: Program, home: Home, file: str) -> Program:
+    """The program with the nodes of the home that it names; says which, and which the home lacks.
+
+    Raises:
+        HearthError: UNBOUND: a node that it names is a thing of another class.
+    """
     from hearth.commands import output
+    from hearth.grounding.node_ids import read_ids
+    from hearth.schemas.diagnostics import HearthError
 
-    for ref in program.objects():
-        if ref.node is None:
-            continue
-        index = home.index.get(ref.node, -1)
-        names = home.knowledge.same_class(ref.name)
-        if index < 0 or (home.classes[index] not in names and not home.instances(ref.name) >> index & 1):
-            found = f"{home.classes[index]} there" if index >= 0 else "nothing there"
-            output.note(f"The program's nodes are not those of {home.name} ({ref.node} is {found}): it is bound anew.")
-            return program.unbound()
-    return program
+    found = read_ids(program, home, file)
+    if found.faults:
+        raise HearthError(found.faults)
+    if found.named:
+        shown = (f"<{ref.name}> to node {ref.node} ({home.classes[home.index[ref.node or 0]]})" for ref in found.named)
+        output.note(f"By their numbers these are bound: {_some(shown, len(found.named))}.")
+    if found.lacking:
+        shown = (f"{ref.node} (<{ref.name}>)" for ref in found.lacking)
+        count = output.counted(len(found.lacking), "node")
+        output.note(
+            f"{home.name} lacks {count} that the program names: {_some(shown, len(found.lacking))}; bound anew."
+        )
+    return found.program
 
+
+def _some(names: Iterable[str], count: int) -> str:
+    """The first names of a list, and how many more there are."""
+    from itertools import islice
+
+    rest = count - MOST_NAMED
+    return ", ".join(islice(names, MOST_NAMED)) + (f" and {rest} more" if rest > 0 else "")
+
+
+MOST_NAMED = 6
+"""Objects of a program that a note names."""
 
 DEFAULT_HOME = "maple"
 
@@ -89,23 +128,30 @@ def read_program(file: Path, known: Knowledge) -> Program:
     return read_given(file, known).program
 
 
-def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = False, columns: str = "") -> Given:
+def read_given(
+    file: Path, known: Knowledge, number: int = 1, strict: bool = False, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
+) -> Given:
     """A program of an input of any form that `build` reads; a faulty step is left out, with a warning on stderr.
 
     Args:
         file: a file or folder; `-` is standard input.
         known: the grammar.
         number: which of its programs, from 1.
-        strict: refuse a program with a faulty step.
+        strict: refuse a program with a faulty step, or one that was corrected or shortened.
         columns: of a table, or keys of JSON, as in `title=Task,program=Plan`.
+        fuzzy: how far the steps of plans may be from sentences that are known.
 
     Raises:
         HearthError: every fault of a program without a step that can be used, or of an input without a program.
     """
     from hearth.commands import output
     from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failures import Code
 
-    given = choose_given(file, known, number, columns)
+    given = choose_given(file, known, number, columns, fuzzy)
+    fuzzy_steps = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
+    if strict and fuzzy_steps:
+        raise HearthError([*given.faults, *fuzzy_steps])
     if given.faults and (strict or not given.program.steps):
         raise HearthError(given.faults)
     output.report((*given.faults, *given.warnings), kind="warning")
@@ -115,7 +161,7 @@ def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = Fal
     return given
 
 
-def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "") -> Given:
+def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS) -> Given:
     """Return a program of an input with its faults; nothing is said of them yet. See `read_given`.
 
     Raises:
@@ -130,7 +176,7 @@ def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "
     refused: list[Diagnostic] = []
     programs: list[Given] = []
     with placed(file) as path:
-        for found in read_programs(path, known, name_of(file), columns):
+        for found in read_programs(path, known, name_of(file), columns, fuzzy):
             if isinstance(found, Reject):
                 refused += found.diagnostics
             else:
@@ -144,7 +190,9 @@ def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "
     return programs[number - 1]
 
 
-def read_programs(path: Path, known: Knowledge, name: str, columns: str = "") -> Iterator[Given | Reject]:
+def read_programs(
+    path: Path, known: Knowledge, name: str, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
+) -> Iterator[Given | Reject]:
     """The programs of a file or folder that is called `name` in diagnostics, and rejects for what is none.
 
     Raises:
@@ -158,13 +206,15 @@ def read_programs(path: Path, known: Knowledge, name: str, columns: str = "") ->
 
     tables: dict[str, FieldColumns] = {}
     for _, item in ingest.items([Source(name, path)], read_columns(columns), tables):
-        while tables:
-            output.note(shown(*tables.popitem()))
+        for place in [place for place, found in tables.items() if found]:
+            columns_of = tables.pop(place)
+            if not getattr(columns_of, "is_ours", False):
+                output.note(shown(place, columns_of))
         for row in ingest.read(item):
             if isinstance(row, Reject):
                 yield row
             elif row["kind"] == "program":
-                yield _given(row, known)
+                yield _given(row, known, fuzzy)
 
 
 def name_of(file: Path) -> str:
@@ -172,25 +222,29 @@ def name_of(file: Path) -> str:
     return "standard input" if str(file) == "-" else str(file)
 
 
-def _given(row: IngestedRow, known: Knowledge) -> Given:
+def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     from dataclasses import replace
 
     from hearth.kb import grammar
     from hearth.kb.language.numbered_steps import parse_steps
     from hearth.pipelines.readers import plans
     from hearth.schemas.syntax import parse_program
+    from hearth.schemas.text_places import TextPlaces
 
-    text, before, place = row["text"] or "", row["line"] or 0, row["place"]
+    text, place = row["text"] or "", row["place"]
+    places = TextPlaces(row["line"] or 0, row["places"] or ())
     own = next(iter(row["groundings"] or ()), None)
     if row["origin"] == plans.NAME:
-        steps = parse_steps(text, before, place, known)
-        return Given(_titled(steps.program, row), place, steps.faults, steps.warnings, own)
-    written, faults = parse_program(text, place)
+        steps = parse_steps(text, 0, place, known, fuzzy)
+        lines = tuple(map(places.line, steps.program.lines))
+        faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])
+        return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own)
+    written, syntax = parse_program(text, place)
     program, wrong = grammar.check(written, known, place, text.split("\n"))
     bad = {fault.line for fault in wrong}
     kept = [number for number, line in enumerate(program.lines) if line not in bad]
-    steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(program.lines[n] + before for n in kept)
-    moved = sorted((replace(fault, line=fault.line + before) for fault in (*faults, *wrong)), key=lambda f: f.line)
+    steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(places.line(program.lines[n]) for n in kept)
+    moved = sorted((places.placed(fault) for fault in (*syntax, *wrong)), key=lambda f: f.line)
     return Given(_titled(replace(program, steps=steps_kept, lines=lines), row), place, tuple(moved), (), own)
 
 
@@ -202,7 +256,9 @@ def _titled(program: Program, row: IngestedRow) -> Program:
 
 
 def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
-    """The home of that name, or that of a graph file; a name that is the path of a file is that file.
+    """Return the home of that name, or that of a graph file; a name that is the path of a file is that file.
+
+    A note says which nodes the knowledge had to complete.
 
     Raises:
         HearthError: UNKNOWN_HOME, or a fault of the file.
@@ -211,9 +267,40 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     from hearth.simulation.world.home import Home
 
     graph = graph or library.given_file(name)
+    note_filled(library.filled_nodes(graph or name, known, homes))
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)
+
+
+def read_rules(name: str, home: Home) -> Rules:
+    """The rules of that name (see `simulation.rules.CHOICES`); of `auto` those that fit the home, said if not ours.
+
+    A graph of VirtualHome 2.x says of no two things that they are CLOSE: its simulator knows what is near by what is ON
+    and INSIDE what, and so do the rules `evolving_graph`.
+    """
+    from hearth.commands import output
+    from hearth.simulation.rules import CHOICES, EVOLVING_GRAPH
+
+    if name != "auto":
+        return CHOICES[name]
+    if any(home.close) or not home.able("Grab"):
+        return CHOICES["default"]
+    output.note(
+        f"No two things of {home.name} are CLOSE, as in graphs of VirtualHome 2.x: read by the rules `evolving_graph`; "
+        "`--rules default` takes ours."
+    )
+    return EVOLVING_GRAPH
+
+
+def note_filled(nodes: Sequence[str]) -> None:
+    """Say which nodes of a graph have a category, properties or states only from the knowledge of their class."""
+    from hearth.commands import output
+
+    if nodes:
+        count = output.counted(len(nodes), "node")
+        named = _some(iter(nodes), len(nodes))
+        output.note(f"{count} without category, properties or states: from the knowledge of the class: {named}.")
 
 
 def read_goals(goals: Sequence[str], home: Home) -> Goal:

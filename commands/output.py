@@ -168,7 +168,7 @@ def explain(fault: Diagnostic, *, colour: bool = False, kind: str = "error") -> 
     if fault.place():
         lines.append(f"{pad}{blue}-->{reset} {shown(fault.place())}")
     if fault.source and fault.line:
-        source, column = _window(fault.source, fault.column)
+        source, column = _window(fault.source, max(1, fault.column - fault.before))
         lines.append(f"{pad} {blue}|{reset}")
         lines.append(f"{blue}{fault.line:>{len(pad)}} |{reset} {source}")
         marks = _underline(source, column, fault.length)

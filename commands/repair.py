@@ -48,7 +48,7 @@ def repair(
     from hearth.repair.variants import Options, augment
     from hearth.schemas.failures import Failure
 
-    known = read_knowledge(kb)
+    known = read_knowledge(kb, home, graph, homes)
     given = read_given(file, known, which, strict, columns)
     program, place, _ = given.at_home(home, graph, homes, known)
     found = augment(program, place, seed, program.title, Options(variants, strength=_strength(strength, perturb)))

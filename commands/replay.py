@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zipfile import is_zipfile
 
 from hearth.commands import output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
     from hearth.analysis.release_replay import Replayed
@@ -34,6 +37,9 @@ def replay(
     if release.name.endswith((".jsonl", ".jsonl.gz")):
         _episodes(release, limit, as_json)
         return
+    if release.is_file() and not is_zipfile(release):
+        message, remedy = "neither a release nor episodes", "give a release as a zip or a folder, or episodes as .jsonl"
+        raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(release), suggestion=remedy)
     import gc
     from itertools import islice
 

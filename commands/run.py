@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from hearth.commands import output
-from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge
+from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
 from hearth.commands.run_shown import Outcome, document, failed, show
+from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.schemas.program import Program
     from hearth.simulation.goals import Progress
+    from hearth.simulation.rules import Rules
     from hearth.simulation.world.home import Home
 
 
@@ -28,8 +30,10 @@ def run(
     goal: list[str] | None = None,
     which: int = 1,
     columns: str = "",
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     skip_faults: bool = False,
     strict: bool = False,
+    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
     as_json: bool = False,
 ) -> None:
     """Run a program in a home as it is, and print the changes of each step.
@@ -39,17 +43,21 @@ def run(
     runs, and what was added is printed. The status is 1 if the program did not run as given, or if a goal is not
     reached: what holds at the end, what was done (`WATCH(television)`), in which order (`then`), or alternatives.
 
+    Actions are read by --rules: ours (default), those of the release of 2018 (replay), or those of VirtualHome 2.x
+    (evolving_graph: what is in an opened thing that one stands at is within reach, a room only walked into is not). By
+    `auto` a graph in which no two things are CLOSE is read by the last, any other home by ours.
+
     \b
     Examples:
       python cli.py run watch_tv.txt --home maple --explain
       python cli.py run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
-    known = read_knowledge(kb)
-    given = choose_given(file, known, which, columns)
-    _refuse_faults(given, skip_faults)
+    known = read_knowledge(kb, home, graph, homes)
+    given = choose_given(file, known, which, columns, fuzzy)
+    _refuse_faults(given, skip_faults, strict)
     program, place, _ = given.at_home(home, graph, homes, known)
-    outcome = _outcome(program, place, seed, sample)
+    outcome = _outcome(program, place, seed, sample, read_rules(rules, place))
     progress = _progress(goal, outcome) if goal else None
     if as_json:
         goals = {"goal": _goal_json(progress)} if progress else {}
@@ -74,14 +82,18 @@ def _check(sample: bool, as_is: bool, skip_faults: bool, strict: bool) -> None:
         raise typer.BadParameter("`--strict` skips nothing: leave one of the two out", param_hint="--skip-faults")
 
 
-def _refuse_faults(given: Given, skip: bool) -> None:
+def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
     """Print warnings, and the faults that are skipped.
 
     Raises:
-        HearthError: every fault, unless they are skipped and there are other steps.
+        HearthError: every fault, unless they are skipped and there are other steps; every corrected step if `strict`.
     """
     from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failures import Code
 
+    fuzzy = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
+    if strict and fuzzy:
+        raise HearthError([*given.faults, *fuzzy])
     steps = output.counted(len(given.program.steps), "other step")
     if given.faults and not (skip and given.program.steps):
         if given.program.steps:
@@ -93,16 +105,16 @@ def _refuse_faults(given: Given, skip: bool) -> None:
         output.note(f"Left out: {lines}. The status is 1: the program does not run as given.")
 
 
-def _outcome(program: Program, place: Home, seed: int, sample: bool) -> Outcome:
+def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rules) -> Outcome:
     """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
     from hearth.grounding.trial import LEAST, as_given, attempt
     from hearth.repair.remedies import stop_reason
     from hearth.schemas.failures import Failure
 
-    trial = as_given(program, place, seed)
+    trial = as_given(program, place, seed, rules)
     if trial.execution.failure is None or not sample:
         return Outcome(program, place, trial)
-    found = attempt(program.unbound(), place, seed, size=LEAST)
+    found = attempt(program.unbound(), place, seed, rules, size=LEAST)
     if isinstance(found, Failure):
         return Outcome(program, place, trial, unsampled=failed(found, program))
     return Outcome(program, place, found, as_it_is=stop_reason(trial.execution))

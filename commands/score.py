@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import typer
 
-from hearth.commands import inputs, output
+from hearth.commands import inputs, output, score_output
 
 if TYPE_CHECKING:
-    from hearth.scoring.evaluate import Options, Scored, Summary
     from hearth.scoring.predictions import Pair
 
 app = typer.Typer(
@@ -48,10 +46,12 @@ def lcs(
     from hearth.scoring.bootstrap import intervals
     from hearth.scoring.dataset_scores import read_line
     from hearth.scoring.evaluate import METRICS, Scored, lcs_of
+    from hearth.scoring.first_faults import FirstFaults
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
 
-    pairs = read_pairs(file, references, partial(read_line, inputs.read_knowledge(None)))
+    rejects = FirstFaults()
+    pairs = read_pairs(file, references, partial(read_line, inputs.read_knowledge(None)), rejects=rejects)
     scored = [Scored(pair, *both) for pair, both in zip(pairs, lcs_of(pairs, instances), strict=True)]
     shown = {name.removeprefix("lcs_"): metric for name, metric in METRICS.items() if name.startswith("lcs_")}
     columns = {name: [metric(each) for each in scored] for name, metric in shown.items()}
@@ -63,7 +63,8 @@ def lcs(
         named = [{"id": pair.id, **row, "missing": pair.predicted is None, "unread": _unread(pair)}
                  for pair, row in zip(pairs, rows, strict=True)]  # fmt: skip
         output.emit({"signature": signatures[0], "signature_instances": signatures[1], **counts,
-                     "mean": means, "scores": named})  # fmt: skip
+                     **score_output.rejects_json(rejects), "mean": means, "scores": named})  # fmt: skip
+        score_output.end(rejects)
         return
     table = [[pair.id, *row.values(), _note(pair)] for pair, row in zip(pairs, rows, strict=True)]
     for place, name in enumerate(("mean", "95% from", "to")):
@@ -72,6 +73,7 @@ def lcs(
     noted = ", ".join(f"{counts[name]} {words}" for name, words in NOTES.items())
     print(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
     print("\n".join(signatures))
+    score_output.end(rejects)
 
 
 NOTES = {"missing": "missing", "empty": "empty", "unread": "with lines that are not steps"}
@@ -94,8 +96,9 @@ def program(
     *,
     references: Path | None = None,
     graph: Path | None = None,
+    home: str = "",
     homes: Path | None = None,
-    rules: Literal["default", "replay"] = "default",
+    rules: Literal["default", "replay", "evolving_graph"] = "default",
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
@@ -103,100 +106,38 @@ def program(
     by: str | None = None,
     as_json: bool = False,
 ) -> None:
-    """All scores: LCS and parsability; for rows with an environment also executability, final-graph F1 and goal.
+    """All scores of predictions, or of any programs: without references all that needs none.
 
-    Rows are those of `score lcs`. The environment is a row's `graph` (a scene graph's file, relative to FILE's folder)
-    or `home` (a name), or else --graph. The goal is what the reference achieves there,
-    or a row's own (`goal`), which the signature counts. Steps may be natural language.
+    FILE has the rows of `score lcs`, or programs in any form that `check` reads. With a reference a row has LCS and
+    final-graph F1. Without one it has parsability and, in an environment, executability, first failures, and `goal` if
+    the row has a goal (`goal`). The environment is the row's `home` (a name) or `graph` (a scene graph's file, relative
+    to FILE's folder), else --home or --graph; with `--homes all`, each of our homes. A goal is else what the reference
+    achieves; conditions that hold at the start do not count (`goal_whole` counts them). Steps may be natural language.
+    Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
+    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph).
 
     \b
-    Example:
+    Examples:
       python cli.py score program predictions.jsonl --graph home.json --by activity
+      python cli.py score program plans.txt --home maple
     """
-    from functools import partial
-
+    from hearth.commands.scored_programs import ALL, in_homes, read_predictions
+    from hearth.homes.library import names
     from hearth.scoring import environments
-    from hearth.scoring.dataset_scores import read_line
     from hearth.scoring.evaluate import Options, evaluate
-    from hearth.scoring.predictions import read_pairs
-    from hearth.simulation.rules import RULES
+    from hearth.scoring.first_faults import FirstFaults
+    from hearth.simulation.rules import CHOICES
 
-    how = Options(RULES[rules], match, scope, instances, seed)
-    known = inputs.read_knowledge(None)
-    pairs = read_pairs(file, references, partial(read_line, known))
-    scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes), how)
-    _show(scored, how, by, as_json)
-
-
-def _show(scored: Sequence[Scored], how: Options, by: str | None, as_json: bool) -> None:
-    from hearth.scoring.evaluate import by_field, summarise
-
-    summary, groups = summarise(scored, how.seed), by_field(scored, by, how.seed) if by else {}
-    if as_json:
-        output.emit(_program_json(scored, how, summary, {"by": groups} if by else {}))
-    else:
-        _print_program(_signatures(scored, how), summary, by, groups)
-
-
-def _signatures(scored: Sequence[Scored], how: Options) -> dict[str, str]:
-    from hearth.scoring.evaluate import given_goal, signatures
-
-    return signatures(how, sum(given_goal(each.pair) is not None for each in scored))
-
-
-def _program_json(
-    scored: Sequence[Scored], how: Options, summary: Summary, groups: dict[str, dict[str, Summary]]
-) -> dict[str, Any]:
-    from hearth.scoring.evaluate import METRICS
-
-    rows = [
-        {
-            "id": each.pair.id,
-            **{name: value for name, metric in METRICS.items() if (value := metric(each)) is not None},
-            "missing": each.missing,
-            "error": each.execution and each.execution.error,
-            "code": each.execution and each.execution.code,
-            "failed_line": each.execution and each.execution.failed_line,
-        }
-        for each in scored
-    ]
-    parts = {key: {name: _summary_json(group) for name, group in found.items()} for key, found in groups.items()}
-    return {"signatures": _signatures(scored, how), **_summary_json(summary), **parts, "scores": rows}
-
-
-def _summary_json(summary: Summary) -> dict[str, Any]:
-    counts = {name: getattr(summary, name) for name in ("count", "missing", "empty", "incomparable", "inexact")}
-    return {**counts, "mean": summary.means, "errors": summary.errors, "failed_at": summary.failed_at}
-
-
-def _print_program(signed: dict[str, str], summary: Summary, by: str | None, groups: dict[str, Summary]) -> None:
-    output.table(["score", "mean", "95% from", "to"], [[name, *found] for name, found in summary.means.items()])
-    if by:
-        print()
-        columns = list(summary.means)
-        rows = [[name, group.count, *_means(group, columns)] for name, group in groups.items()]
-        output.table([by, "rows", *columns], rows)
-    if summary.errors:
-        print()
-        output.table(["first failure", "programs"], summary.errors.items())
-    print(f"\n{_sentence(summary)}")
-    for signature in signed.values():
-        print(signature)
-
-
-def _means(group: Summary, columns: Sequence[str]) -> list[float | None]:
-    return [group.means[name].mean if name in group.means else None for name in columns]
-
-
-def _sentence(summary: Summary) -> str:
-    text = (
-        f"{output.counted(summary.count, 'reference')}; predictions: {summary.missing} missing, {summary.empty} empty"
-    )
-    if summary.incomparable:
-        text += f"; {summary.incomparable} without F1 and goal, because the reference does not run"
-    if summary.inexact:
-        text += f"; the F1 of {summary.inexact} is a lower bound, because there are too many assignments of instances"
-    return text
+    how = Options(CHOICES[rules], match, scope, instances, seed)
+    known, rejects = inputs.read_knowledge(None), FirstFaults()
+    pairs = read_predictions(file, references, known, rejects)
+    if homes and str(homes) == ALL:
+        pairs, homes, by = in_homes(pairs, names()), None, by or environments.HOME
+    scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes, home), how, rejects)
+    score_output.show(scored, how, by, rejects, as_json)
+    if not any(each.placed for each in scored):
+        output.note("No program has an environment, so none was run: name a home with --home, or give --homes all.")
+    score_output.end(rejects)
 
 
 @app.command("dataset")
@@ -212,39 +153,51 @@ def dataset(
     seed: int = 0,
     by: str | None = None,
     failures: bool = False,
+    only_given: bool = False,
+    originals: bool = False,
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
     """All scores against a dataset, whose programs are the references, in its environments.
 
     Each row of FILE is {"id": EXECUTION, "predicted": PROGRAM}, or {"program_id": PROGRAM, "home": HOME, "predicted":
-    PROGRAM}; steps may be natural language. Executions without a row are missing predictions and score 0.
+    PROGRAM}; steps may be natural language. Executions without a row are missing predictions and score 0, unless
+    --only-given leaves them out. This is the benchmark; `model score` is the same with --only-given, and intervals by
+    activity.
 
     \b
-    Example:
+    Examples:
       python cli.py score dataset data_out mine.jsonl --split activities --by activity
+      python cli.py score dataset data_out mine.jsonl --split activities --originals
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
     from hearth.scoring.dataset_scores import score_dataset
     from hearth.scoring.evaluate import Options
+    from hearth.scoring.first_faults import FirstFaults
 
     if failures and split:
         raise typer.BadParameter("splits have no failing executions", param_hint="--failures")
     if part is not None and not split:
         raise typer.BadParameter("name the split whose part it is with --split", param_hint="--part")
+    rejects = FirstFaults()
     how = Options(match=match, scope=scope, instances=instances, seed=seed)
     asked = "test" if split and part is None else part or ""
     with bar("shares scored") as seen:
         opened = Dataset.open(folder, failures)
-        scored = score_dataset(opened, file, split, asked, how, workers, seen)
-    _show(scored, how, by, as_json)
+        scored = score_dataset(
+            opened, file, split, asked, how, workers, seen, only_given=only_given, originals=originals, rejects=rejects
+        )
+    score_output.show(scored, how, by, rejects, as_json)
+    score_output.warn_missing(scored)
+    score_output.end(rejects)
 
 
 @app.command("baselines")
 def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_json: bool = False) -> None:
     """All scores of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
 
+    The thesis's rows have the source `thesis`: they are its figures, of its own data.
     Needs scikit-learn.
 
     \b
@@ -252,14 +205,15 @@ def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_js
       python cli.py score baselines data_out
     """
     from hearth.datasets.dataset import Dataset
-    from hearth.scoring.baselines import THESIS, Result
+    from hearth.scoring.baselines import THESIS, THESIS_NOTE, Result
     from hearth.scoring.baselines import baselines as run
 
     found = run(Dataset.open(folder), split, seed)
     if as_json:
-        output.emit({"split": split, "here": found, "thesis": THESIS})
+        output.emit({"split": split, "thesis_note": THESIS_NOTE, "here": found, "thesis": THESIS})
         return
     output.table([name.replace("_", " ") for name in Result._fields], [*found, *THESIS])
+    print(f"\n{THESIS_NOTE}")
     if not found:
         print(f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities")
 

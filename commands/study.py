@@ -99,6 +99,7 @@ def simulate(
       python cli.py study report build/studies/people-with-helpers
     """
     from hearth.storage.names import inside
+    from hearth.studies.study_tables import helper_fault
 
     collected = _simulated(study, out, seed, drop_outs, workers)
     streams = collected.ledger.streams()
@@ -111,6 +112,9 @@ def simulate(
         "left": sum(each.stage == "left" for each in standings),
         "trials": sum(event.kind == "did" for each in standings for event in each.events),
         "counted": sum(event.kind == "did" for each in standings if each.finished for event in each.events),
+        "helper_faults": sum(
+            bool(helper_fault(event.data)) for each in standings for event in each.events if event.kind == "did"
+        ),
         "out": str(inside(out, collected.study.name)),
     }
     if as_json:
@@ -207,7 +211,7 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
     from hearth.studies.study_figures import names_of
     from hearth.studies.study_findings import findings
     from hearth.studies.study_report import as_json as for_machines
-    from hearth.studies.study_report import test_row, write_report
+    from hearth.studies.study_report import failures, test_row, write_report
 
     collected = _opened(source, store, study)
     other = _alone(collected, source, store)
@@ -218,7 +222,8 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
         output.emit({**for_machines(found), "out": None if out is None else str(out)})
         return
     marked = "simulated: agents in people's places" if found.simulated else "people"
-    print(f"{found.study.title} ({marked}): {found.people} finished, {found.left} left before the end\n")
+    print(f"{found.study.title} ({marked}): {found.people} finished, {found.left} left before the end")
+    print("\n".join(["", *failures(found)]))
     who_in_words = names_of(found)
     rows = [
         [group, who_in_words[who], metric, each.count, each.mean, each.error]

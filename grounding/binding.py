@@ -10,6 +10,7 @@ from functools import reduce
 from itertools import product
 from operator import and_, or_
 
+from hearth.grounding.node_ids import by_number, classes_of
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
@@ -38,8 +39,9 @@ class Binding:
 def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
     """Find nodes with which every step runs (thesis 2.4.1).
 
-    Objects that are bound already keep their node. Distinct instances get distinct nodes;
-    only a room that serves as another (`kitchen`, where it is part of the dining room) stands for both.
+    Objects that are bound already keep their node, and one whose number names a node gets it (see `node_ids`).
+    Distinct instances get distinct nodes; only a room that serves as another (`kitchen`, where it is part of the dining
+    room) stands for both.
 
     Returns:
         The binding, or the failure that pruned the last candidate of the furthest step reached.
@@ -54,6 +56,7 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
 
 def bind_far(program: Program, world: World, rules: Rules = DEFAULT) -> tuple[Binding, Failure | None]:
     """Return the binding of `bind`, or that of the furthest step reached and why it goes no further."""
+    program = Binding(_by_number(program, world), 0).apply(program)
     search = _Search(program, rules)
     fixed = {ref.key: ref.node for ref in program.objects() if ref.node is not None}
     if not program.steps:
@@ -71,16 +74,18 @@ def bind_far(program: Program, world: World, rules: Rules = DEFAULT) -> tuple[Bi
 
 
 def bind_stored(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
-    """`bind`; but where every instance is the id of a node of its class, as simulators print them, these are meant."""
-    home, free = world.home, [ref for ref in program.objects() if ref.node is None]
-    are_ids = (
-        home.classes[home.index[ref.instance]] in home.knowledge.same_class(ref.name)
-        for ref in free
-        if ref.instance in home.index
-    )
-    if sum(are_ids) < len(free):
+    """`bind`; but where every instance is the id of a node of its class, as simulators print them, these are meant
+    whether or not all steps can then run.
+    """
+    named = Binding(_by_number(program, world), 0).apply(program)
+    if any(ref.node is None for ref in named.objects()):
         return bind(program, world, rules)
-    return Binding({ref.key: ref.instance if ref.node is None else ref.node for ref in program.objects()}, 0)
+    return Binding({ref.key: ref.node for ref in named.objects() if ref.node is not None}, 0)
+
+
+def _by_number(program: Program, world: World) -> dict[Key, int]:
+    free = [ref for ref in program.objects() if ref.node is None]
+    return by_number(free, classes_of(world.home), world.home.knowledge) if free else {}
 
 
 def nearest(program: Program, world: World) -> Binding:
@@ -175,12 +180,12 @@ class _Search:
     def _candidates(self, key: Key, world: World) -> int:
         home = world.home
         able = reduce(and_, (_able(world, action, position) for action, position in self.uses[key]))
-        names = home.knowledge.same_class(key[0])
+        names = home.knowledge.found_as(key[0])
         return next((mask for mask in (home.by_class.get(name, 0) & able for name in names) if mask), 0)
 
     def _nothing(self, step: Step, key: Key, world: World) -> Failure:
         names = world.home.knowledge.same_class(key[0])
-        present = reduce(or_, (world.home.by_class.get(name, 0) for name in names))
+        present = reduce(or_, (world.home.by_class.get(name, 0) for name in world.home.knowledge.found_as(key[0])), 0)
         return Failure(
             Code.UNBOUND,
             action=step.action,

@@ -6,9 +6,11 @@ from difflib import get_close_matches
 from functools import lru_cache
 from importlib.resources import as_file, files
 from pathlib import Path
+from typing import Any
 
 from hearth.homes.from_graph.graph_layout import GraphLayout, lay_out
 from hearth.homes.from_graph.measured import has_geometry, measured
+from hearth.homes.left_out import filled
 from hearth.homes.plans.layout import Layout, read
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge
@@ -16,6 +18,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
+from hearth.schemas.graph_wrappers import graph_in
 from hearth.schemas.numbers import number_of
 from hearth.storage.csv_files import CsvTable
 from hearth.storage.input_files import read_input
@@ -48,7 +51,7 @@ def load_graph(name: str, knowledge: Knowledge, directory: Path | str | None = N
         (367, ['living_room', 'kitchen', 'bedroom', 'bathroom'])
     """
     path = _file(name, directory)
-    return _graph(path) if path.suffix == ".json" else _scene(path, knowledge)
+    return _graph(path, knowledge) if path.suffix == ".json" else _scene(path, knowledge)
 
 
 def load_layout(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> Layout:
@@ -65,7 +68,7 @@ def layout_of(path: Path | str, knowledge: Knowledge) -> Layout:
     found = Path(path)
     if found.suffix != ".json":
         return _layout(found, knowledge)
-    graph = _graph(found)
+    graph = _graph(found, knowledge)
     return measured(graph, found.stem, knowledge) if has_geometry(graph) else graph_layout(found, knowledge).layout
 
 
@@ -84,7 +87,7 @@ def _graph_layout(path: Path, knowledge: Knowledge) -> GraphLayout:
 def graph_of(path: Path | str, knowledge: Knowledge) -> EnvironmentGraph:
     """The scene graph of a plan file, or of a JSON file in the release's layout; errors as of `load_graph`."""
     found = Path(path)
-    return _graph(found) if found.suffix == ".json" else _scene(found, knowledge)
+    return _graph(found, knowledge) if found.suffix == ".json" else _scene(found, knowledge)
 
 
 FILES = (".json", ".yaml")
@@ -161,9 +164,22 @@ def _scene(path: Path, knowledge: Knowledge) -> EnvironmentGraph:
     return scene(_layout(path, knowledge), knowledge)
 
 
+def _graph(path: Path, knowledge: Knowledge) -> EnvironmentGraph:
+    return _filled_graph(path, knowledge)[0]
+
+
+def filled_nodes(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> tuple[str, ...]:
+    """The nodes of a scene graph (a file, or a home's by name) that left out what the knowledge says of their class,
+    as `salmon (1000)`; none of a plan. Errors as of `load_graph`.
+    """
+    path = Path(home) if Path(home).suffix else _file(str(home), directory)
+    return _filled_graph(path, knowledge)[1] if path.suffix == ".json" else ()
+
+
 @lru_cache(maxsize=64)
-def _graph(path: Path) -> EnvironmentGraph:
-    return read_graph(path, "init_graph")
+def _filled_graph(path: Path, knowledge: Knowledge) -> tuple[EnvironmentGraph, tuple[str, ...]]:
+    found = filled(_graph_data(path, "init_graph"), knowledge)
+    return from_release(found.data, str(path)), found.nodes
 
 
 def read_graph(path: Path, which: str) -> EnvironmentGraph:
@@ -172,18 +188,22 @@ def read_graph(path: Path, which: str) -> EnvironmentGraph:
     Raises:
         HearthError: MISSING_FILE, BAD_JSON or BAD_GRAPH.
     """
+    return from_release(_graph_data(path, which), str(path))
+
+
+def _graph_data(path: Path, which: str) -> Mapping[str, Any]:
     import orjson
 
     try:
         data = orjson.loads(read_input(path))
-        if isinstance(data, dict) and which in data:
-            data = data[which]
+        if isinstance(data, dict):
+            data = data[which] if which in data else graph_in(data) or data
         orjson.dumps(data)  # what is read may stand deeper in one another than can be written
     except (orjson.JSONDecodeError, orjson.JSONEncodeError) as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error
     if not isinstance(data, dict):
         raise HearthError.of(Code.BAD_GRAPH, "not an environment graph", file=str(path), suggestion="nodes and edges")
-    return from_release(data, str(path))
+    return data
 
 
 @lru_cache(maxsize=64)

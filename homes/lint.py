@@ -6,6 +6,7 @@ from functools import cached_property
 
 from hearth.homes.forms import form
 from hearth.homes.from_graph.measured import has_geometry, measured
+from hearth.homes.left_out import CATEGORIES
 from hearth.homes.plans.checks import joined
 from hearth.homes.plans.floor import REACH
 from hearth.kb.knowledge import Knowledge
@@ -14,12 +15,6 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.literals import HANDS
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATIONS, ROOM_CATEGORY, STATES
-
-CATEGORIES = (
-    "Animals", "Appliances", "BodyParts", "Ceiling", "Characters", "Clothes", "Decor", "Doors", "Electronics", "Floor",
-    "Floors", "Food", "Furniture", "Lamps", "People", "Props", "Rooms", "Walls", "Windows", "placable_objects",
-)  # fmt: skip
-"""The categories that the release's graphs and ours know; of `Floor` and `Floors` both occur."""
 
 NEEDS_STATES = {"CAN_OPEN": ("OPEN", "CLOSED"), "HAS_SWITCH": ("ON", "OFF")}
 """A thing with the property is in one of the states."""
@@ -54,20 +49,29 @@ class View:
         return found
 
     @cached_property
-    def housed(self) -> frozenset[int]:
-        """The nodes from which following INSIDE and ON leads to a room, and the rooms."""
+    def housed(self) -> dict[int, int]:
+        """The nodes from which following INSIDE leads to a room, and the rooms: node -> room."""
+        return self._led_to("INSIDE")
+
+    @cached_property
+    def stood(self) -> dict[int, int]:
+        """`housed`, following ON as well: where a thing stands whose file does not say its room."""
+        return self._led_to("INSIDE", "ON")
+
+    def _led_to(self, *relations: str) -> dict[int, int]:
         held: dict[int, list[int]] = defaultdict(list)
-        for relation in ("INSIDE", "ON"):
+        for relation in relations:
             for source, targets in self.targets[relation].items():
                 for target in targets:
                     held[target].append(source)
         waiting = list(filter(self.is_room, self.nodes))
-        found = set(waiting)
+        found = {room: room for room in waiting}
         while waiting:
-            new = [node_id for node_id in held.get(waiting.pop(), ()) if node_id not in found]
-            found.update(new)
+            at = waiting.pop()
+            new = [node_id for node_id in held.get(at, ()) if node_id not in found]
+            found.update(dict.fromkeys(new, found[at]))
             waiting += new
-        return frozenset(found)
+        return found
 
     def label(self, node_id: int) -> str:
         """A node as people call it: `fridge (41)`."""
@@ -166,7 +170,17 @@ def _rooms(view: View) -> Iterator[Diagnostic]:
                 "keep one",
             )
         if node_id not in held and node_id not in view.housed:
-            yield _fault(Code.NO_ROOM, f"{view.label(node_id)} is INSIDE no room", (node_id,), "add its room")
+            yield _no_room(view, node_id)
+
+
+def _no_room(view: View, node_id: int) -> Diagnostic:
+    """A thing that nobody can walk to, as ON leads to no room; the remedy is the edge that is missing."""
+    room = view.stood.get(node_id)
+    if room is None:
+        hint = f"add {node_id} INSIDE the id of its room"
+    else:
+        hint = f'add {{"from_id": {node_id}, "relation_type": "INSIDE", "to_id": {room}}}'
+    return _fault(Code.NO_ROOM, f"{view.label(node_id)} is INSIDE no room: nobody can walk to it", (node_id,), hint)
 
 
 def _containers(view: View) -> Iterator[Diagnostic]:
@@ -269,6 +283,34 @@ def _on_foot(view: View) -> Iterator[Diagnostic]:
         if node.class_name == CHARACTER_CLASS and node.box is not None and floor.distance(node.box) > 0:
             message = f"{view.label(node.id)} does not stand in the main region of the floor"
             yield _fault(Code.NO_PATH, message, (node.id,), "move it to where all rooms can be walked to")
+
+
+def unusable(graph: EnvironmentGraph, knowledge: Knowledge) -> tuple[str, ...]:
+    """The things that a program can only walk to and look at, because the graph gives them no properties while their
+    class has some: a sentence for each class.
+
+    Examples:
+        >>> from hearth.homes.lint import unusable
+        >>> unusable(graph, known)
+        ()
+    """
+    found: dict[str, list[int]] = defaultdict(list)
+    for node in graph.nodes:
+        known = knowledge.object_class(node.class_name)
+        if not node.properties and known is not None and known.properties and node.class_name != CHARACTER_CLASS:
+            found[node.class_name].append(node.id)
+    return tuple(_unusable(name, ids, knowledge) for name, ids in found.items())
+
+
+def _unusable(name: str, ids: list[int], knowledge: Knowledge) -> str:
+    known = knowledge.object_class(name)
+    properties = " ".join(sorted(known.properties)) if known else ""
+    shown = ", ".join(map(str, ids[:MOST_NAMED])) + (", ..." if len(ids) > MOST_NAMED else "")
+    return f"{name} ({shown}): nothing can be done with it, as its `properties` are empty; the class has {properties}"
+
+
+MOST_NAMED = 5
+"""Nodes of a class that a sentence names."""
 
 
 CHECKS: dict[str, Callable[[View], Iterator[Diagnostic]]] = {

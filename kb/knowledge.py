@@ -163,6 +163,18 @@ class Knowledge:
         found = self.object_class(name)
         return (name,) if found is None else self._same_class(found.name)
 
+    def found_as(self, name: str) -> tuple[str, ...]:
+        """`same_class`, and after each name how VirtualHome 2.x writes it: `washing_machine`, `washingmachine`."""
+        known = self._found_as.get(name)
+        if known is None:
+            pairs = ((each, each.replace("_", "")) for each in self.same_class(name))
+            known = self._found_as[name] = tuple(dict.fromkeys(each for pair in pairs for each in pair))
+        return known
+
+    @cached_property
+    def _found_as(self) -> dict[str, tuple[str, ...]]:
+        return {}
+
     def stand_ins(self, name: str) -> tuple[str, ...]:
         """The classes whose things may take its place in a home, best first."""
         thing = self.object_class(name)

@@ -47,7 +47,7 @@ class Requirement:
 
     def __str__(self) -> str:
         if self.anything:
-            return "any object" if self.no_rooms else "anything"
+            return "any object that is not a room" if self.no_rooms else "anything"
         parts = sorted(self.any_of)
         if self.all_of:
             parts.append(" and ".join(sorted(self.all_of)))

@@ -57,6 +57,11 @@ class Funnel:
     columns: dict[str, dict[str, str]]
     unread: tuple[str, ...]
 
+    @property
+    def fuzzy(self) -> int:
+        """Programs with a step that was corrected or shortened."""
+        return self.stages["validate"].tally["fuzzy"] if "validate" in self.stages else 0
+
     def to_json(self) -> dict[str, Any]:
         """Plain values."""
         return {

@@ -17,7 +17,7 @@ from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, spreadsheets, text
-from hearth.pipelines.readers.columns import FieldColumns, read_columns
+from hearth.pipelines.readers.columns import Asked, FieldColumns, read_columns
 from hearth.pipelines.readers.item import Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
 from hearth.pipelines.readers.scanning_time import SECONDS, ScanningTime
@@ -85,19 +85,22 @@ def items(
         time_limit: seconds of a record, from which that of scanning a packed file follows; 0 for none.
     """
     given, times = columns or {}, ScanningTime(time_limit)
-    scanned = partial(_scanned_in_time, times, given)
+    scanned = partial(_scanned_in_time, times)
     repeated = Repeated()
     found = [(source.label, entry) for source in sources for entry in _recognised(source)]
     described = Described()
-    batches = (item for _, entry in found if entry.reader == crowd.NAME for item in scanned(entry))
+    batches = (item for _, entry in found if entry.reader == crowd.NAME for item in scanned(entry, Asked(given)))
     copies = Copies(pasted(described.noted(batches)))
     for label, entry in found:
         if entry.refusal:
             yield label, refused(entry.inside, entry.refusal)
             continue
+        asked = Asked(given)
         if entry.reader == spreadsheets.NAME and found_columns is not None:
             found_columns[entry.inside] = spreadsheets.columns_of(entry.path, given)
-        checked = repeated.first(scanned(entry), entry.reader, entry.inside)
+        elif entry.reader in _NAMED and found_columns is not None:
+            found_columns[entry.inside] = asked.found  # filled as its records are read
+        checked = repeated.first(scanned(entry, asked), entry.reader, entry.inside)
         if entry.reader == crowd.NAME:
             checked = map(described.checked, map(copies.checked, checked))
         yield from ((label, item) for item in checked)
@@ -118,12 +121,12 @@ def _recognised(source: Source) -> Iterator[Recognised]:
         yield Recognised(source.path, source.label, "", Reject.caused(error, source.label))
 
 
-def _scanned_in_time(times: ScanningTime, columns: FieldColumns, entry: Recognised) -> Iterator[Item]:
+def _scanned_in_time(times: ScanningTime, entry: Recognised, columns: Asked) -> Iterator[Item]:
     """The records that a reader finds before the time of a packed file is over."""
     return times.within(entry.path, entry.inside, _scanned(entry, columns))
 
 
-def _scanned(entry: Recognised, columns: FieldColumns) -> Iterator[Item]:
+def _scanned(entry: Recognised, columns: Asked) -> Iterator[Item]:
     """The records that a reader finds; if it breaks off, those before the break, then the break as a reject."""
     found = False
     try:

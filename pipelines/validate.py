@@ -2,11 +2,14 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
 
 from hearth.datasets.format.codecs import binding_rows, graph_of, named, step_rows, warning_row
 from hearth.grounding.binding import bind_stored
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.pipelines.checks import programs, special
 from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
@@ -18,19 +21,41 @@ from hearth.schemas.program import Program
 from hearth.schemas.stage_rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
+from hearth.schemas.text_places import TextPlaces
 from hearth.simulation.rules import REPLAY
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.rejects import Reject
 
+FUZZY = "fuzzy"
+"""The label of programs with a step that was corrected or shortened."""
+
 Check = Callable[[str, int, str, Knowledge], tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]]
 """`checked`, or `checked_natural_language`."""
 
 
+class Reading(NamedTuple):
+    """What programs are checked against, and how far the steps of plans may be from sentences that are known."""
+
+    known: Knowledge
+    fuzzy: Fuzzy = Fuzzy.TYPOS
+    strict: bool = False
+
+
 def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject]:
+    """Check one program, as `process_as` does by default."""
+    return process_as(record, Reading(known))
+
+
+def process_as(record: IngestedRow, reading: Reading) -> list[ValidatedRow | Reject]:
     """Check one program and each of its groundings; a faulty grounding is refused alone."""
-    check = checked_natural_language if record["origin"] == plans.NAME else checked
-    program, faults, warnings = check(record["text"] or "", record["line"] or 0, record["place"], known)
+    known = reading.known
+    natural = partial(checked_natural_language, fuzzy=reading.fuzzy, strict=reading.strict)
+    check = natural if record["origin"] == plans.NAME else checked
+    places = TextPlaces(record["line"] or 0, record["places"] or ())
+    program, faults, warnings = check(record["text"] or "", 0, record["place"], known)
+    faults, warnings = (tuple(map(places.placed, found)) for found in (faults, warnings))
+    program = replace(program, lines=tuple(map(places.line, program.lines)))
     if faults:
         return [Reject(faults)]
     outcomes = [_grounding(grounding, record["place"], known, check) for grounding in record["groundings"] or ()]
@@ -91,11 +116,11 @@ def _replaced(expanded: special.Expanded, place: str) -> Iterator[Diagnostic]:
 
 
 def checked_natural_language(
-    text: str, before: int, place: str, known: Knowledge
+    text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy = Fuzzy.TYPOS, *, strict: bool = False
 ) -> tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """`checked` for natural-language steps; a fuzzy match is a warning with its similarity."""
-    parse = parse_steps(text, before, place, known)
-    faults = parse.faults or grammar.affordances(parse.program, known, place)
+    """`checked` for natural-language steps; a fuzzy match is a warning, or with `strict` a fault."""
+    parse = parse_steps(text, before, place, known, fuzzy)
+    faults = parse.faults or (parse.warnings if strict else ()) or grammar.affordances(parse.program, known, place)
     if faults:
         return parse.program, faults, ()
     # Natural language loses instances: two lamps may look like one switched on twice, so this is only a warning.
@@ -133,11 +158,13 @@ def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge, che
 STAGE = Stage(
     name="validate",
     tables={"": VALIDATED},
-    process=process,
+    process=process_as,
     reads=("ingest",),
-    open=lambda job: knowledge(job.settings),
+    settings=("fuzzy", "strict"),
+    open=lambda job: Reading(knowledge(job.settings), Fuzzy(job.settings.fuzzy), job.settings.strict),
     prepare=knowledge_laid_over,
     begin=keep_knowledge,
+    label=lambda row: FUZZY if any(each["code"] == Code.FUZZY_MATCH for each in row["warnings"]) else None,
     facts=knowledge_used,
     # Descriptions without a program go on to `publish` as they are.
     select=lambda record, plan: bool(record["kind"] == "program"),

@@ -6,6 +6,13 @@ from dataclasses import dataclass
 STEP = re.compile(r"\s*[\[<(|]")
 """How a line begins that is, or tries to be, a step."""
 
+TITLE = re.compile(
+    r"\s*(?:(?:task|title|activity|goal|plan|your task is to)(?:\s*[#№]?\d{1,6})?\s*:"
+    r"|task\s*[#№]?\d{1,6}\s*[.)–—-])\s*",
+    re.IGNORECASE,
+)
+"""The optional beginning of a title's line: `Task:`, `Task 12:`, `Task 12 -`."""
+
 _SENTENCE_ENDS = tuple(".!?:;,\"')…”’")
 _SENTENCE_WORDS = 9
 
@@ -15,7 +22,7 @@ class Splitter:
     """Decides, line by line, where a program begins.
 
     A plain line after a blank one begins the next program once steps were seen. Where none were, a title that nobody
-    wrote steps for must not become a part of its neighbour: two blank lines part them, or one where a description
+    wrote steps for must not become a part of its neighbor: two blank lines part them, or one where a description
     stood already, unless the line reads like a sentence, which a title does not.
     """
 
@@ -41,7 +48,7 @@ class Splitter:
         self._blanks += 1
 
     def _parted(self, line: str, blanks: int) -> bool:
-        if self.has_steps:
+        if self.has_steps or (self._header and TITLE.match(line)):
             return blanks > 0
         return (blanks > 1 or (blanks == 1 and self._header > 1)) and not is_sentence(line)
 

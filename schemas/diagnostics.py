@@ -22,6 +22,7 @@ class Diagnostic:
         message: the fault.
         suggestion: the remedy, if one is known.
         source: the whole offending line, for underlining.
+        before: characters of the file's line before `source`, where that is a part of it.
     """
 
     code: Code
@@ -33,6 +34,7 @@ class Diagnostic:
     found: str = ""
     suggestion: str = ""
     source: str = ""
+    before: int = 0
 
     def at(self, file: str) -> Diagnostic:
         """The same fault, placed in `file`."""

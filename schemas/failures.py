@@ -43,6 +43,7 @@ class Code(StrEnum):
     NOT_UNDERSTOOD = "NOT_UNDERSTOOD", 18
     AMBIGUOUS = "AMBIGUOUS", 19
     FUZZY_MATCH = "FUZZY_MATCH", 20
+    NO_STEP = "NO_STEP", 84
     HEARD_NEARLY = "FUZZY_MATCH", 20  # its name in datasets of version 0.1.0
     # Objects of an action
     NOT_AFFORDED = "NOT_AFFORDED", 21
@@ -114,6 +115,7 @@ class Code(StrEnum):
     NOT_ALLOWED = "NOT_ALLOWED", 76
     DISCONNECTED = "DISCONNECTED", 77
     AGENT_FAILED = "AGENT_FAILED", 78
+    FINISHED = "FINISHED", 83
     # People and their browsers
     NO_SESSION = "NO_SESSION", 79
     TOO_FAST = "TOO_FAST", 80

@@ -15,6 +15,9 @@ _ACTION_NAME = re.compile(r"\[\s*[A-Za-z][A-Za-z _-]*?\s*\]")
 _OBJECT = re.compile(r"<([^<>\[\]]*)>")
 _INSTANCE = re.compile(r"\(([^()<>\[\]|]*)\)")
 _NUMBER = re.compile(r"\s*(?!0+\s*$)[0-9]{1,9}(\.[0-9]{1,9})?\s*")
+_NEXT = ("", "<", "|", "{")
+"""What may follow an object without an instance."""
+
 _MODIFIERS = re.compile(r"\{[^{}]*\}")
 _WORD = re.compile(r"[^\W_]")
 
@@ -72,6 +75,9 @@ def _objects(line: str, at: int) -> Iterator[Fault]:
             yield name.start(), name.end(), "an object without a name", "write <cup> (1)", Code.SYNTAX
         after = _skipped(line, name.end())
         instance = _INSTANCE.match(line, after)
+        if instance is None and line[after : after + 1] in _NEXT:
+            at = after
+            continue
         if instance is None:
             message = f"`{name[0][:40]}` lacks its instance"
             remedy = f"write {name[0][:40]} (1); another of its kind in the program is (2)"

@@ -75,6 +75,9 @@ class IngestedRow(_Kind, NamedRow):
     conditions: Annotated[list[ConditionRow] | None, "preconditions that came with the program"]
     keep: Annotated[list[bool] | None, "for each step of the program a sketch is of, whether it is kept"]
     parts: Annotated[list[PartRow] | None, "its parts in splits of its source's own"]
+    places: Annotated[
+        list[list[int]] | None, "where each line of the text stands in the file, if not in lines of its own"
+    ]
 
 
 class GroundingRow(TypedDict):
@@ -99,7 +102,9 @@ class ValidatedRow(NamedRow):
 class RunRow(TypedDict):
     """A run of a program."""
 
-    rules: Annotated[str, "named options of the engine: made_bed or replay; default in older datasets"]
+    rules: Annotated[
+        str, "named options of the engine: near_hands, replay or evolving_graph; made_bed or default in older datasets"
+    ]
     bindings: Annotated[list[BindingRow], "program objects to graph nodes"]
     ticks: Annotated[list[TickRow], "what each tick did and changed"]
     executable: Annotated[bool, "ran to its end; false for originals in perturbed environments in which they fail"]

@@ -2,9 +2,10 @@
 
     <char0> [PutBack] <cup> (1.41) <table> (2) {at=3,2 hand=left} | <char1> [StandUp]
 
-An agent is named only where there are several; an instance is `(1)` as collected or `(1.41)` once bound to node 41;
-modifiers are optional; `|` parts what several agents do in one tick. Names and modifiers are checked by
-`hearth.kb.grammar`.
+An agent is named only where there are several; an instance is `(1)` as collected or `(1.41)` once bound to node 41, and
+1 where none is written; modifiers are optional; `|` parts what several agents do in one tick. Names and modifiers are
+checked by `hearth.kb.grammar`.
+The number that VirtualHome prints after a step, `[0]`, and a comment after the steps, `# twice`, are read over.
 Printing what was parsed gives canonical text back unchanged.
 """
 
@@ -24,12 +25,17 @@ MAX_LINE = 10_000
 
 SPECIAL = "special"
 
-_OBJECT = r"<[\s_]*([^\s_<>\[\]][^<>\[\]]*?)[\s_]*>\s*\(\s*(?!0+\s*\))([0-9]{1,9})(?:\.([0-9]{1,9}))?\s*\)"
+_INSTANCE = r"\s*+\(\s*(?!0+\s*\))([0-9]{1,9})(?:\.([0-9]{1,9}))?\s*\)"
+_OBJECT = rf"<[\s_]*([^\s_<>\[\]][^<>\[\]]*?)[\s_]*>(?:{_INSTANCE})?"
 _STEP = re.compile(
-    rf"\s*(?:<\s*char([0-9]{{1,3}})\s*>\s*)?\[\s*([A-Z][A-Z _-]*?)\s*\]\s*((?:{_OBJECT}\s*)*)(\{{[^{{}}]*\}})?\s*",
+    rf"\s*(?:<\s*char([0-9]{{1,3}})\s*>\s*)?\[\s*([A-Z][A-Z _-]*?)\s*\]\s*((?:{_OBJECT}\s*+)*)(\{{[^{{}}]*\}})?\s*"
+    r"(?:\[\s*[0-9]{1,6}\s*\]\s*)?",
     re.IGNORECASE,
 )
 _OBJECTS = re.compile(_OBJECT)
+_REMARK = re.compile(r"(?<=[\])}>])\s*+(?:#|//).*")
+"""A comment after the steps of a line."""
+
 _MODIFIER = re.compile(r"([a-z]+)=(\S+)")
 
 
@@ -184,7 +190,8 @@ def _parse_line(line: str) -> tuple[Step, ...] | Diagnostic:
     while True:
         match = _STEP.match(line, position)
         if match is None or (match.end() < len(line) and line[match.end()] != "|"):
-            return explain(line, position)
+            bare = _REMARK.sub("", line, count=1)
+            return _parse_line(bare) if bare != line else explain(line, position)
         step = _step(match, joins=bool(steps))
         if isinstance(step, Diagnostic):
             return step
@@ -199,7 +206,7 @@ def _step(match: re.Match[str], joins: bool) -> Step | Diagnostic:
     if normal_name(action) == SPECIAL:
         return special(match.string)
     refs = tuple(
-        ObjectRef(normal_name(name), int(instance), int(node) if node else None)
+        ObjectRef(normal_name(name), int(instance or 1), int(node) if node else None)
         for name, instance, node in _OBJECTS.findall(objects)
     )
     pairs = tuple(_MODIFIER.findall(braces[1:-1]))

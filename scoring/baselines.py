@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from random import Random
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.cases import start_of
@@ -47,7 +47,7 @@ Starting = Callable[[Sequence[Example], Example, World, Rules, Random], Steps]
 
 class Result(NamedTuple):
     """A baseline's mean scores, as in `METRICS`: of programs, of final graphs, of goals, of running. None if the thesis
-    has no figure.
+    has no figure. The source is `here` for a score on this dataset, `thesis` for one that the thesis prints.
     """
 
     baseline: str
@@ -63,7 +63,14 @@ class Result(NamedTuple):
     goal_fraction: float | None = None
     executable: float | None = None
     parsable: float | None = None
+    goal_whole: float | None = None
+    source: str = "thesis"
 
+
+SCORES = tuple(name for name in Result._fields if name not in ("baseline", "source"))
+"""The scores of a baseline."""
+
+THESIS_NOTE = "Rows of source `thesis` are figures that the thesis prints, of its own data; not measured here."
 
 THESIS = (
     Result("Random sampling, table 4.4", 0.226, 0.039, 0.020, 0.095, executable=0.006),
@@ -169,8 +176,11 @@ def _start(environment: DifferenceRow, home: Home) -> frozenset[Literal[str]]:
 
 def _result(name: str, scored: Sequence[Scored]) -> Result:
     means = summarise(scored).means
-    columns = (each if each in METRICS else f"lcs_{each}" for each in Result._fields[1:])
-    return Result(name, *(means[each].mean if each in means else None for each in columns))
+    columns = (each if each in METRICS else f"lcs_{each}" for each in SCORES)
+    values: dict[str, Any] = {
+        each: means[of].mean if of in means else None for each, of in zip(SCORES, columns, strict=True)
+    }
+    return Result(name, source="here", **values)
 
 
 def random_sampling(train: Sequence[Example], test: Sequence[Example], seed: int, knowledge: Knowledge) -> list[Steps]:

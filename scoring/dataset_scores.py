@@ -1,5 +1,6 @@
 """Predictions scored against a dataset: its programs are the references, its environments where they run."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -20,6 +21,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps
 from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, scored
+from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.lines import steps_of
 from hearth.scoring.prediction_rows import Named
 from hearth.scoring.predictions import Pair, read_pairs
@@ -45,6 +47,10 @@ def score_dataset(
     options: Options | None = None,
     workers: int = 1,
     seen: Seen = unseen,
+    *,
+    only_given: bool = False,
+    originals: bool = False,
+    rejects: FirstFaults | None = None,
 ) -> list[Scored]:
     """Score a file of predictions for executions of a dataset; those without a prediction are missing.
 
@@ -61,6 +67,9 @@ def score_dataset(
         options: how to score; each execution's own rules are used.
         workers: number of processes; the scores do not depend on it.
         seen: reports progress.
+        only_given: leave out executions without a prediction.
+        originals: leave out executions of augmented programs.
+        rejects: gets the faults of rows, which are left out; without it they are raised.
 
     Returns:
         The scores by id, without worlds.
@@ -68,9 +77,14 @@ def score_dataset(
     Raises:
         HearthError: errors of `read_pairs` and of `chosen`.
     """
-    wanted = chosen(dataset, split, part)
-    predicted = {pair.id: pair for pair in _read(dataset, file)}
-    return _in_shares(dataset, [predicted[name] for name in wanted], options, workers, seen)
+    wanted = chosen(dataset, split, part, originals)
+    predicted = {pair.id: pair for pair in _read(dataset, file, rejects)}
+    pairs = [predicted[name] for name in wanted if predicted[name].line or not only_given]
+    if not pairs:
+        message = "no prediction is of an execution that is asked for"
+        suggestion = f"ids are those of the part's executions, as `{wanted[0]}`"
+        raise HearthError.of(Code.EMPTY, message, file=str(file), suggestion=suggestion)
+    return _in_shares(dataset, pairs, options, workers, seen)
 
 
 def score_given(
@@ -80,11 +94,11 @@ def score_given(
     return _in_shares(dataset, [pair for pair in _read(dataset, file) if pair.line], options, workers, seen)
 
 
-def _read(dataset: Dataset, file: Path) -> list[Pair]:
+def _read(dataset: Dataset, file: Path, rejects: FirstFaults | None = None) -> list[Pair]:
     """A pair for each execution of a dataset; `line` is 0 where the file lacks it."""
     opened.cache_clear()
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
-    return read_pairs(file, known, partial(read_line, dataset.knowledge), _named(dataset))
+    return read_pairs(file, known, partial(read_line, dataset.knowledge), _named(dataset), rejects)
 
 
 def score_steps(
@@ -170,8 +184,14 @@ def _every(dataset: Dataset) -> list[str]:
     return [name for (name,) in dataset.rows(f"SELECT {_ID} FROM executions")[1]]
 
 
-def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
+def chosen(dataset: Dataset, split: str = "", part: str = "", originals: bool = False) -> list[str]:
     """The ids of the executions in a part of a split, sorted; without a split, of all that the dataset includes.
+
+    Args:
+        dataset: with the executions.
+        split: of the dataset; "" for none.
+        part: prefix of the split's parts.
+        originals: leave out executions of augmented programs.
 
     Raises:
         HearthError: UNKNOWN_ID, with the existing parts; BAD_ARGUMENT, for a part without a split.
@@ -179,10 +199,11 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
     if part and not split:
         message = f"the part `{part}` without its split"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name the split that has it")
+    only = _ORIGINALS if originals else ""
     if not split:
-        query = f"SELECT {_ID} FROM executions WHERE {dataset.included} ORDER BY 1"
+        query = f"SELECT {_ID} FROM executions {only} WHERE {dataset.included} ORDER BY 1"
         return [name for (name,) in dataset.rows(query)[1]]
-    query = f"""SELECT {_ID} FROM splits SEMI JOIN (SELECT execution_id FROM executions WHERE executable)
+    query = f"""SELECT {_ID} FROM splits SEMI JOIN (SELECT execution_id FROM executions {only} WHERE executable)
         USING (execution_id) WHERE split = $split AND starts_with(part, $part) ORDER BY 1"""
     found = [name for (name,) in dataset.rows(query, split=split, part=part)[1]]
     if not found:
@@ -193,9 +214,18 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
     return found
 
 
+_ORIGINALS = "SEMI JOIN (SELECT program_id FROM programs WHERE parent_id IS NULL) USING (program_id)"
+
+
+_UNNUMBERED = re.compile(r"<([^<>]+)>(?!\s*\()")
+
+
 def read_line(knowledge: Knowledge, line: str) -> tuple[Step, ...] | Diagnostic:
     """A line of a program, or a natural-language step: `2. Put the cup on the table`."""
     parsed = parse_steps(line)
+    if isinstance(parsed, Diagnostic) and line.startswith("["):
+        # A step without instance numbers, as the thesis writes it (eq. 4.2), is about the first of each class.
+        parsed = parse_steps(_UNNUMBERED.sub(r"<\1> (1)", line))
     if not isinstance(parsed, Diagnostic):
         return parsed
     text = line.lstrip("0123456789.:) ").strip() if line[:1].isdigit() else line.partition(":")[2] or line

@@ -19,7 +19,9 @@ GRAPH = "graph"
 HOME = "home"
 
 
-def by_row(file: Path, knowledge: Knowledge, graph: Path | None = None, homes: Path | None = None) -> Environments:
+def by_row(
+    file: Path, knowledge: Knowledge, graph: Path | None = None, homes: Path | None = None, home: str = ""
+) -> Environments:
     """Environments named by each row: `graph`, a scene graph's file beside the predictions', or `home`, a name.
 
     Args:
@@ -27,19 +29,22 @@ def by_row(file: Path, knowledge: Knowledge, graph: Path | None = None, homes: P
         knowledge: of the environments.
         graph: the environment of rows with neither.
         homes: a folder of the user's own homes.
+        home: the name of the home of rows with neither, where there is no graph for them.
 
     The result raises HearthError, naming the row, for a missing home or file, a file outside the folder of the
     predictions, or one that is not a regular file.
     """
 
     def environment(pair: Pair) -> World | None:
-        named, home = pair.more.get(GRAPH), pair.more.get(HOME)
+        named, own = pair.more.get(GRAPH), pair.more.get(HOME)
         try:
             if named is not None:
                 return _from_file(inside(file.parent, str(named)), knowledge)
-            if home is not None:
-                return _from_home(str(home), homes, knowledge)
-            return _from_file(graph, knowledge) if graph else None
+            if own is not None:
+                return _from_home(str(own), homes, knowledge)
+            if graph:
+                return _from_file(graph, knowledge)
+            return _from_home(home, homes, knowledge) if home else None
         except HearthError as error:
             raise HearthError(_at(fault, pair, file) for fault in error.diagnostics) from None
 

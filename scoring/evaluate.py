@@ -9,13 +9,14 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.goals import Goal
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
 from hearth.scoring.bootstrap import Interval, intervals
 from hearth.scoring.environments import Environments
+from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.lines import Lines
 from hearth.scoring.metrics import executability as running
-from hearth.scoring.metrics import goals
 from hearth.scoring.metrics.executability import ErrorClass, Executability, executability
 from hearth.scoring.metrics.goals import goal_of
 from hearth.scoring.metrics.graph_f1 import FAILED, MATCH, SCOPE, GraphScore, MatchBy, Scope, f1_signature, named
@@ -23,10 +24,10 @@ from hearth.scoring.metrics.graph_f1 import score as graph_score
 from hearth.scoring.metrics.lcs import LEVELS, LcsScore, lcs_signature, score_pairs
 from hearth.scoring.metrics.parsability import SIGNATURE as PARSABLE
 from hearth.scoring.metrics.parsability import Parsability, parsability
+from hearth.scoring.metrics.reached import Achieved, GoalScore, of_given, signatures_of
 from hearth.scoring.predictions import Pair
 from hearth.simulation.engine import run
 from hearth.simulation.goal_text import read_goal
-from hearth.simulation.goals import Progress
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
@@ -36,7 +37,7 @@ GOALS = ("goal", "tl_goal", "vh_goal")
 NO_LCS = LcsScore(0.0, 0.0, 0.0)
 
 BothLcs = tuple[LcsScore, LcsScore]
-"""Similarity by class, or as the options say, and by instance."""
+"""Similarity by class, or as the options say, and by instance; 0 without a reference."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +65,14 @@ class Scored:
 
     Attributes:
         pair: the prediction and its reference.
-        lcs: similarity of the programs, by class unless the options say otherwise.
+        lcs: similarity of the programs, by class unless the options say otherwise; 0 without a reference.
         by_instance: similarity where each object is an instance, as in tables 5.2 to 5.5.
         parse: None for a missing prediction.
         execution: None without an environment, and for a missing prediction.
         graph: None without an environment, or if the reference does not run.
-        goal: progress of the row's own goal, else of the goal that the reference achieves; None if the prediction does
-            not run, or without either.
-        comparable: whether the reference runs; None without an environment.
+        goal: of the row's own goal, else of the goal that the reference achieves; None without either.
+        comparable: whether the reference runs; None without an environment or a reference.
+        placed: whether there is an environment.
     """
 
     pair: Pair
@@ -80,8 +81,9 @@ class Scored:
     parse: Parsability | None = None
     execution: Executability | None = None
     graph: GraphScore | None = None
-    goal: Progress | None = None
+    goal: GoalScore | None = None
     comparable: bool | None = None
+    placed: bool = False
 
     @property
     def missing(self) -> bool:
@@ -94,10 +96,21 @@ class Scored:
         return self.pair.predicted == ()
 
 
-def _goal(scored: Scored, value: Callable[[Progress], float]) -> float | None:
-    if not scored.comparable and given_goal(scored.pair) is None:
-        return None
-    return value(scored.goal) if scored.goal else 0.0
+def _left(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
+    """The value of a goal of which something was left to do at the start."""
+    return float(value(scored.goal)) if scored.goal and scored.goal.left else None
+
+
+def _whole(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
+    return float(value(scored.goal)) if scored.goal else None
+
+
+def _lcs(level: str, by_instance: bool = False) -> Callable[[Scored], float | None]:
+    def value(scored: Scored) -> float | None:
+        found: float = getattr(scored.by_instance if by_instance else scored.lcs, level)
+        return found if scored.pair.referenced else None
+
+    return value
 
 
 def given_goal(pair: Pair) -> Any:
@@ -105,28 +118,31 @@ def given_goal(pair: Pair) -> Any:
     return next((found for name in GOALS if (found := pair.more.get(name)) is not None), None)
 
 
-def _progress(pair: Pair, ran: Executability, world: World, rules: Rules, achieved: Goal | None) -> Progress | None:
-    """The progress of the goal that a prediction is asked to reach, at the end of its run."""
+def _goal_score(
+    pair: Pair, ran: Executability | None, world: World, rules: Rules, reference: Reference | None
+) -> GoalScore | None:
+    """The score of the goal that a prediction is asked to reach; one that fails reaches nothing."""
+    final = ran.final if ran and ran.afforded else None
     given = given_goal(pair)
-    if ran.final is None or given is None:
-        return Progress.at(achieved, ran.final) if ran.final and achieved else None
-    place = f"goal of `{pair.id}`, row {pair.line}"
-    return Progress.of(read_goal(given, world.home, place), run(world, ran.program, rules))
+    if given is None:
+        return reference.achieved.score(final) if reference and reference.achieved else None
+    goal = read_goal(given, world.home, f"goal of `{pair.id}`, row {pair.line}")
+    return of_given(goal, world, run(world, ran.program, rules) if ran and final else None)
 
 
 def _executable(scored: Scored) -> float | None:
-    if scored.comparable is None:
+    if not scored.placed:
         return None
     return float(scored.execution is not None and scored.execution.executable)
 
 
 METRICS: dict[str, Callable[[Scored], float | None]] = {
-    "lcs_step": lambda s: s.lcs.step,
-    "lcs_action": lambda s: s.lcs.action,
-    "lcs_object": lambda s: s.lcs.object,
-    "lcs_mean": lambda s: s.lcs.mean,
-    "lcs_step_instances": lambda s: s.by_instance.step,
-    "lcs_object_instances": lambda s: s.by_instance.object,
+    "lcs_step": _lcs("step"),
+    "lcs_action": _lcs("action"),
+    "lcs_object": _lcs("object"),
+    "lcs_mean": _lcs("mean"),
+    "lcs_step_instances": _lcs("step", by_instance=True),
+    "lcs_object_instances": _lcs("object", by_instance=True),
     "parsable": lambda s: float(s.parse is not None and s.parse.parsable),
     "parsable_names": lambda s: float(s.parse is not None and s.parse.named),
     "executable": _executable,
@@ -134,10 +150,13 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
     "f1_state": lambda s: s.graph.states.f1 if s.graph else None,
     "f1_relation": lambda s: s.graph.relations.f1 if s.graph else None,
     "f1": lambda s: s.graph.both.f1 if s.graph else None,
-    "goal": lambda s: _goal(s, lambda found: float(found.satisfied)),
-    "goal_fraction": lambda s: _goal(s, lambda found: found.fraction),
+    "goal": lambda s: _left(s, lambda found: found.reached),
+    "goal_fraction": lambda s: _left(s, lambda found: found.fraction),
+    "goal_whole": lambda s: _whole(s, lambda found: found.whole),
+    "goal_whole_fraction": lambda s: _whole(s, lambda found: found.whole_fraction),
 }
-"""Every score by name, from 0 to 1; None if it does not apply. To add a scorer: a module, a row here, a test."""
+"""Every score by name, from 0 to 1; None if it does not apply. `goal` counts only what did not hold at the start;
+`goal_whole` is the reading before version 2, which counts all. To add a scorer: a module, a row here, a test."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,21 +166,27 @@ class Summary:
     Attributes:
         count: number of predictions, including missing ones.
         missing: number of missing predictions, which score 0.
-        empty: number of predictions without lines, which parse and run; `executable_filled` excludes them.
+        empty: number of predictions without lines, which neither parse nor run; `executable_filled` excludes them.
+        unreferenced: number of predictions without a reference, which have no LCS and no F1.
+        reached_before: number of goals of which all holds at the start; `goal` excludes them.
         incomparable: number of references that do not run; excluded from F1, and from goals that are theirs.
         inexact: number of predictions whose F1 is a lower bound.
         means: each score's mean and interval.
         errors: first failures by class.
+        codes: first failures by code.
         failed_at: number of first failures at each line, from 0.
     """
 
     count: int
     missing: int
     empty: int
+    unreferenced: int
+    reached_before: int
     incomparable: int
     inexact: int
     means: Mapping[str, Interval]
     errors: Mapping[ErrorClass, int]
+    codes: Mapping[Code, int]
     failed_at: Mapping[int, int]
 
 
@@ -173,20 +198,25 @@ def signatures(options: Options, own: int = 0) -> dict[str, str]:
         "parsable": PARSABLE,
         "executable": running.SIGNATURE,
         "f1": f1_signature(options.match, options.scope),
-        "goal": goals.signature_of(own),
+        **signatures_of(own),
     }
 
 
 def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[BothLcs]:
-    """The similarity of each prediction to its reference, and that by instance; 0 for a missing one."""
+    """The similarity of each prediction to its reference, and that by instance; 0 if one of the two is missing."""
     lines = [(pair.predicted or (), pair.reference) for pair in pairs]
     distinct = score_pairs(lines, instances=True)
     both = zip(distinct if instances else score_pairs(lines), distinct, strict=True)
-    return [(NO_LCS, NO_LCS) if pair.predicted is None else found for pair, found in zip(pairs, both, strict=True)]
+    there = [pair.predicted is not None and pair.referenced for pair in pairs]
+    return [found if whole else (NO_LCS, NO_LCS) for whole, found in zip(there, both, strict=True)]
 
 
 def evaluate(
-    pairs: Sequence[Pair], knowledge: Knowledge, environments: Environments | None = None, options: Options = Options()
+    pairs: Sequence[Pair],
+    knowledge: Knowledge,
+    environments: Environments | None = None,
+    options: Options = Options(),
+    rejects: FirstFaults | None = None,
 ) -> list[Scored]:
     """Score every prediction, in order (thesis 4.3, 5.6.1).
 
@@ -195,6 +225,10 @@ def evaluate(
         knowledge: the grammar.
         environments: where programs run; without it only LCS and parsability are scored.
         options: how.
+        rejects: gets the faults of rows whose environment or goal can't be read, which are left out.
+
+    Raises:
+        HearthError: such a fault, without `rejects`, or if no row is left.
 
     Examples:
         >>> row = '{"id": 1, "predicted": "[Sit] <sofa> (1)", "reference": "[Lie] <sofa> (1)"}'
@@ -203,10 +237,17 @@ def evaluate(
         >>> scored.lcs.step, scored.lcs.object, scored.parse.parsable
         (0.0, 1.0, True)
     """
-    return [
-        scored(pair, lcs, knowledge, environments(pair) if environments else None, options)
-        for pair, lcs in zip(pairs, lcs_of(pairs, options.instances), strict=True)
-    ]
+    found = []
+    for pair, lcs in zip(pairs, lcs_of(pairs, options.instances), strict=True):
+        try:
+            found.append(scored(pair, lcs, knowledge, environments(pair) if environments else None, options))
+        except HearthError as error:
+            if rejects is None:
+                raise
+            rejects.reject(error.diagnostics, pair.id, pair.line)
+    if rejects and not found:
+        raise HearthError(rejects)
+    return found
 
 
 def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
@@ -217,10 +258,13 @@ def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
         count=len(every),
         missing=sum(each.missing for each in every),
         empty=sum(each.empty for each in every),
+        unreferenced=sum(not each.pair.referenced for each in every),
+        reached_before=sum(each.goal is not None and not each.goal.left for each in every),
         incomparable=sum(each.comparable is False for each in every),
         inexact=sum(each.graph is not None and not each.graph.exact for each in every),
         means=intervals(columns, seed),
         errors=dict(sorted(Counter(each.error for each in failures if each.error).items())),
+        codes=dict(sorted(Counter(each.code for each in failures if each.code).items())),
         failed_at=dict(sorted(Counter(each.failed_line for each in failures if each.failed_line is not None).items())),
     )
 
@@ -240,17 +284,17 @@ class Reference(NamedTuple):
     Attributes:
         program: bound.
         final: the world at its end; None if it does not run.
-        goal: its achieved goal.
+        achieved: its goal; None if it does not run.
     """
 
     program: Program
     final: World | None
-    goal: Goal | None
+    achieved: Achieved | None
 
     @classmethod
     def of(cls, program: Program, start: World, final: World | None) -> Reference:
         """The reference of a program, from its initial and final world."""
-        return cls(program, final, goal_of(start, final) if final else None)
+        return cls(program, final, Achieved.of(goal_of(start, final), start, final) if final else None)
 
 
 @lru_cache(maxsize=64)
@@ -281,13 +325,19 @@ def scored(
     parsed = None if pair.predicted is None else parsability(pair.predicted, knowledge)
     if world is None:
         return Scored(pair, *lcs, parsed)
-    program, final, achieved = known or reference_of(pair.reference, world, options.rules)
+    reference = known
+    if reference is None and pair.referenced:
+        reference = reference_of(pair.reference, world, options.rules)
+    program = reference.program if reference else None
     ran = None if pair.predicted is None else executability(pair.predicted, world, program, options.rules)
-    goal = _progress(pair, ran, world, options.rules, achieved) if ran else None
-    if final is None:
-        return Scored(pair, *lcs, parsed, ran, goal=goal, comparable=False)
-    if ran is None or ran.final is None:
-        return Scored(pair, *lcs, parsed, ran, FAILED, comparable=True)
-    objects = named(ran.program), named(program)
-    graph = graph_score(ran.final, final, *objects, match=options.match, scope=options.scope)
-    return Scored(pair, *lcs, parsed, ran, graph, goal, comparable=True)
+    goal = _goal_score(pair, ran, world, options.rules, reference)
+    graph = _graph(ran, reference, options) if reference and reference.final else None
+    comparable = reference and reference.final is not None
+    return Scored(pair, *lcs, parsed, ran, graph, goal, comparable, placed=True)
+
+
+def _graph(ran: Executability | None, reference: Reference, options: Options) -> GraphScore:
+    if ran is None or ran.final is None or reference.final is None:
+        return FAILED
+    objects = named(ran.program), named(reference.program)
+    return graph_score(ran.final, reference.final, *objects, match=options.match, scope=options.scope)

@@ -1,43 +1,94 @@
-"""The first faults of each kind, and how many more: a file of a million bad rows is as bad as one of twenty."""
+"""Rows that are refused: the first fault of each kind with a count, since a million bad rows are as bad as one."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
 
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 
 SHOWN = 20
-"""Faults of one kind that are kept; the rest are counted."""
+"""Different faults of one code that are kept; the rest are counted."""
+
+LISTED = 5
+"""Lines of further rows with the same fault that are listed."""
+
+_DIGITS = re.compile(r"\d+")
+
+
+@dataclass(slots=True)
+class _Group:
+    """A fault that several rows have: the first one, the lines of the next ones, and how many more there are."""
+
+    first: Diagnostic
+    lines: list[int] = field(default_factory=list)
+    more: int = 0
+
+    def add(self, line: int) -> None:
+        self.more += 1
+        if line and len(self.lines) < LISTED:
+            self.lines.append(line)
+
+    def shown(self) -> Diagnostic:
+        if not self.more:
+            return self.first
+        lines = ", ".join(map(str, self.lines)) + (", ..." if self.more > len(self.lines) else "")
+        where = f": line{'s' * (self.more > 1)} {lines}" if self.lines else ""
+        rows = f"{self.more:,} more row{'s' * (self.more > 1)}"
+        return replace(self.first, message=f"{self.first.message} (and {rows}{where})")
 
 
 class FirstFaults:
-    """Faults of the rows of a file; memory does not grow with their number."""
+    """Faults of the rows of a file, equal ones counted; memory does not grow with their number.
+
+    Attributes:
+        rows: number of refused rows.
+    """
 
     def __init__(self) -> None:
-        self._kept: list[Diagnostic] = []
-        self._counts: Counter[Code] = Counter()
-        self._files: dict[Code, str] = {}
+        self.rows = 0
+        self._groups: dict[tuple[Code, str, str, str], _Group] = {}
+        self._kept: Counter[Code] = Counter()
+        self._more: Counter[tuple[Code, str]] = Counter()
 
     def __bool__(self) -> bool:
-        return bool(self._kept)
+        return bool(self.rows)
 
-    def append(self, fault: Diagnostic) -> None:
-        """Add one."""
-        self._counts[fault.code] += 1
-        self._files.setdefault(fault.code, fault.file)
-        if self._counts[fault.code] <= SHOWN:
-            self._kept.append(fault)
+    def append(self, fault: Diagnostic, name: str = "") -> None:
+        """Add a row with one fault; see `reject`."""
+        self.reject([fault], name)
 
     def extend(self, faults: Iterable[Diagnostic]) -> None:
-        """Add several."""
+        """Add several rows with one fault each."""
         for fault in faults:
             self.append(fault)
 
+    def reject(self, faults: Iterable[Diagnostic], name: str = "", line: int = 0) -> None:
+        """Add one row with all its faults.
+
+        Args:
+            faults: of the row.
+            name: its id; messages that differ in it alone are the same fault.
+            line: of the row, for faults that do not name it.
+        """
+        self.rows += 1
+        for fault in faults:
+            words = _DIGITS.sub("#", fault.message.replace(f"`{name}`", "`"))
+            key = fault.code, fault.file, words, fault.suggestion
+            group = self._groups.get(key)
+            if group:
+                group.add(fault.line or line)
+            elif self._kept[fault.code] < SHOWN:
+                self._kept[fault.code] += 1
+                self._groups[key] = _Group(fault)
+            else:
+                self._more[fault.code, fault.file] += 1
+
     def __iter__(self) -> Iterator[Diagnostic]:
-        """The kept ones, and for each kind the number of further ones."""
-        yield from self._kept
-        for code, count in self._counts.items():
-            if count > SHOWN:
-                yield Diagnostic(code, f"and {count - SHOWN:,} more of this kind", self._files[code])
+        """Yield the different faults with their counts, and for each code the number of further ones."""
+        yield from (group.shown() for group in self._groups.values())
+        for (code, file), count in self._more.items():
+            yield Diagnostic(code, f"and {count:,} more of this kind", file)

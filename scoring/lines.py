@@ -1,11 +1,30 @@
 """Input of scorers: a program, a text or a list of steps, read as a sequence of lines."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.plan_lines import plan_line, unexplained
+from hearth.kb.language.program_lines import Kind, ProgramLine, is_plan, lines_of_program
 from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import parse_steps
+
+
+class Refused(str):
+    """A line that another reader refused, with the code of its fault."""
+
+    __slots__ = ("code",)
+
+    code: Code
+
+    def __new__(cls, text: str, code: Code) -> Refused:
+        """Return the line with its code."""
+        line = super().__new__(cls, text)
+        line.code = code
+        return line
+
 
 Line = Step | str
 """A step, or text that does not parse."""
@@ -26,10 +45,13 @@ def read(source: Source, reader: Reader = parse_steps) -> Lines:
 
     In a text, the lines before the first step are title and description; in a text without steps, every line counts as
     a step that does not parse. Blank lines are ignored; a line of several agents (`... | ...`) gives a step for each.
+    A plan, with Markdown or in another form than that of programs, is read as `check` reads it.
     """
     if isinstance(source, Program):
         return source.steps
     if isinstance(source, str):
+        if is_plan(source.split("\n")):
+            return tuple(_read_plan(lines_of_program(source), reader))
         return tuple(_read_lines(_body(source, reader), reader))
     return tuple(_read_lines(source, reader))
 
@@ -51,6 +73,19 @@ def _body(text: str, reader: Reader) -> list[str]:
         return lines[written:]
     first = next((n for n, line in enumerate(lines) if not isinstance(reader(line), Diagnostic)), 0)
     return lines[first:]
+
+
+def _read_plan(lines: Sequence[ProgramLine], reader: Reader) -> Iterator[Line]:
+    """Read the lines of a plan: one that may explain the step above counts only where it is a step."""
+    for _, line, kind in lines:
+        if kind == Kind.TEXT:
+            continue
+        found = reader(line.text)
+        found = reader(unexplained(line.text)) if isinstance(found, Diagnostic) else found
+        if not isinstance(found, Diagnostic):
+            yield from found
+        elif kind != Kind.DETAIL:
+            yield line.text
 
 
 def _read_lines(lines: Iterable[str | Step], reader: Reader) -> Iterator[Line]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Set
 
+from hearth.grounding.node_ids import by_number
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -13,7 +14,7 @@ def bind(program: Program, nodes: Nodes, knowledge: Knowledge, reference: Progra
 
     1. the node it names, `(1.41)`;
     2. the node that the reference binds the same name and instance to;
-    3. the node whose id is its number, `(41)`, if that is an instance of its class;
+    3. the node whose id is its number, `(41)`, by the rule of `grounding.node_ids`;
     4. the first instance of its class, by id, to which no other object is bound;
     5. none: running it then fails as UNBOUND.
 
@@ -30,10 +31,9 @@ def bind(program: Program, nodes: Nodes, knowledge: Knowledge, reference: Progra
     known = _bindings(reference) if reference else {}
     bound: dict[Key, int | None] = {}
     taken: set[int | None] = {ref.node for ref in every if ref.node is not None}
+    numbers = by_number(objects, nodes.classes, knowledge)
     for ref in objects:
-        node = known.get(ref.key)
-        if node is None and nodes.classes.get(ref.instance) in knowledge.same_class(ref.name):
-            node = ref.instance
+        node = known.get(ref.key, numbers.get(ref.key))
         if node is not None:
             bound[ref.key] = node
             taken.add(node)
@@ -54,5 +54,5 @@ def _bound(step: Step, nodes: dict[Key, int | None]) -> Step:
 
 
 def _first_free(ref: ObjectRef, nodes: Nodes, knowledge: Knowledge, taken: Set[int | None]) -> int | None:
-    names = knowledge.same_class(ref.name)
+    names = knowledge.found_as(ref.name)
     return next((node for name in names for node in nodes.instances.get(name, ()) if node not in taken), None)

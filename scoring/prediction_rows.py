@@ -30,7 +30,9 @@ Named = Callable[[Mapping[str, Any]], Sequence[str]]
 """Gives the ids of a row without `id` by its other columns; empty if it lacks them too."""
 
 
-def rows_of(path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None) -> Iterator[Row]:
+def rows_of(
+    path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None, numbered: bool = False
+) -> Iterator[Row]:
     """The rows with all of these columns, the first of which is the id; faults of other rows are added to `faults`.
 
     Args:
@@ -38,14 +40,16 @@ def rows_of(path: Path, columns: Sequence[str], faults: FirstFaults, named: Name
         columns: required columns.
         faults: gets the faults of rows.
         named: gives the ids of rows without one.
+        numbered: whether a row without an id has its line as its id.
 
     Raises:
         HearthError: the file is missing, or is neither JSON Lines nor Parquet.
     """
     data = read_input(path, LARGEST_TABLE)
-    needed = columns[1:] if named else columns
+    needed = columns[1:] if named or numbered else columns
     records = _parquet(path, len(data), needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
-    for line, given in records:
+    for line, row in records:
+        given = {columns[0]: line, **row} if numbered else row
         values, *more = _with_ids(given, columns[0], named)
         missing = [name for name in columns if name not in values]
         yield from (Row(each[columns[0]], each, line) for each in more if not missing)
@@ -65,6 +69,27 @@ def _with_ids(values: dict[str, Any], column: str, named: Named | None) -> list[
     if named is None or column in values:
         return [values]
     return [{**values, column: name} for name in named(values)] or [values]
+
+
+def has_predictions(path: Path) -> bool:
+    """Return whether a file has rows of predictions; else it is read as programs, in any form."""
+    import orjson
+
+    data = read_input(path, LARGEST_TABLE)
+    if data.startswith(PARQUET):
+        return True
+    for words in data.split(b"\n", HEAD)[:HEAD]:
+        try:
+            row = orjson.loads(words)
+        except orjson.JSONDecodeError:
+            continue
+        if isinstance(row, dict) and ("predicted" in row or "reference" in row):
+            return True
+    return False
+
+
+HEAD = 100
+"""Lines of a file that tell what it has."""
 
 
 def source_of(value: Any) -> Source | None:

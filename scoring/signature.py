@@ -1,13 +1,16 @@
 """Signatures: a short string with every option that changes a score's value."""
 
-VERSION = "v1"
-"""Incremented whenever the same input could score differently."""
 
+def signature(name: str, version: int = 1, /, **options: object) -> str:
+    """Return a score's signature: `signature("lcs", norm="max", level="step")` is `lcs|norm:max|level:step|v1`.
 
-def signature(name: str, **options: object) -> str:
-    """`signature("lcs", norm="max", level="step")` is `lcs|norm:max|level:step|v1`; options stay in the order given."""
+    Args:
+        name: of the score.
+        version: incremented whenever the same input could score differently.
+        options: what changes the score's value, in this order.
+    """
     parts = [f"{key}:{_word(value)}" for key, value in options.items()]
-    return "|".join([name, *parts, VERSION])
+    return "|".join([name, *parts, f"v{version}"])
 
 
 def _word(value: object) -> str:

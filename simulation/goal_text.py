@@ -43,7 +43,8 @@ MOST = 1_000
 def read_goal(given: str | Mapping[str, Any], home: Home, file: str = "goal") -> Goal:
     """A goal from text, or from a record of the Embodied Agent Interface: `vh_goal`, or a task with it or `tl_goal`.
 
-    Of a `vh_goal`, the actions are done in their order, and its states and relations hold at the end.
+    Of a `vh_goal`, the actions are done in their order, and its states and relations hold at the end. One with neither
+    is a goal that holds at once, as 4 of the interface's 342 are; a text that is empty is a fault.
 
     Args:
         given: text or record.
@@ -61,6 +62,8 @@ def read_goal(given: str | Mapping[str, Any], home: Home, file: str = "goal") ->
     if isinstance(given, Mapping):
         whole = given.get("tl_goal") or given.get("vh_goal") or given
         given = whole if isinstance(whole, str) else _release_text(whole, file)
+        if not given:
+            return Goal()
     return _Parser(given, file, home).whole(_Parser.ordered)
 
 

@@ -143,22 +143,23 @@ class Progress:
     @property
     def satisfied(self) -> bool:
         """Whether every literal holds as often as is wanted, and every part is reached; True for an empty goal."""
-        return all(found >= wanted for found, (_, wanted) in self._counted()) and all(self.has)
+        return all(found >= wanted for found, (_, wanted) in self.required()) and all(self.has)
 
     @property
     def fraction(self) -> float:
         """The satisfied share of the required counts and parts, from 0 to 1; 1 for an empty goal."""
-        wanted = sum(count for _, (_, count) in self._counted()) + len(self.goal.parts)
-        found = sum(min(count, most) for count, (_, most) in self._counted()) + sum(self.has)
+        wanted = sum(count for _, (_, count) in self.required()) + len(self.goal.parts)
+        found = sum(min(count, most) for count, (_, most) in self.required()) + sum(self.has)
         return found / wanted if wanted else 1.0
 
     def unmet(self) -> Goal:
         """What is still to be done: each literal with how many are missing, and the parts that are not reached."""
-        missing = ((literal, wanted - found) for found, (literal, wanted) in self._counted())
+        missing = ((literal, wanted - found) for found, (literal, wanted) in self.required())
         parts = (part for part, reached in zip(self.goal.parts, self.has, strict=True) if not reached)
         return Goal(tuple((literal, number) for literal, number in missing if number > 0), tuple(parts))
 
-    def _counted(self) -> Iterator[tuple[int, tuple[Literal[Name], int]]]:
+    def required(self) -> Iterator[tuple[int, tuple[Literal[Name], int]]]:
+        """Yield how often each literal holds, with the literal and how often it must."""
         counts = self.counts
         for number, (literal, wanted) in enumerate(self.goal):
             needed = self.trace.needed(literal, wanted) if self.trace else self.watches[number].wanted

@@ -9,6 +9,8 @@ from hearth.schemas.program import Program
 
 Origin = Literal["sensible", "release"]
 
+Near = Literal["release", "evolving_graph"]
+
 
 class Rules(NamedTuple):
     """Options of actions.
@@ -23,6 +25,11 @@ class Rules(NamedTuple):
         one_grip: what one holds is not grabbed again. The release takes it into the other hand, too.
         made_bed: bedding on what one can lie on takes no room there: it is turned back. The release counts it, so that
             a made bed is occupied.
+        near: what a walk brings one close to. `release`: its goal, a room too, what that is INSIDE, what is ON it, and
+            one's body parts. `evolving_graph`: its goal, what that is INSIDE and ON, what is INSIDE it if it can be
+            opened, and one's body parts; nothing after a walk into a room.
+        near_hands: one's body parts make near only what is in the room that one is in. By the rules of the release and
+            of `evolving_graph` hands that are CLOSE to a sink make it near from any room.
     """
 
     origin: Origin = "sensible"
@@ -31,26 +38,41 @@ class Rules(NamedTuple):
     bodies: bool = False
     one_grip: bool = False
     made_bed: bool = False
+    near: Near = "release"
+    near_hands: bool = False
 
 
-DEFAULT = Rules(made_bed=True)
+DEFAULT = Rules(made_bed=True, near_hands=True)
 """For inference, sampling, augmenting and people's own programs."""
 
 REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
 """Reproduces the release's stored end graphs exactly."""
 
+EVOLVING_GRAPH = Rules(origin="release", watch_needs_on=False, doors=False, one_grip=True, near="evolving_graph")
+"""Reads actions as the simulator `evolving_graph` of VirtualHome 2.x and the Embodied Agent Interface does today.
+
+What is in an opened thing that one stands at is within reach, and nothing in a room that one has only walked into. It
+checks no doors either.
+"""
+
 WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
 """For programs that watch what they themselves keep off (see `suited`)."""
 
 RULES: dict[str, Rules] = {
-    "made_bed": DEFAULT,
-    "made_bed_watching_off": WATCHING_OFF,
+    "near_hands": DEFAULT,
+    "near_hands_watching_off": WATCHING_OFF,
     "replay": REPLAY,
-    "default": DEFAULT._replace(made_bed=False),
-    "watching_off": WATCHING_OFF._replace(made_bed=False),
+    "evolving_graph": EVOLVING_GRAPH,
+    "made_bed": DEFAULT._replace(near_hands=False),
+    "made_bed_watching_off": WATCHING_OFF._replace(near_hands=False),
+    "default": DEFAULT._replace(near_hands=False, made_bed=False),
+    "watching_off": WATCHING_OFF._replace(near_hands=False, made_bed=False),
 }
-"""The options by the names that published executions give them. The last two are of datasets from before `made_bed`;
-what a name stands for never changes."""
+"""The options by the names that published executions give them. The last four are of datasets from before `near_hands`,
+two of them from before `made_bed`; what a name stands for never changes."""
+
+CHOICES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY, "evolving_graph": EVOLVING_GRAPH}
+"""What `--rules` of a command chooses from: ours of today, the release of 2018, and VirtualHome 2.x."""
 
 
 def read(given: Mapping[str, Any]) -> Rules:
@@ -61,10 +83,9 @@ def read(given: Mapping[str, Any]) -> Rules:
         ValueError: one of them has a value that it cannot have.
     """
     rules = Rules(**given)
-    switches = {name: value for name, value in rules._asdict().items() if name != "origin"}
-    odd = [name for name, value in switches.items() if not isinstance(value, bool)]
-    if rules.origin not in get_args(Origin):
-        odd.append("origin")
+    words = {"origin": get_args(Origin), "near": get_args(Near)}
+    odd = [name for name, value in rules._asdict().items() if name not in words and not isinstance(value, bool)]
+    odd += [name for name, known in words.items() if getattr(rules, name) not in known]
     if odd:
         raise ValueError(f"the rule `{odd[0]}` is {given[odd[0]]!r:.40}")
     return rules

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.studies.assignment import Planned, Slots, assignment
-from hearth.studies.events import PLACES, Event, Ledger
+from hearth.studies.events import PLACES, Event, Ledger, salted
 from hearth.studies.study import PLAY, Condition, Question, Study
 from hearth.studies.study_file import groups_of
 from hearth.studies.study_trials import checked
@@ -81,25 +81,25 @@ class Conduct:
                 return self.standing(person)
         raise HearthError.of(Code.CONFLICT, "too many people join at this moment", suggestion="try again")
 
+    def has_room(self) -> bool:
+        """Whether somebody who joins now gets a place."""
+        return next(self._open_places(self.ledger.read(PLACES)), None) is not None
+
     def _open_place(self, joined: Sequence[Event]) -> int | None:
+        """The place that the next gets; who gave no sign there for too long has left from now on."""
+        return next((place for place, person in self._open_places(joined) if not person or self._gone(person)), None)
+
+    def _open_places(self, joined: Sequence[Event]) -> Iterator[tuple[int, str]]:
+        """The places that are open, each with who has had it last and is to be counted as gone, if anybody."""
         last = {each.data["place"]: each for each in joined}
-        for place in range(len(self.slots)):
-            if place not in last:
-                return place
+        yield from ((place, "") for place in range(len(self.slots)) if place not in last)
         for event in sorted(last.values(), key=lambda each: each.number):
             person = event.data["person"]
-            if not person or self._has_left(person):
-                return int(event.data["place"])
-        return None
+            if not person or (standing := self.standing(person)).stage == LEFT or self.is_silent(standing):
+                yield int(event.data["place"]), person
 
-    def _has_left(self, person: str) -> bool:
-        """Whether a person has left; who gave no sign for too long has, from now on."""
-        standing = self.standing(person)
-        if standing.stage == LEFT:
-            return True
-        since = max([each.at for each in standing.events] or [self._joined_at(person)])
-        if standing.finished or self.clock() - since < self.study.limits.idle_hours * 3600:
-            return False
+    def _gone(self, person: str) -> bool:
+        """Whether a person has left, once silence is kept as leaving."""
         try:
             self.leave(person, "idle")
         except HearthError as error:  # this person does something at this very moment
@@ -108,7 +108,22 @@ class Conduct:
             return False
         return True
 
-    def _joined_at(self, person: str) -> float:
+    def is_silent(self, standing: Standing) -> bool:
+        """Whether somebody who is under way gave no sign for as long as the study allows."""
+        return standing.stage not in (DONE, LEFT) and (
+            self.clock() - self.last_sign(standing) >= self.study.limits.idle_hours * 3600
+        )
+
+    def last_sign(self, standing: Standing) -> float:
+        """When a person did something last."""
+        return max([each.at for each in standing.events] or [self.joined_at(standing.person)])
+
+    def code(self, person: str) -> str:
+        """The code of a person: what the person is given at the end, and what desk and tables have as the id."""
+        return salted(self.ledger.secret("participants"), person)
+
+    def joined_at(self, person: str) -> float:
+        """When a person joined."""
         return next(each.at for each in self.ledger.read(PLACES) if each.data["person"] == person)
 
     def standing(self, person: str) -> Standing:
@@ -151,13 +166,16 @@ class Conduct:
         """A person has done a practice trial."""
         return self._go_on(person, PRACTICE, "practised", {})
 
-    def played(self, person: str, record: Mapping[str, Any], seconds: float = 0.0) -> Standing:
+    def played(
+        self, person: str, record: Mapping[str, Any], seconds: float = 0.0, times: Sequence[float] = ()
+    ) -> Standing:
         """A person has played a trial.
 
         Args:
             person: who.
             record: all that was done, as `result_files.episode_data` writes it; it is done again here.
             seconds: that it took.
+            times: when the person decided in each tick, in seconds since it was begun; none where that is not known.
 
         Raises:
             HearthError: BAD_ARGUMENT: something else is to come; those of `trials.checked`.
@@ -165,7 +183,8 @@ class Conduct:
         standing = self._expected(person, TRIAL)
         planned = self.trial(standing)
         data = checked(self.study, planned, record, self.known())
-        return self._append(standing, "did", {**_named(planned), "seconds": seconds, "record": data})
+        kept = {"times": list(times)} if times else {}
+        return self._append(standing, "did", {**_named(planned), "seconds": seconds, **kept, "record": data})
 
     def watched(self, person: str, seconds: float = 0.0) -> Standing:
         """A person has watched a film."""

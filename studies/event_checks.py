@@ -80,6 +80,9 @@ def _check_form(event: Event, kinds: Sequence[str], file: str) -> None:
 def _check_record(study: Study, event: Event, file: str) -> None:
     given = event.data.get("record")
     record = episode_of(given) if isinstance(given, dict) else None
+    times = event.data.get("times", [])
+    if not isinstance(times, list) or not all(type(each) in (int, float) and math.isfinite(each) for each in times):
+        raise _wrong(event, "its times of decisions are none", file)
     if record is not None and not record.metrics.keys() >= _METRICS:
         raise _wrong(event, "its record has no metrics", file)
     if record is None or record.task != tasks_of(study)[event.data["item"]].id:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from hearth.agents.agent_registry import HELPERS
 from hearth.agents.human_like import HumanLike
+from hearth.challenges.definition import challenge
 from hearth.challenges.lineup import NOBODY, Lineup
 from hearth.challenges.published_tasks import tasks as published
 from hearth.schemas import located
@@ -107,14 +109,19 @@ def named(given: str) -> Study:
     return read_study(Path(given))
 
 
-def study_of(content: str, file: str) -> Study:
-    """The study of a text; errors as of `read_study`."""
+def study_of(content: str, file: str, begun: bool = False) -> Study:
+    """The study of a text; errors as of `read_study`.
+
+    One that has `begun` is read whatever its helpers could do, so that what was collected stays to be had.
+    """
     tree = located.read(content, file)
     faults = Faults(file)
     top = fields(tree, STUDY_KEYS, "a study", faults, NEEDED)
     found = _study(top, tree, faults, content)
     if found is not None and not faults:
         _check_balance(found, tree, faults)
+        if not begun:
+            _check_helpers(found, top["conditions"], faults)
     if faults or found is None:
         raise HearthError(faults.underlined(content))
     return found
@@ -278,10 +285,20 @@ def _check_balance(study: Study, tree: Any, faults: Faults) -> None:
         faults.add(Code.CONTRADICTION, found[0] + more, tree.at("people"), f"write {remedy}")
 
 
+def _check_helpers(study: Study, entries: Sequence[Any], faults: Faults) -> None:
+    """Name the helpers that would end every episode of the study's challenge."""
+    if study.room != PLAY or study.tasks is None:
+        return
+    for condition, entry in zip(study.conditions, entries, strict=True):
+        try:
+            Lineup(helper=condition.helper, goal=condition.goal).checked().fits(challenge(study.tasks.challenge))
+        except HearthError as error:
+            first = error.diagnostics[0]
+            faults.add(first.code, first.message, located.line_of(entry), first.suggestion)
+
+
 def groups_of(study: Study) -> int:
     """How many kinds of tasks come in turn: the goal sets of a challenge, or the bands of programs."""
-    from hearth.challenges.definition import challenge
-
     if study.tasks is not None:
         return len(challenge(study.tasks.challenge).grammar.sets)
     return len(study.films.bands) if study.films else 1

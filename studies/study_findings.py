@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -55,6 +55,7 @@ class Findings:
         comparisons: the tests.
         correlations: question -> Spearman's rho of the films' measure with their mean ratings, and its p.
         against: whose lengths alone the speedups are against.
+        helper_faults: condition -> how many trials its helper ended by a fault; they are in no figure of people.
     """
 
     study: Study
@@ -65,6 +66,7 @@ class Findings:
     comparisons: list[Comparison] = field(default_factory=list)
     correlations: dict[str, tuple[float, float]] = field(default_factory=dict)
     against: str = ""
+    helper_faults: dict[str, int] = field(default_factory=dict)
 
     def figure(self, who: str, group: str, metric: str) -> Figure | None:
         """A figure by who, condition and metric."""
@@ -100,17 +102,18 @@ def findings(collected: Collected, alone: Collected | None = None) -> Findings:
         values |= _measured(PEOPLE, people, own)
         values |= _measured(AGENT, agent, agent.get("alone", {}))
     values |= _ratings(rows)
-    found = Findings(collected.study, collected.simulated, finished, left, values, against=against)
+    failed = Counter(row["condition"] for row in rows.trials() if row["counted"] and row["helper_fault"])
+    found = Findings(collected.study, collected.simulated, finished, left, values, [], {}, against, dict(failed))
     found.comparisons.extend(_comparisons(found))
     found.correlations.update(_correlations(found, list(rows.films.values())))
     return found
 
 
 def _by_condition(rows: Rows) -> dict[str, Outcomes]:
-    """Condition -> task -> outcomes of the trials that count."""
+    """Condition -> task -> outcomes of the trials that count; those that a helper's fault ended do not."""
     found: dict[str, list[tuple[str, Mapping[str, float]]]] = {each.name: [] for each in rows.study.conditions}
     for row in rows.trials():
-        if row["counted"]:
+        if row["counted"] and not row["helper_fault"]:
             numbers = {name: value for name, value in row.items() if isinstance(value, (int, float))}
             found[row["condition"]].append((row["task_id"], numbers))
     return {name: by_task(some) for name, some in found.items()}

@@ -77,7 +77,7 @@ def opened(folder: Path, known: Known) -> Collected:
         HearthError: MISSING_FILE; BAD_JSON; every fault of the study.
     """
     first = header_of(folder / EVENTS)
-    study = study_of(str(first.get("study")), str(folder / EVENTS))
+    study = study_of(str(first.get("study")), str(folder / EVENTS), begun=True)
     simulated = first.get("simulated")
     if not isinstance(simulated, dict):
         raise HearthError.of(Code.BAD_JSON, "it does not say how it was simulated", file=str(folder / EVENTS))

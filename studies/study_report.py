@@ -38,6 +38,7 @@ def page(found: Findings, pictures: list[str]) -> str:
         found=found,
         people=names_of(found)[PEOPLE],
         pictures=pictures,
+        failures=failures(found),
         measured=_measured(found),
         rated=_rated(found),
         questions=questions,
@@ -46,6 +47,16 @@ def page(found: Findings, pictures: list[str]) -> str:
         bonferroni=f"{0.05 / max(1, len(found.comparisons)):.4f}",
         version=VERSION,
     )
+
+
+def failures(found: Findings) -> list[str]:
+    """What is said of the helpers that could not go on, a line for each condition."""
+    titles = dict(found.groups)
+    return [
+        f"{titles[name]}: the helper failed in {count} {'trial' if count == 1 else 'trials'}. "
+        "That is no failure of the person: these trials are left out of success, speedup, reward and ticks."
+        for name, count in sorted(found.helper_faults.items())
+    ]
 
 
 def _measured(found: Findings) -> list[dict[str, Any]]:
@@ -124,6 +135,7 @@ def as_json(found: Findings) -> dict[str, Any]:
         "finished": found.people,
         "left": found.left,
         "against": found.against,
+        "helper_faults": found.helper_faults,
         "figures": figures,
         "tests": [asdict(each) for each in found.comparisons],
         "correlations": {name: {"rho": rho, "p": p} for name, (rho, p) in found.correlations.items()},

@@ -16,6 +16,8 @@ class ParticipantRow(TypedDict):
     trials: Annotated[int, "that the person did"]
     seconds: Annotated[float, "of all trials"]
     left: Annotated[str, "why the person left; empty if not"]
+    began: Annotated[float, "when the person joined, in seconds since 1970, UTC; 0 of simulated people"]
+    ended: Annotated[float | None, "when the person finished or left, in the same seconds; null of who is under way"]
 
 
 class StudyTrialRow(TypedDict):
@@ -38,6 +40,7 @@ class StudyTrialRow(TypedDict):
     conflicts: Annotated[int | None, "predicates of the other's goal that held and that the person or helper undid"]
     needless: Annotated[int | None, "things the helper moved that in the end neither count nor are where they were"]
     end: Annotated[str, "code of what ended it before its time; empty if nothing did"]
+    helper_fault: Annotated[str, "code of the helper's fault that ended it, for which reports leave it out; else empty"]
 
 
 class DecisionRow(TypedDict):
@@ -52,6 +55,9 @@ class DecisionRow(TypedDict):
     action: Annotated[str, "name of the action"]
     objects: Annotated[list[int], "node ids"]
     failure: Annotated[str, "code of why it could not be done; empty if it was"]
+    seconds: Annotated[
+        float | None, "from the beginning of the trial until the person decided; null of simulated people"
+    ]
 
 
 class RatingRow(TypedDict):

@@ -18,11 +18,14 @@ from hearth.schemas.tables import comment_of, struct
 from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
-from hearth.studies.conduct import Standing
-from hearth.studies.events import Event, salted
+from hearth.studies.conduct import DONE, LEFT, Standing
+from hearth.studies.events import Event
 from hearth.studies.judged_films import JudgedFilm, read_films
 from hearth.studies.study_folder import FILMS, Collected
 from hearth.studies.study_trials import record_of, tasks_of
+
+HELPER = 1
+"""The number of the helper among the characters; the person is 0."""
 
 TABLES: dict[str, pa.Schema] = {
     name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
@@ -87,15 +90,15 @@ class Rows:
     def __init__(self, collected: Collected) -> None:
         self.collected, self.study = collected, collected.study
         conduct = collected.conduct
-        self.salt = collected.ledger.secret("participants")
         self.standings = [conduct.standing(person) for person in collected.ledger.streams()]
+        self.codes = {each.person: conduct.code(each.person) for each in self.standings}
         self.films: dict[tuple[int, str], JudgedFilm] = {}
         if self.study.films is not None and collected.folder is not None:
             found = read_films(collected.folder / FILMS)
             self.films = {(film.item, film.condition): film for film in found}
 
     def _head(self, standing: Standing) -> dict[str, Any]:
-        participant = salted(self.salt, standing.person)
+        participant = self.codes[standing.person]
         return {"study": self.study.name, "participant": participant, "simulated": self.collected.simulated}
 
     def participants(self) -> Iterator[Mapping[str, Any]]:
@@ -110,6 +113,8 @@ class Rows:
                 "trials": len(did),
                 "seconds": sum(each.data["seconds"] for each in did),
                 "left": left[0] if left else "",
+                "began": self.collected.conduct.joined_at(standing.person),
+                "ended": standing.events[-1].at if standing.stage in (DONE, LEFT) else None,
             }
 
     def trials(self) -> Iterator[Mapping[str, Any]]:
@@ -129,6 +134,7 @@ class Rows:
                     **{name: data[name] for name in ("item", "condition", "repeat", "seconds")},
                     **{name: metrics.get(name) for name in shown},
                     "end": end["code"] if end else "",
+                    "helper_fault": helper_fault(data),
                 }
 
     def decisions(self, knowledge: Knowledge) -> Iterator[Mapping[str, Any]]:
@@ -140,6 +146,7 @@ class Rows:
                 _, ticks = ticks_of(
                     tasks_of(self.study)[event.data["item"]], record_of(event.data["record"]), knowledge
                 )
+                times = dict(enumerate(event.data.get("times", ())))
                 for tick, done in enumerate(ticks):
                     for agent, step in sorted(done.instructions.items()):
                         failure = done.failures.get(agent)
@@ -151,6 +158,7 @@ class Rows:
                             "action": step.action,
                             "objects": [ref.node for ref in step.objects],
                             "failure": str(failure.code) if failure else "",
+                            "seconds": times.get(tick),
                         }
 
     def ratings(self) -> Iterator[Mapping[str, Any]]:
@@ -181,6 +189,12 @@ class Rows:
             }
 
 
+def helper_fault(data: Mapping[str, Any]) -> str:
+    """The code of what the helper failed with, if that ended a trial, by the data of its event; "" otherwise."""
+    end = (data.get("record") or {}).get("end")
+    return str(end["code"]) if end and end.get("agent") == HELPER else ""
+
+
 def _of_kind(standing: Standing, kind: str) -> list[Event]:
     return [each for each in standing.events if each.kind == kind]
 
@@ -197,8 +211,7 @@ def person_of(collected: Collected, given: str) -> str:
     Raises:
         HearthError: UNKNOWN_ID: nobody of this id takes part.
     """
-    salt = collected.ledger.secret("participants")
     for person in collected.ledger.streams():
-        if given in (person, salted(salt, person)):
+        if given in (person, collected.conduct.code(person)):
             return person
     raise HearthError.of(Code.UNKNOWN_ID, f"nobody of the id `{given[:60]}` takes part")

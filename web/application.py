@@ -203,5 +203,6 @@ async def _refused(web: Web, asked: Request, error: Exception) -> Response:
     if fault.instead:
         return RedirectResponse(fault.instead, 303)
     begins = fault.code is Code.NO_SESSION
-    page = render(web, "fault.html", None, fault=fault, begins=begins, back=asked.url.path if begins else "/")
+    back, lost = (asked.url.path if begins else "/"), begins and bool(token_of(asked))
+    page = render(web, "fault.html", None, fault=fault, begins=begins, back=back, lost=lost)
     return HTMLResponse(page, status)

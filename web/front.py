@@ -10,7 +10,7 @@ from hearth.schemas.failures import Code
 from hearth.web import desk_access, sessions
 from hearth.web.room import Who, get, post
 from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
-from hearth.web.visit import Visit
+from hearth.web.visit import Visit, by_browser
 from hearth.web.web_errors import WebError
 
 YEAR = 365 * 24 * 3600
@@ -35,6 +35,8 @@ def _come(visit: Visit) -> Response:
     visit.web.rates["token"].check(_sender(visit), "/come")
     session = sessions.find(visit.web.store, visit.part("token"))
     if session is None:
+        if by_browser(visit.request):
+            return visit.page("link_unknown.html", 401)
         raise WebError(Code.NO_SESSION, "link", "the link of a session", "an unknown one")
     return _entered(visit, visit.go("/"), session.token)
 

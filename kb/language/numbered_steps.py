@@ -1,22 +1,21 @@
 """Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
-import re
 from dataclasses import replace
 from typing import NamedTuple
 
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import PlanLine, header_of, is_step, ordered, plan_line
-from hearth.kb.language.understanding import Candidate, understand
+from hearth.kb.language.plan_lines import PlanLine, header_of, unexplained
+from hearth.kb.language.program_lines import Kind, lines_of_program
+from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
+from hearth.kb.language.understanding import Candidate
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps as parse_ticks
-
-_JOINTS = re.compile(r"(?:,|;)?\s+(?:and then|then|and)\s+|[;,]\s+|\.\s+(?=[A-Z])", re.IGNORECASE)
-_EXPLAINED = re.compile(r" ?[(–—]| - |:(?= |$)|\. (?=[A-Z])")
-_PRONOUN = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 
 
 class ParsedSteps(NamedTuple):
@@ -27,83 +26,127 @@ class ParsedSteps(NamedTuple):
     warnings: tuple[Diagnostic, ...]
 
 
-def parse_steps(text: str, before: int, place: str, known: Knowledge) -> ParsedSteps:
+def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy = Fuzzy.TYPOS) -> ParsedSteps:
     """Parse natural-language steps. They name no instances, so that every object is instance 1.
 
     A line may ask for several things ("open the fridge and take the milk out"), where each of them is understood; `it`
-    is what the last step was about. Steps may also be written as in programs. Below a numbered step, bullets explain
-    it; below one that is not understood, as `1. In the kitchen:`, they are its steps.
+    is what the last step was about. Steps may also be written as in programs. An item below a step, or a line without
+    a number, is a step if it reads exactly as one; else it explains, and is counted in a warning. Below a step that is
+    not understood, as `1. In the kitchen:`, items are its steps.
 
     Args:
         text: title, description and steps, with or without Markdown.
         before: lines of the file before it.
         place: the file, for diagnostics.
         known: the grammar.
+        fuzzy: how far a line may be from one that is known.
     """
-    parser = _StepParser(known, place)
+    parser = _StepParser(known, place, fuzzy)
     raw = text.split("\n")
-    lines = list(map(plan_line, raw))
-    is_ordered = ordered(lines)
-    for number, line in enumerate(lines):
-        parser.take(line, raw[number], before + number + 1, is_step(line, is_ordered))
-    top = header_of(lines)
+    lines = lines_of_program(text)
+    for row, line, kind in lines:
+        parser.take(line, kind, raw[row], before + row + 1)
+    top = header_of([line for _, line, _ in lines])
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
+    parser.faults = _of_language(parser.faults, len(parser.steps))
     program = Program(top.title, top.description, tuple(parser.steps), tuple(parser.lines))
-    return ParsedSteps(program, tuple(parser.faults), tuple(parser.warnings))
+    return ParsedSteps(program, tuple(parser.faults), (*parser.warnings, *parser.explained()))
+
+
+def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
+    """The faults; one that names the language where most lines are not understood, as they are not English."""
+    lines = [fault for fault in faults if fault.code == Code.NOT_UNDERSTOOD]
+    if len(lines) <= understood or not (language := foreign_language([fault.found for fault in lines])):
+        return faults
+    message = f"the plan is in {language}; only English is read"
+    others = [fault for fault in faults if fault.code != Code.NOT_UNDERSTOOD]
+    return [replace(lines[0], message=message, suggestion="translate it into English"), *others]
 
 
 class _StepParser:
-    def __init__(self, known: Knowledge, place: str) -> None:
-        self.known, self.place = known, place
+    def __init__(self, known: Knowledge, place: str, fuzzy: Fuzzy) -> None:
+        self.known, self.place, self.fuzzy = known, place, fuzzy
         self.steps: list[Step] = []
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
-        self._indent: int | None = None
-        self._above = self._is_heading = self._by_headings = False
+        self._said: tuple[Mentioned, ...] = ()
+        self._notes: list[tuple[str, str, int]] = []
+        self._is_open = self._is_heading = False
 
-    def take(self, line: PlanLine, raw: str, number: int, is_own: bool) -> None:
-        """Take a line; `is_own` says that it is a step, not an explanation of the one above."""
-        if line.number is None:
-            self._above = self._above and (line.indent > 0 or not line.text)
-            return
-        self._indent = line.indent if self._indent is None else self._indent
-        self._by_headings = self._by_headings or line.heading
-        is_own = is_own and (line.heading or line.bracketed or not self._by_headings)
-        if is_own and (line.number or line.bracketed or line.indent <= self._indent):
+    def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
+        """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
+        if kind == Kind.STEP:
             found = self._read(line, raw, number)
-            self._above, self._is_heading = bool(found) and not line.bracketed, False
+            self._is_open, self._is_heading = bool(found) and not line.bracketed, False
             self.faults += found
-        elif self._above:
-            found = self._read(line, raw, number)
-            if not found and not self._is_heading:
-                self._is_heading = True
-                self.faults.pop()
-            self.faults += found if self._is_heading else []
+        elif kind == Kind.MISSING:
+            self._is_open = False
+            self.faults += [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, self._said)
+        elif line.number is not None and self._is_open:
+            self._take_item(line, raw, number)
+        elif kind == Kind.DETAIL and not self._detail(line.text, number):
+            self._is_open = self._is_open and line.indent > 0
+            self._notes += [(line.text, raw, number)] if line.indent or line.number is not None else []
+        elif kind == Kind.TEXT and line.text:
+            self._is_open = self._is_open and line.indent > 0
+
+    def _take_item(self, line: PlanLine, raw: str, number: int) -> None:
+        found = self._read(line, raw, number)
+        if not found and not self._is_heading:
+            self._is_heading = True
+            self.faults.pop()
+        self.faults += found if self._is_heading else []
+
+    def explained(self) -> list[Diagnostic]:
+        """Return a warning that counts the lines that explain steps and are none, if there are any."""
+        if not self._notes:
+            return []
+        words, raw, number = self._notes[0]
+        count = len(self._notes)
+        message = (
+            f"{count} lines explain steps and are none" if count > 1 else "a line that explains a step and is none"
+        )
+        return [self._diagnostic(Code.NO_STEP, message, raw, words, number, "number it if it is a step")]
+
+    def _detail(self, words: str, number: int) -> bool:
+        """Add the steps of a line that may explain; return whether it reads exactly as steps."""
+        asked = asked_steps(self.known, words, self._said, Fuzzy.OFF)
+        for each in asked:
+            self._add(each, number)
+        return bool(asked)
 
     def _read(self, line: PlanLine, raw: str, number: int) -> list[Diagnostic]:
         """Add the steps of a line; the faults of one that is not understood."""
         if line.bracketed:
             return self._written(line.text, raw, number)
-        words = line.text
-        parts = self._parts(words)
-        if not parts and (shorter := _EXPLAINED.split(words, 1)[0]) not in ("", words):
-            parts = self._parts(shorter)
-            self.warnings += [self._fuzzy(parts[0], raw, words, number)] if parts else []
-        fault = [] if parts else self._nearest(words, raw, number)
-        for part in parts:
-            self._add(part, number)
+        words, said = line.text, self._said
+        asked = asked_steps(self.known, words.removesuffix(":"), said, Fuzzy.OFF)
+        if not asked and self.fuzzy is not Fuzzy.OFF:
+            shorter = unexplained(words)
+            asked = self._asked(shorter, said) if shorter not in ("", words) else ()
+            if not asked and not words.endswith(":"):
+                asked = asked_steps(self.known, words, said, self.fuzzy)
+        fault = [] if asked else self._nearest(words, raw, number, said)
+        for each in asked:
+            self._add(each, number)
+            self.warnings += [self._fuzzy(each, raw, words, number)] if each.fuzzy else []
         return fault
 
-    def _nearest(self, words: str, raw: str, number: int) -> list[Diagnostic]:
-        """Add the step that a line most resembles; the fault of one that resembles none."""
-        whole = understand(self.known, self._resolved(words))
+    def _asked(self, shorter: str, said: tuple[Mentioned, ...]) -> tuple[Asked, ...]:
+        """The steps of a line before its explanation, which is left out."""
+        first, *others = asked_steps(self.known, shorter, said, Fuzzy.OFF) or (None,)
+        return (first._replace(left_out="the explanation"), *others) if first else ()
+
+    def _nearest(self, words: str, raw: str, number: int, said: tuple[Mentioned, ...]) -> list[Diagnostic]:
+        """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
+        whole = nearest_steps(self.known, words, said, self.fuzzy)
         if not whole.meant or words.endswith(":"):
             return [self._fault(whole.candidates, whole.ambiguous, raw, words, number)]
-        self._add(whole.meant, number)
-        self.warnings.append(self._fuzzy(whole.meant, raw, words, number))
+        self._add(Asked(whole.meant), number)
+        self.warnings.append(self._fuzzy(Asked(whole.meant), raw, words, number))
         return []
 
     def _written(self, text: str, raw: str, number: int) -> list[Diagnostic]:
@@ -115,41 +158,33 @@ class _StepParser:
             program, faults = grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
+                self._said = said_by(self.steps)
                 self.lines += [number] * len(found)
-        at = max(raw.find(text), 0)
-        return [replace(f, file=self.place, line=number, column=f.column + at, source=raw) for f in faults]
+        return [self._placed(fault, text, raw, number) for fault in faults]
 
-    def _parts(self, words: str) -> list[Candidate]:
-        """The step of which a line is an exact paraphrase, or those of its clauses if each is one; else none."""
-        whole = understand(self.known, self._resolved(words)).meant
-        if whole and whole.score == 1:
-            return [whole]
-        clauses = [clause for clause in _JOINTS.split(words) if clause]
-        if len(clauses) < 2:
-            return []
-        found: list[Candidate] = []
-        about = self._about()
-        for clause in clauses:
-            meant = understand(self.known, _PRONOUN.sub(about, clause) if about else clause).meant
-            if meant is None or meant.score < 1:
-                return []
-            found.append(meant)
-            about = meant.names[0].replace("_", " ") if meant.names else about
-        return found
+    def _placed(self, fault: Diagnostic, text: str, raw: str, number: int) -> Diagnostic:
+        """Place a fault of the syntax of programs; that of a line in another form stands at the line's first word."""
+        at = raw.find(text)
+        if at >= 0:
+            return replace(fault, file=self.place, line=number, column=fault.column + at, source=raw[:200])
+        start = len(raw) - len(raw.lstrip())
+        found = raw.strip()[:200]
+        return replace(
+            fault, file=self.place, line=number, column=start + 1, length=len(found), found=found, source=raw[:200]
+        )
 
-    def _about(self) -> str:
-        return next((step.objects[0].name.replace("_", " ") for step in reversed(self.steps) if step.objects), "")
-
-    def _resolved(self, words: str) -> str:
-        about = self._about() if _PRONOUN.search(words) else ""
-        return _PRONOUN.sub(about, words) if about else words
-
-    def _add(self, meant: Candidate, number: int) -> None:
-        self.steps.append(Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)))
+    def _add(self, asked: Asked, number: int) -> None:
+        action, names = asked.meant.action.name, asked.meant.names
+        # Only the first thing is counted.
+        refs = tuple([ObjectRef(name, 1 if place else asked.instance) for place, name in enumerate(names)])
+        self.steps.append(Step(action, refs))
         self.lines.append(number)
+        self._said = ((action, names), *self._said[: REMEMBERED - 1])
 
-    def _fuzzy(self, meant: Candidate, line: str, words: str, number: int) -> Diagnostic:
-        message = f"taken for `{phrase(meant)}`, similarity {meant.score:.2f}"
+    def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
+        message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"
+        if asked.left_out:
+            message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
     def _fault(self, near: tuple[Candidate, ...], ambiguous: bool, line: str, words: str, number: int) -> Diagnostic:

@@ -6,15 +6,22 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.phrases import Parse, parses
+from hearth.kb.language.phrasings import phrasings
+from hearth.kb.language.things import thing_of
+from hearth.kb.language.typos import corrected
 from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
 
 ACCEPTED = 0.75
-"""The similarity from which the nearest valid instruction is accepted as the meaning."""
+"""The similarity from which the nearest valid instruction is accepted as the meaning where `fuzzy` is loose."""
 
 MARGIN = 0.03
 """The least difference between the best and the second similarity; below it a sentence is ambiguous."""
+
+HINTED = 0.7
+"""The similarity from which an instruction is a hint for a sentence that is not understood."""
 
 _WEAK = 0.5
 _HEADS = 8
@@ -33,38 +40,99 @@ class Candidate(NamedTuple):
 
 
 class Understood(NamedTuple):
-    """The meaning of a sentence; `meant` is None where no candidate is near or two are equally near."""
+    """The meaning of a sentence.
+
+    Attributes:
+        meant: the step; None where no reading is allowed or several are equally near.
+        candidates: the readings, or the nearest steps where there is none, best first.
+        ambiguous: whether several readings are equally near.
+    """
 
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
-
-    @property
-    def ambiguous(self) -> bool:
-        """Whether several candidates are near enough."""
-        return self.meant is None and bool(self.candidates) and self.candidates[0].score >= ACCEPTED
+    ambiguous: bool = False
 
 
 @lru_cache(maxsize=65_536)
-def understand(knowledge: Knowledge, sentence: str) -> Understood:
+def understand(knowledge: Knowledge, sentence: str, fuzzy: Fuzzy = Fuzzy.TYPOS) -> Understood:
     """The instruction a sentence means.
 
-    Templates and synonyms are tried first and score 1. For what remains, the valid instructions whose beginning and
-    objects are spelt most like the sentence are compared with it by edit distance, spaces and articles left out.
+    Templates, synonyms, inflections and usual phrasings score 1. Then misspelled words are corrected, unless `fuzzy` is
+    off; a word that is English is never taken for another. With `loose`, the valid instruction whose spelling is
+    nearest is accepted. What else is said means nothing, and the nearest instructions are its candidates.
 
     Examples:
         >>> meant = hearth.understand(known, "Then turn on the TV").meant
         >>> meant.action.name, meant.names, meant.score
         ('SwitchOn', ('television',), 1.0)
     """
+    read = understand_exactly(knowledge, sentence)
+    if read.candidates:
+        return read
+    cleaned = _cleaned(sentence)
+    if fuzzy is not Fuzzy.OFF:
+        read = _without_typos(knowledge, cleaned)
+    if read.candidates:
+        return read
+    near = _nearest(knowledge, cleaned)
+    if fuzzy is Fuzzy.LOOSE and near and near[0].score >= ACCEPTED:
+        is_sure = len(near) < 2 or near[0].score - near[1].score >= MARGIN
+        return Understood(near[0] if is_sure else None, near, not is_sure)
+    return Understood(None, tuple(each for each in near if each.score >= HINTED))
+
+
+@lru_cache(maxsize=65_536)
+def understand_exactly(knowledge: Knowledge, sentence: str) -> Understood:
+    """Return the meaning of a sentence by templates, synonyms, inflections and usual phrasings; no near candidates."""
     cleaned = _cleaned(sentence)
     exact = _exact(knowledge, cleaned)
-    if exact:
-        return Understood(exact[0], exact)
-    found = tuple(sorted(_near(knowledge, cleaned), key=lambda each: (-each.score, each.action.id, each.names)))
+    return Understood(exact[0], exact) if exact else _exact_otherwise(knowledge, cleaned)
+
+
+def _exact_otherwise(knowledge: Knowledge, text: str) -> Understood:
+    """The reading of a sentence by its inflections and usual phrasings; several where its places may be either's."""
+    sure = [parse for parse in _readings(knowledge, text) if _afforded(knowledge, parse)]
+    found = tuple(Candidate(1.0, *parse) for parse in sure or _readings(knowledge, text))[:_SHOWN]
+    is_sure = len({each.action.arity for each in found}) < 2 and len({each.names for each in found}) < 2
+    return Understood(found[0] if found and is_sure else None, found, bool(found) and not is_sure)
+
+
+def _readings(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
+    """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first."""
+    for phrasing in (text, *phrasings(knowledge, text)):
+        found = (_with_things(knowledge, parse) for parse in parses(knowledge, phrasing))
+        read = tuple(dict.fromkeys(parse for parse in found if parse))
+        if any(_afforded(knowledge, parse) for parse in read):
+            return read
+    return ()
+
+
+def _with_things(knowledge: Knowledge, parse: Parse) -> Parse | None:
+    action, names = parse
+    things = [thing_of(knowledge, name.replace("_", " ")) for name in names]
+    return (action, tuple(thing for thing in things if thing)) if all(things) else None
+
+
+def _without_typos(knowledge: Knowledge, text: str) -> Understood:
+    """The readings of the sentence with the fewest letters corrected."""
+    for sentences in corrected(knowledge, text):
+        found: dict[tuple[str, tuple[str, ...]], Candidate] = {}
+        for sentence in sentences:
+            exact = _exact(knowledge, sentence)[:1] or _exact_otherwise(knowledge, sentence).candidates
+            for each in exact:
+                if _afforded(knowledge, (each.action, each.names)):
+                    spelt = Candidate(min(_similar(text, sentence), 0.999), each.action, each.names)
+                    found.setdefault((each.action.name, each.names), spelt)
+        if found:
+            near = tuple(sorted(found.values(), key=lambda each: -each.score))
+            return Understood(near[0] if len(near) == 1 else None, near[:_SHOWN], len(near) > 1)
+    return Understood(None, ())
+
+
+def _nearest(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
+    found = tuple(sorted(_near(knowledge, text), key=lambda each: (-each.score, each.action.id, each.names)))
     near = tuple({(each.action.name, each.names): each for each in reversed(found)}.values())
-    near = tuple(sorted(near, key=lambda each: -each.score))[:_SHOWN]
-    sure = bool(near) and near[0].score >= ACCEPTED and (len(near) < 2 or near[0].score - near[1].score >= MARGIN)
-    return Understood(near[0] if sure else None, near)
+    return tuple(sorted(near, key=lambda each: -each.score))[:_SHOWN]
 
 
 def _cleaned(sentence: str) -> str:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 TABLE = "4.6"
 
-COLUMNS = ("action", "object", "step", "mean", "executable", "goal")
+COLUMNS = ("action", "object", "step", "mean", "executable", "goal", "goal_whole")
 
 THESIS = {
     ("Random retrieval", "all"): (0.473, 0.079, 0.071, 0.207, 1.0),
@@ -185,7 +185,7 @@ def _scored(
     """The columns of each film's answer."""
     lcs = score_pairs([(by_class(answer, film.world), film.steps) for answer, film in zip(answers, films, strict=True)])
     ran = score_steps(dataset, zip(executions, answers, strict=True))
-    more = ("executable", "goal")
+    more = ("executable", "goal", "goal_whole")
     return [
         {"action": one.action, "object": one.object, "step": one.step, "mean": one.mean,
          **{name: METRICS[name](other) for name in more}}

@@ -284,4 +284,5 @@ def _ledger(job: Job, counts: Counts) -> Iterator[published_rows.LedgerRow]:
             "partial_rejects": stage_counts.partial,
             "rows": stage_counts.rows.total(),
             "codes": [{"code": code, "count": count} for code, count in codes],
+            "fuzzy": stage_counts.tally["fuzzy"],
         }

@@ -4,6 +4,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from hearth.kb.language.fuzzy import Fuzzy
+
 DERIVED = "homes"
 """Folder of homes that come with the sources: scene graphs in the ingest stage; in the sample stage, homes derived from
 stored start graphs."""
@@ -19,6 +21,8 @@ class Settings:
         seed: seed of all random choices.
         limit: programs to read at most, and as many descriptions; None for all.
         columns: columns of tables, and keys of JSON, that hold fields of a record, as in `title=Task,program=Plan`.
+        fuzzy: how far sentences may be from those that are known, a value of `Fuzzy`.
+        strict: refuse programs with a step that was corrected or shortened.
         homes: names of the homes to sample in; empty for every home of the catalog.
         homes_folder: the user's own homes, laid over ours.
         kb_folder: the user's own knowledge, laid over ours.
@@ -43,6 +47,8 @@ class Settings:
     seed: int = 0
     limit: int | None = None
     columns: str = ""
+    fuzzy: str = Fuzzy.TYPOS.value
+    strict: bool = False
     homes: tuple[str, ...] = ()
     homes_folder: str | None = None
     kb_folder: str | None = None

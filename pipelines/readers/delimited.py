@@ -5,10 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import itertools
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 from hearth.pipelines.readers.item import LARGEST_FILE, fault_of, lines
+from hearth.pipelines.readers.located import text_at
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
@@ -113,3 +116,34 @@ def cells_of(text: str, layout: Layout, strict: bool = False) -> list[str]:
         csv.Error: with `strict`, a quote that is never closed.
     """
     return next(csv.reader(io.StringIO(text, newline=""), delimiter=layout.delimiter, strict=strict), [])
+
+
+def cells_at(text: str, cells: list[str], line: int, layout: Layout) -> list[str]:
+    """The cells of a record that begins on this line, with their places; one that can't be found has none."""
+    found: list[str] = []
+    at = 0
+    for cell in cells:
+        quoted = text.startswith('"', at)
+        end = _CELL[quoted](layout.delimiter).match(text, at)
+        raw = end[1] if end else ""
+        if end is None or (raw.replace('""', '"') if quoted else raw) != cell:
+            return [*found, *(text_at(rest, line, 1, rest) for rest in cells[len(found) :])]
+        first = end.start(1)
+        breaks = text.count("\n", 0, first)
+        column = first - text.rfind("\n", 0, first) if breaks else first + 1
+        found.append(text_at(cell, line + breaks, column, raw, '""'))
+        at = end.end() + 1
+    return found
+
+
+@cache
+def _quoted_cell(delimiter: str) -> re.Pattern[str]:
+    return re.compile(rf'"((?:[^"]|"")*+)"(?={re.escape(delimiter)}|\r?$)')
+
+
+@cache
+def _plain_cell(delimiter: str) -> re.Pattern[str]:
+    return re.compile(rf"([^{re.escape(delimiter)}\n]*)")
+
+
+_CELL = {True: _quoted_cell, False: _plain_cell}

@@ -1,12 +1,13 @@
 """JSON lists read entry by entry, in constant memory: at the top of a file, or under a key."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from typing import Any
 
-from hearth.pipelines.readers.document import parsed
+from hearth.pipelines.readers.document import located, parsed
 from hearth.pipelines.readers.item import fault_of, pieces
+from hearth.pipelines.readers.located import Located
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
@@ -35,13 +36,24 @@ def entries(path: Place, place: str, key: str = "") -> Iterator[tuple[int, Any |
         place: its name, for diagnostics.
         key: the key of the list in the file's object; empty if the file is the list.
     """
+    return ((line, found) for line, _, found in _read(path, place, key, parsed))
+
+
+def located_entries(path: Place, place: str) -> Iterator[tuple[int, Located | Reject]]:
+    """The values of a file's list as `entries` gives them, with the places of their texts."""
+    return ((line, found) for line, _, found in _read(path, place, "", located))
+
+
+def _read(
+    path: Place, place: str, key: str, reader: Callable[[str, str, int, int], Any]
+) -> Iterator[tuple[int, int, Any]]:
     try:
-        for line, text in _Scanner(key).entries(pieces(path)):
+        for line, column, text in _Scanner(key).entries(pieces(path)):
             fault = fault_of(text, place, line)
-            yield line, Reject((fault,)) if fault else parsed(text, place, line)
+            yield line, column, Reject((fault,)) if fault else reader(text, place, line, column)
     except BrokenError as error:
         suggestion = "save it as JSON in UTF-8, or write JSON Lines, one record a line"
-        yield error.line, Reject.of(error.code, str(error), file=place, line=error.line, suggestion=suggestion)
+        yield error.line, 1, Reject.of(error.code, str(error), file=place, line=error.line, suggestion=suggestion)
 
 
 def kinds(path: Place) -> dict[str, str]:
@@ -61,13 +73,13 @@ class _Scanner:
         self._wanted = key
         self._level = (2 if key else 1) if keep else 0
         self._buffer, self._start, self._at = "", -1, 0
-        self._line, self._counted = 1, 0
+        self._line, self._counted, self._line_start = 1, 0, 0
         self._stack: list[str] = []
         self._began, self._comma = False, False
         self._key, self._name = "", ""
 
-    def entries(self, texts: Iterable[str]) -> Iterator[tuple[int, str]]:
-        """Each entry of the list with its first line.
+    def entries(self, texts: Iterable[str]) -> Iterator[tuple[int, int, str]]:
+        """Each entry of the list with its first line, and its column there.
 
         Raises:
             BrokenError: after the last whole entry.
@@ -83,7 +95,7 @@ class _Scanner:
         if self._stack or not self._began or self._buffer[self._at :].strip():
             raise BrokenError("the document is not complete", self._here(len(self._buffer)))
 
-    def _take(self, token: str, at: int, end: int) -> Iterator[tuple[int, str]]:
+    def _take(self, token: str, at: int, end: int) -> Iterator[tuple[int, int, str]]:
         if not self._stack:
             self._begin(token, at)
             self._start = end if self._listed() else -1
@@ -117,14 +129,15 @@ class _Scanner:
             return False
         return self._level == 1 or (stack[0] == "{" and self._key == self._wanted)
 
-    def _ended(self, token: str, at: int) -> Iterator[tuple[int, str]]:
+    def _ended(self, token: str, at: int) -> Iterator[tuple[int, int, str]]:
         """A comma or bracket, which may end an entry."""
         if self._listed() and self._start >= 0:
             text = self._buffer[self._start : at]
             # `[]` is an empty list; before or after a comma an empty text is an entry, and not JSON.
             if self._comma or token == "," or text.strip():
                 lead = len(text) - len(text.lstrip())
-                yield self._here(self._start + lead), text.strip()
+                line = self._here(self._start + lead)
+                yield line, self._start + lead - self._line_start + 1, text.strip()
             self._comma = token == ","
             self._start = -1
         if token == "," and len(self._stack) == 1:
@@ -133,7 +146,10 @@ class _Scanner:
             raise BrokenError(f"`{token}` closes what it did not open", self._here(at))
 
     def _here(self, at: int) -> int:
-        self._line += self._buffer.count("\n", self._counted, at)
+        breaks = self._buffer.count("\n", self._counted, at)
+        if breaks:
+            self._line += breaks
+            self._line_start = self._buffer.rfind("\n", self._counted, at) + 1
         self._counted = max(at, self._counted)
         return self._line
 
@@ -143,6 +159,7 @@ class _Scanner:
         self._here(keep)
         self._buffer, self._at = self._buffer[keep:], self._at - keep
         self._start, self._counted = min(self._start, 0), self._counted - keep
+        self._line_start -= keep
         if len(self._buffer) > LONGEST_ENTRY:
             message = f"an entry of more than {LONGEST_ENTRY:,} characters"
             raise BrokenError(message, self._line, Code.FILE_TOO_LARGE)

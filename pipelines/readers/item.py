@@ -97,6 +97,7 @@ def record(
     conditions: list[ConditionRow] | None = None,
     keep: list[bool] | None = None,
     parts: list[PartRow] | None = None,
+    places: list[list[int]] | None = None,
 ) -> IngestedRow:
     """The row of an item; id and, unless given, origin, place and description id are those of the item."""
     return {
@@ -120,6 +121,7 @@ def record(
         "conditions": conditions,
         "keep": keep,
         "parts": parts,
+        "places": places,
     }
 
 

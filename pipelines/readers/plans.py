@@ -1,10 +1,16 @@
 """Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
+import itertools
 from collections.abc import Iterator
+from typing import Any
 
-from hearth.kb.language.plan_lines import PlanLine, header, plan_line
-from hearth.pipelines.readers.elements import entries
+from hearth.kb.language.forms import form_of
+from hearth.kb.language.forms.form import Form
+from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, level_of, plan_line
+from hearth.kb.language.program_lines import header
+from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
+from hearth.pipelines.readers.located import Text
 from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow
@@ -15,11 +21,12 @@ NAME = "spoken"
 """This reader's name in ids of records and in the column `origin`."""
 
 _LONGEST_PROGRAM = 100_000
+_LOOKED_AT = 60
 
 
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
-    for number, block in blocks((number, line) for number, (line, _) in enumerate(lines(path), 1)):
+    for number, block in _programs((number, line) for number, (line, _) in enumerate(lines(path), 1)):
         text = "\n".join(block)
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
@@ -27,18 +34,19 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 def scan_list(path: Place, place: str) -> Iterator[Item]:
     """One item for each text of a JSON list of texts."""
-    for number, (line, text) in enumerate(entries(path, place), 1):
-        where = f"{place}[{number}]"
+    for number, (line, found) in enumerate(located_entries(path, place), 1):
+        name = f"{place}[{number}]"
+        text = found if isinstance(found, Reject) else found.value
         if isinstance(text, str):
-            yield checked(text, 1, f"{NAME}:{where}", where)
+            yield checked(text, line, f"{NAME}:{name}", place)
         elif isinstance(text, Reject):
-            yield refused(where, text, line=line)
+            yield refused(place, text, name, line)
         else:
             message = f"entry {number} of the list is not text"
             fault = Reject.of(
-                Code.BAD_JSON, message, file=where, line=line, suggestion="a list of texts, or of records"
+                Code.BAD_JSON, message, file=place, line=line, suggestion="a list of texts, or of records"
             )
-            yield refused(where, fault)
+            yield refused(place, fault, name, line)
 
 
 def checked(text: str, first: int, record_id: str, place: str) -> Item:
@@ -52,20 +60,54 @@ def checked(text: str, first: int, record_id: str, place: str) -> Item:
             Code.LINE_TOO_LONG, message, file=place, line=first, suggestion=f"at most {_LONGEST_PROGRAM:,}"
         )
         return refused(place, reject, record_id, first)
-    return Item(record_id, NAME, place, {"text": text.rstrip("\n") + "\n", "line": first - 1}, line=first)
+    value: dict[str, Any] = {"text": text.rstrip("\n") + "\n", "line": first - 1}
+    if isinstance(text, Text):
+        value["places"] = text.places()
+    return Item(record_id, NAME, place, value, line=first)
 
 
 def read(item: Item) -> IngestedRow:
     """The record of an item with its text unchanged; `validate` maps it to steps."""
     top = header(item.value["text"])
-    return record(item, "program", top.title, top.description, text=item.value["text"], line=item.value["line"])
+    line, places = item.value["line"], item.value.get("places")
+    return record(item, "program", top.title, top.description, text=item.value["text"], line=line, places=places)
+
+
+def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
+    """Split a text into its programs, in the form that its first lines are written in."""
+    first = list(itertools.islice(lines, _LOOKED_AT))
+    form = form_of([line for _, line in first])
+    rest = itertools.chain(first, lines)
+    return blocks(rest) if form is None else _blocks_of(form, rest)
+
+
+def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+    """Split a text of a form before each line that begins a program."""
+    block: list[str] = []
+    first = size = 0
+    has_steps, begun = False, set[str]()
+    for number, raw in lines:
+        begins = form.begins.match(raw)
+        key = next(iter(begins.groups()), "").lower() if begins else ""
+        if begins and (has_steps or key in begun):
+            yield first, block
+            block, size, has_steps, begun = [], 0, False, set()
+        begun |= {key} if begins else set()
+        if raw.strip() or block:
+            first = number if not block else first
+            block += [raw] if size <= most else []
+            size += len(raw) + 1
+        has_steps = has_steps or form.is_step(raw)
+    if block:
+        yield first, block
 
 
 def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs: (number of the first line, lines), cut after `most` characters.
 
     A program begins where the numbers begin again, or with a line below the steps that is not one of them; not if the
-    numbers go on after it, or if it is a remark at the end.
+    numbers go on after it, or if it is a remark at the end. A title, a heading of the level of the one before, or a
+    rule ends a program that has no steps, too.
     """
     block = _Block()
     for number, raw in lines:
@@ -74,6 +116,13 @@ def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[
             rest = block.split()
             yield block.first, block.lines
             block = rest
+        elif line.number is None and block.is_without_steps(raw, line):
+            if block.has_steps:
+                rest = block.split()
+                yield block.first, block.lines
+                block = rest
+            yield block.first, block.lines
+            block = _Block()
         block.add(number, raw, line, most)
     if block.has_title_below:
         rest = block.split()
@@ -92,6 +141,8 @@ class _Block:
         self.has_title_below = False
         self._last, self._below, self._size = 0, 0, 0
         self._bulleted, self._by_headings = True, False
+        self._level = self._number = 0
+        self._texts: list[PlanLine] = []
 
     @property
     def first(self) -> int:
@@ -100,19 +151,40 @@ class _Block:
     def add(self, number: int, raw: str, line: PlanLine, most: int) -> None:
         """Add a line, unless the block is blank or full."""
         if line.number is not None:
-            self._bulleted = self._bulleted and not line.number
+            self._bulleted = self._bulleted and not line.numbered
+            self._number = line.number if line.numbered else self._number
             self._by_headings = self._by_headings or line.heading
             is_nested = self._by_headings and not line.heading
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
+            self._level, self._texts = 0, []
         elif line.text and self._last and not self._below and (line.heading or not line.indent):
             self._below = len(self.lines)
-            self.has_title_below = line.heading or not is_sentence(line.text)
+            is_apart = bool(self.lines) and not self.lines[-1].strip()
+            is_remark = is_sentence(line.text) or META.match(line.text) is not None
+            self.has_title_below = line.heading or (is_apart and not is_remark)
+        if line.number is None and line.text:
+            self._level = self._level or (level_of(raw) if line.heading else 0)
+            self._texts.append(line)
         self.has_title_below = self.has_title_below or (self._below > 0 and line.heading)
         if (raw.strip() or self.lines) and self._size <= most:
             self.lines.append(raw)
             self.numbers.append(number)
             self._size += len(raw) + 1
+
+    @property
+    def has_steps(self) -> bool:
+        """Whether the program has steps, and lines below them."""
+        return self._below > 0
+
+    def is_without_steps(self, raw: str, line: PlanLine) -> bool:
+        """Return whether a line ends the text since the last step, which then is a program that has no steps."""
+        if self._last and not self._below:
+            return False
+        if RULE.match(raw):
+            is_apart = bool(self.lines) and not self.lines[-1].strip()
+            return not self._last and is_apart and len(self._texts) > 1 and not is_answer(self._texts[0])
+        return line.heading and self._level > 0 and level_of(raw) <= self._level
 
     def ends_before(self, step: PlanLine) -> bool:
         """Whether a step belongs to the next program."""
@@ -120,6 +192,8 @@ class _Block:
             return False
         if step.number:
             return step.number <= 1 and (self._last > 1 or self._below > 0)
+        if step.numbered and self._number > 0:
+            return True
         return self._below > 0 and (self._bulleted or step.bracketed)
 
     def split(self) -> "_Block":
@@ -128,4 +202,5 @@ class _Block:
         rest.lines, rest.numbers = self.lines[at:], self.numbers[at:]
         self.lines, self.numbers = self.lines[:at], self.numbers[:at]
         rest._size = sum(map(len, rest.lines))
+        rest._level, rest._texts = self._level, self._texts
         return rest

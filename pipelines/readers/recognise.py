@@ -1,18 +1,22 @@
 """The form of a source, recognised by its content."""
 
 import itertools
+import re
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from hearth.kb.language.plan_lines import TITLE, is_plan, plan_line
+from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, spreadsheets, text
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
+from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.graph_wrappers import graph_in
 from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
 from hearth.storage.files import SERVED, links_not_followed, walk
 from hearth.storage.rejects import Reject, as_text
@@ -36,6 +40,9 @@ _JSON = frozenset({".json", ".jsonl", ".ndjson"})
 _YAML = frozenset({".yaml", ".yml"})
 _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 """Endings of texts that are read as programs even without a step; others, such as notes, need one."""
+
+_NUMBER = re.compile(r"\s*\[\d{1,4}\]\s+[^\s,\]}]")
+"""The number of a step in brackets, `[1] Walk to fridge`."""
 
 _LOOKED_AT = 60
 _LONGEST = 100_000
@@ -74,7 +81,7 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
     if any(map(release.names_it, files)):
         yield Recognised(path, label, release.NAME)
         files = [name for name in files if not release.names_it(name)]
-        yield from _folder(path, label, files)
+        yield from map(_beside_release, _folder(path, label, files))
         return
     found = list(_folder(path, label, files))
     if all(entry.refusal for entry in found):
@@ -86,6 +93,20 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
             message, remedy = "nothing was accepted yet", "review programs in the room Annotate of `serve` first"
         raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion=remedy)
     yield from found
+
+
+_OF_PEOPLE = frozenset({crowd.NAME, scenes.NAME, sketches.NAME, spreadsheets.NAME})
+"""Readers that know their files by layouts of their own: these are read beside a release, too."""
+
+
+def _beside_release(found: Recognised) -> Recognised:
+    """A file beside a release: texts and JSON there are about it, and no programs."""
+    if found.refusal or found.reader in _OF_PEOPLE:
+        return found
+    message, remedy = "a file beside a release: only the release is read", "name the file as a source of its own"
+    return found._replace(
+        reader="", refusal=Reject.of(Code.UNSUPPORTED_FILE, message, file=found.inside, suggestion=remedy)
+    )
 
 
 def _folder(path: Path, label: str, names: list[str]) -> Iterator[Recognised]:
@@ -131,7 +152,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     line = first[0] if first else ""
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
-    if looks_like_json(line):
+    if looks_like_json(line) and not _NUMBER.match(line):
         return _json(path, place, [line for line in whole if line.strip()])
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
@@ -181,9 +202,7 @@ def _form_of_list(path: Place, place: str) -> str:
 def _form_of(value: Any) -> str:
     if not isinstance(value, dict):
         return ""
-    graph = value.get("init_graph", value)
-    is_graph = isinstance(graph, dict) and {"nodes", "edges"} <= graph.keys()
-    return scenes.NAME if is_graph and not ours.is_record(value, {}) else DOCUMENT
+    return scenes.NAME if graph_in(value) is not None and not ours.is_record(value, {}) else DOCUMENT
 
 
 TEXTS = "spoken list"
@@ -209,7 +228,10 @@ def _archive(path: Path, place: str) -> Iterator[Recognised]:
         yield Recognised(path, place, release.NAME)
     others = (info for info in infos if not release.names_it(info.filename) and not _is_hidden(info.filename))
     found = [_member(path, info, f"{place}/{as_text(info.filename)}") for info in others]
-    if is_release or not all(entry.refusal and entry.refusal.code == Code.UNSUPPORTED_FILE for entry in found):
+    if is_release:
+        yield from map(_beside_release, found)
+        return
+    if not all(entry.refusal and entry.refusal.code == Code.UNSUPPORTED_FILE for entry in found):
         yield from found
         return
     example = f", for example `{infos[0].filename}`" if infos else ""

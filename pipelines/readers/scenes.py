@@ -9,6 +9,7 @@ from hearth.pipelines.readers.item import Item, home_of, record, refused
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
+from hearth.schemas.graph_wrappers import graph_in
 from hearth.schemas.row_types import NodeRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.vocabulary import OPPOSITE
@@ -25,7 +26,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
     if isinstance(value, Reject):
         yield refused(place, value)
         return
-    graph = value.get("init_graph", value)
+    graph = graph_in(value)
     yield Item(f"{NAME}:{place}", NAME, place, graph)
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.columns import FieldColumns, guessed
-from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_fault
+from hearth.pipelines.readers.columns import FieldColumns, Found, guessed, lacks, rivals
+from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
@@ -21,7 +21,10 @@ def names_it(line: str) -> bool:
 
 def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
     """The column of each field that a table has."""
-    return guessed(_begun(Rows(path))[1].columns, given)
+    names = _begun(Rows(path))[1].columns
+    found = Found(guessed(names, given))
+    found.rivals, found.is_table = rivals(names, found, given), True
+    return found
 
 
 def _begun(rows: Rows) -> tuple[int, Layout]:
@@ -43,6 +46,10 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
     if not {"program", "description"} & columns.keys():
         yield refused(place, _unnamed(rows, first, layout, place, given))
         return
+    names = dict.fromkeys(layout.columns)
+    for field, name in given.items():
+        if name not in names:
+            yield refused(place, lacks(field, name, names, place, first), f"{place}~{name}")
     empty = True
     for line, raw, cells in rows.parsed(layout):
         full = cells and [*cells, *[""] * (len(layout.columns) - len(cells))]
@@ -52,7 +59,8 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
         if wrong:
             yield refused(place, Reject((wrong,)), line=line)
         elif full and any(full):
-            values = {field: full[layout.columns.index(name)] for field, name in columns.items()}
+            placed = cells_at(raw, full, line, layout)
+            values = {field: placed[layout.columns.index(name)] for field, name in columns.items()}
             yield from ours.items(values, place, line, f"{place}:{line}", {})
     if empty:
         yield refused(place, Reject.of(Code.EMPTY, "a table with its first line only", file=place, line=first))

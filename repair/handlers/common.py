@@ -77,7 +77,7 @@ class RepairContext(FailureContext):
 
     def is_close(self, index: int) -> bool:
         """Whether the character is close to a node."""
-        return rows.is_close(self.world, self.agent, index)
+        return rows.is_near(self.world, self.agent, index, self.rules.near_hands)
 
     def by_distance(self, things: Iterable[int]) -> list[int]:
         """Things that are close first, then those in the character's room; among equals by index."""

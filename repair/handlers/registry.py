@@ -52,10 +52,10 @@ BEFORE_REPAIR: frozenset[Code] = frozenset(
         Code.CONDITION_UNMET, Code.NO_HANDLER, Code.HANDLER_ERROR, Code.TOO_MANY_TRIES, Code.LOOP, Code.UNPERTURBED,
         Code.UNKNOWN_ID, Code.MISSING_PREDICTION, Code.REPLAY_DIFFERS, Code.NOT_RENDERED,
         Code.NEAR_DUPLICATE, Code.NO_EFFECT, Code.OFF_TOPIC, Code.UNDECLARED,
-        Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.FUZZY_MATCH, Code.DAMAGED_FILE,
+        Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.FUZZY_MATCH, Code.NO_STEP, Code.DAMAGED_FILE,
         Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR, Code.TIMED_OUT,
         Code.BAD_ARGUMENT, Code.HELD_ALREADY, Code.NOT_SEEN, Code.NOT_ALLOWED, Code.DISCONNECTED, Code.AGENT_FAILED,
-        Code.NO_SESSION, Code.TOO_FAST, Code.OUT_OF_ORDER,
+        Code.NO_SESSION, Code.TOO_FAST, Code.OUT_OF_ORDER, Code.FINISHED,
     }
 )  # fmt: skip
 """Codes of reading, checking, grounding, repairing itself, scoring, publishing and agents: no run ends in them, but for

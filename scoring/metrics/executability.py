@@ -19,7 +19,7 @@ from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.world import World
 
-SIGNATURE = signature("executable", level="program", empty="apart")
+SIGNATURE = signature("executable", 2, level="program", empty=0)
 
 
 class ErrorClass(StrEnum):
@@ -79,7 +79,7 @@ class Executability:
 
     Attributes:
         program: its steps, canonical and bound, without lines that do not parse.
-        empty: whether it has no lines. Such a program runs (thesis 4.5.2), and is counted separately.
+        empty: whether it has no lines. Such a program is not executable, and is counted separately.
         afforded: whether the grammar allows every step's objects.
         runs: whether every line is a step, and all of them run.
         failed_line: the first failing line, from 0; None without a failure.
@@ -99,8 +99,8 @@ class Executability:
 
     @property
     def executable(self) -> bool:
-        """As in A.3: the grammar allows every step's objects, and all steps run."""
-        return self.afforded and self.runs
+        """As in A.3: it has steps, the grammar allows every step's objects, and all steps run."""
+        return not self.empty and self.afforded and self.runs
 
 
 def executability(
@@ -129,7 +129,7 @@ def executability(
     unfit = [line for line, step in steps if line not in faults and not _fits(step, knowledge)]
     sound = sum(line < min(faults, default=len(lines)) for line in place)
     execution = run(world, program.with_steps(program.steps[:sound]), rules)
-    failures: list[First] = [(line, STATIC[code], code) for line, code in sorted(faults.items())]
+    failures: list[First] = [(line, STATIC.get(code, ErrorClass.SYNTAX), code) for line, code in sorted(faults.items())]
     failures += [(line, ErrorClass.AFFORDANCE, Code.NOT_AFFORDED) for line in unfit]
     if execution.failure is not None:
         failed = _failed_step(program.steps, execution.failure)

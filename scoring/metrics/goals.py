@@ -8,18 +8,9 @@ from hearth.schemas.graph import Edge
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import STATES
 from hearth.scoring.metrics.final_graph import nodes_of
-from hearth.scoring.signature import signature
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved import INSIDE, NOTHING, ON
 from hearth.simulation.world.world import World
-
-SIGNATURE = signature("goal", level="program", empty=1)
-
-
-def signature_of(own: int) -> str:
-    """The signature, with the number of rows of predictions that had a goal of their own instead of the reference's."""
-    return signature("goal", level="program", empty=1, own=own) if own else SIGNATURE
-
 
 LASTING = ("ON", "INSIDE", *HANDS)
 """Relations of goals made from an execution; CLOSE and FACING describe only the character's position."""

@@ -6,10 +6,11 @@ from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
-from hearth.scoring.lines import Line, Lines
+from hearth.schemas.program import ObjectRef, Step
+from hearth.scoring.lines import Line, Lines, Refused
 from hearth.scoring.signature import signature
 
-SIGNATURE = signature("parsable", level="program")
+SIGNATURE = signature("parsable", 2, level="program", empty=0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +30,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Parsability:
-    """Well-formed lines of a program. A program without lines is well formed, and counted separately.
+    """Well-formed lines of a program. A program without lines is not well formed: nothing was answered.
 
     Attributes:
         lines: number of lines.
@@ -46,12 +47,12 @@ class Parsability:
     @property
     def parsable(self) -> bool:
         """As published: every line has the right number of arguments."""
-        return self.arity == self.lines
+        return 0 < self.arity == self.lines
 
     @property
     def named(self) -> bool:
         """Ours: every name is also known."""
-        return self.names == self.lines
+        return 0 < self.names == self.lines
 
 
 def parsability(lines: Lines, knowledge: Knowledge) -> Parsability:
@@ -64,11 +65,21 @@ def parsability(lines: Lines, knowledge: Knowledge) -> Parsability:
 def _first(line: Line, number: int, knowledge: Knowledge) -> Iterator[Fault]:
     """The gravest fault of a line, if any."""
     if isinstance(line, str):
-        yield Fault(number, Code.SYNTAX, line[:200])
+        yield Fault(number, line.code if isinstance(line, Refused) else Code.SYNTAX, line[:200])
         return
     fault = _fault(line.action, tuple([ref.name for ref in line.objects]), knowledge)
     if fault:
         yield Fault(number, *fault)
+    elif twice := _given_twice(line, knowledge):
+        yield Fault(number, Code.WRONG_ARITY, f"{twice.name} ({twice.instance}) twice")
+
+
+def _given_twice(step: Step, knowledge: Knowledge) -> ObjectRef | None:
+    """Return the object that a step names twice, which `grammar.check` refuses too; None if there is none."""
+    if len(step.objects) < 2:
+        return None
+    seen = [(knowledge.object_class(ref.name), ref.instance, ref.node) for ref in step.objects]
+    return next((ref for n, ref in enumerate(step.objects) if seen[n] in seen[:n]), None)
 
 
 @lru_cache(maxsize=65_536)

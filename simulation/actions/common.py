@@ -67,11 +67,12 @@ def becomes(state: int) -> Effect:
 def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
     """The action of one object that makes these checks in order and then has this effect, or has none."""
     refusals = tuple(check.refuse for check in checks)
+    by_hands = tuple(_need_near if refusal is need_close else refusal for refusal in refusals)
     masks = tuple(check.mask for check in reversed(checks))  # the last are the cheapest and most often empty
 
     def rule(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
         agent = world.agents[number]
-        for refusal in refusals:
+        for refusal in by_hands if rules.near_hands else refusals:
             failure = refusal(world, agent, o, name)
             if failure is not None:
                 return failure
@@ -129,11 +130,15 @@ def need_able(world: World, agent: Agent, o: int, action: str, position: int = 0
     return refuse(world, Code.NOT_AFFORDED, requirement, "none of these", o)
 
 
-def need_close(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
-    """Refuse what the character is not close to."""
-    if rows.is_close(world, agent, o):
+def need_close(world: World, agent: Agent, o: int, action: str = "", near_hands: bool = False) -> Failure | None:
+    """Refuse what the character is not close to, by the rule `near_hands` or without it."""
+    if rows.is_near(world, agent, o, near_hands) if near_hands else rows.is_close(world, agent, o):
         return None
     return refuse(world, Code.NOT_CLOSE, "the character close to it", "no CLOSE edge, direct or by one hop", o)
+
+
+def _need_near(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
+    return need_close(world, agent, o, action, near_hands=True)
 
 
 def need_another(world: World, o: int, s: int) -> Failure | None:

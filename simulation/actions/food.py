@@ -57,7 +57,7 @@ def pour(world: World, number: int, o: int, s: int, rules: Rules) -> World | Fai
         or need_able(world, agent, o, "Pour")
         or need_able(world, agent, s, "Pour", 1)
         or need_holding(world, agent, o)
-        or need_close(world, agent, s)
+        or need_close(world, agent, s, near_hands=rules.near_hands)
     )
     if failure is not None:
         return failure

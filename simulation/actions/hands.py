@@ -69,7 +69,11 @@ def _grab(world: World, number: int, o: int, rules: Rules) -> World:
 def put_back(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
     """Put o on s; on another character, who needs a free hand, it is handed over."""
     agent = world.agents[number]
-    failure = need_another(world, o, s) or need_holding(world, agent, o) or need_close(world, agent, s)
+    failure = (
+        need_another(world, o, s)
+        or need_holding(world, agent, o)
+        or need_close(world, agent, s, near_hands=rules.near_hands)
+    )
     if failure is not None:
         return failure
     if world.home.characters >> s & 1 and s != agent.index:
@@ -81,7 +85,10 @@ def put_in(world: World, number: int, o: int, s: int, rules: Rules) -> World | F
     """Put o into s, which must be open if it can be."""
     agent = world.agents[number]
     failure = (
-        need_another(world, o, s) or need_holding(world, agent, o) or need_close(world, agent, s) or need_open(world, s)
+        need_another(world, o, s)
+        or need_holding(world, agent, o)
+        or need_close(world, agent, s, near_hands=rules.near_hands)
+        or need_open(world, s)
     )
     if failure is not None:
         return failure
@@ -95,7 +102,7 @@ def put_obj_back(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
     if entry is None:
         return refuse(world, Code.NO_ORIGIN, "an object grabbed earlier", "never grabbed, or put back since", o)
     place, kind = entry[1:]
-    failure = need_holding(world, agent, o) or need_close(world, agent, place)
+    failure = need_holding(world, agent, o) or need_close(world, agent, place, near_hands=rules.near_hands)
     if failure is None and kind == kinds.INSIDE:
         failure = need_open(world, place)
     if failure is not None:

@@ -21,7 +21,8 @@ def walk(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
     room = destination(world, agent, o, rules)
     if isinstance(room, Failure):
         return room
-    return arrived(world, number, o, room, None if agent.pose is None else positions.beside(world, agent.pose, o))
+    pose = None if agent.pose is None else positions.beside(world, agent.pose, o)
+    return arrived(world, number, o, room, pose, rules)
 
 
 def need_legs(world: World, agent: Agent, *objects: int) -> Failure | None:
@@ -53,10 +54,10 @@ def destination(world: World, agent: Agent, o: int, rules: Rules) -> int | Failu
 def find(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
     """Notice o; a walk to it comes first, and is all there is to it, unless it is near or the character can't walk."""
     agent = world.agents[number]
-    near = (world.home.properties["BODY_PART"] | agent.worn) >> o & 1 or rows.is_close(world, agent, o)
+    near = (world.home.properties["BODY_PART"] | agent.worn) >> o & 1 or rows.is_near(world, agent, o, rules.near_hands)
     if not near and not (world.states[SITTING] | world.states[LYING]) & agent.bit:
         return walk(world, number, o, -1, rules)
-    failure = need_close(world, agent, o)
+    failure = need_close(world, agent, o, near_hands=rules.near_hands)
     if failure is not None:
         return failure
     return world.with_agent(number, _attending(agent, agent.close | 1 << o, 0))
@@ -83,20 +84,40 @@ def _attending(agent: Agent, close: int, facing: int) -> Agent:
     return made((agent.index, agent.bit, close, facing, *agent[4:]))
 
 
-def arrived(world: World, number: int, o: int, room: int, pose: Pose | None) -> World:
+def arrived(world: World, number: int, o: int, room: int, pose: Pose | None, rules: Rules) -> World:
     """The world once a character has walked to o in a room, and stands there if it is placed."""
     home = world.home
     moved = world.moved
-    if moved is NOTHING:
+    if rules.near == "evolving_graph":
+        near = _near_today(world, o)
+    elif moved is NOTHING:
         near = home.reach[o]
     else:
         near = 1 << o | home.properties["BODY_PART"] | (rows.inside(world, o) & ~home.rooms)
         if home.properties["SURFACES"] >> o & 1:
             near |= rows.bears(world, o)
-    near |= _characters_near(world, o)
+    if rules.near != "evolving_graph":
+        near |= _characters_near(world, o)
     if pose is not None:
         near |= positions.near(world, number, pose)
     return gone(world, number, near, room, pose)
+
+
+def _near_today(world: World, o: int) -> int:
+    """What a walk to o brings the character close to by the rules `evolving_graph`."""
+    home, bit = world.home, 1 << o
+    if home.rooms & bit:
+        return 0
+    opens = home.properties["CAN_OPEN"] & bit
+    near = bit | home.properties["BODY_PART"] | (rows.inside(world, o) & ~home.rooms) | rows.on(world, o)
+    if opens:
+        near |= rows.contents(world, o)
+    for other in world.agents:
+        if (other.contents | other.worn) & bit or (opens and other.inside & bit):
+            near |= other.bit
+        if other.bit == bit:
+            near |= other.inside & ~home.rooms | other.on
+    return near
 
 
 def gone(world: World, number: int, near: int, room: int, pose: Pose | None) -> World:

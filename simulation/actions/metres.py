@@ -49,7 +49,7 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
         return refuse(world, Code.NO_PATH, "a free way over the floor", "none", o)
     there = Pose(x, z, pose.yaw)
     if cell == -1:
-        return arrived(world, number, o, room, positions.facing(world, there, o))
+        return arrived(world, number, o, room, positions.facing(world, there, o), rules)
     there = Pose(x, z, pose.towards((x, z)).yaw)
     return _under_way(world, number, here, there)
 

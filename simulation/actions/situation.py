@@ -25,7 +25,7 @@ class Situation:
         self.sitting = bool(world.states[SITTING] & self.me.bit)
         self.lying = bool(world.states[LYING] & self.me.bit)
         self.resting = self.sitting or self.lying
-        self.close = reach.close_to(world, self.me)
+        self.close = reach.near_to(world, self.me, rules.near_hands)
 
     @cached_property
     def facing(self) -> int:

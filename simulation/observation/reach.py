@@ -7,12 +7,23 @@ from typing import TYPE_CHECKING
 from hearth.simulation.actions import doors
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
-from hearth.simulation.world.bits import indices
+from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, NOTHING
 from hearth.simulation.world.states import CLOSED
 
 if TYPE_CHECKING:
     from hearth.simulation.world.world import World
+
+
+def near_to(world: World, agent: Agent, near_hands: bool) -> int:
+    """`close_to`; by the rule `near_hands` the character's body parts count only in its own room."""
+    parts = world.home.properties["BODY_PART"] & agent.close if near_hands else 0
+    every = close_to(world, agent)
+    if not parts:
+        return every
+    sure = agent.close | close_to(world, agent._replace(close=agent.close & ~parts))
+    room = rows.agent_room(world, agent)
+    return sure | mask_of(i for i in indices(every & ~sure) if rows.room_of(world, i) == room)
 
 
 def close_to(world: World, agent: Agent) -> int:

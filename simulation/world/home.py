@@ -274,7 +274,7 @@ class Home:
         """What a class name stands for: the nodes of that class, else those of the first of its other names that the
         home knows; of a room that the home lacks, the room that serves as it.
         """
-        names = (name, *self.knowledge.same_class(name))
+        names = (name, *self.knowledge.found_as(name))
         return next((mask for each in names if (mask := self.by_class.get(each, 0))), 0)
 
     @explained

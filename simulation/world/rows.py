@@ -83,6 +83,16 @@ def is_close(world: WorldState, agent: Agent, i: int) -> bool:
     return any(mine & other.bit and (other.close | other.worn) >> i & 1 for other in world.agents)
 
 
+def is_near(world: WorldState, agent: Agent, i: int, near_hands: bool) -> bool:
+    """`is_close`; by the rule `near_hands` the character's body parts count only in its own room."""
+    if not is_close(world, agent, i):
+        return False
+    parts = world.home.properties["BODY_PART"] & agent.close if near_hands else 0
+    if not parts or agent.close >> i & 1 or room_of(world, i) == agent_room(world, agent):
+        return True
+    return is_close(world, agent._replace(close=agent.close & ~parts), i)
+
+
 def is_facing(world: WorldState, agent: Agent, i: int) -> bool:
     """Whether a character faces i, by its own FACING edge or by one hop."""
     mine = agent.facing

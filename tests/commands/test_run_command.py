@@ -56,12 +56,19 @@ def test_run_asks_whether_a_goal_is_reached(tmp_path, goal, status, words):
         assert "errors" in found or found["goal"]["reached"] == (status == 0)
 
 
-@pytest.mark.parametrize(("node", "found"), [(9999, "9999 is nothing there"), (44, "44 is television there"), (51, "")])
-def test_nodes_of_another_home_are_bound_anew(tmp_path, node, found):
+@pytest.mark.parametrize(("node", "found"), [(9999, "maple lacks 1 node that the program names: 9999"), (51, "")])
+def test_nodes_that_a_home_lacks_are_bound_anew(tmp_path, node, found):
     (tmp_path / "sit.txt").write_text(f"[Walk] <sofa> (1.{node})\n[Sit] <sofa> (1.{node})\n")
     result = call("run", tmp_path / "sit.txt", "--home", "maple")
     assert result.exit_code == 0 and "<sofa> (1) is couch (51)" in result.output
     assert found in result.output and ("bound anew" in result.output) == bool(found)
+
+
+def test_a_node_of_another_class_is_a_fault_with_both_names(tmp_path):
+    (tmp_path / "sit.txt").write_text("[Walk] <sofa> (1.44)\n[Sit] <sofa> (1.44)\n")
+    result = call("run", tmp_path / "sit.txt", "--home", "maple")
+    assert result.exit_code == 1
+    assert "`sofa` is said to be node 44, but that is a `television` in maple" in result.output
 
 
 def test_explain_names_the_edges_that_checks_held_by(tmp_path):

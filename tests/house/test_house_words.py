@@ -80,5 +80,4 @@ def test_no_file_has_a_phrase_that_readers_have_to_decode(phrase):
 def test_the_old_names_of_conditions_are_used_by_readers_alone():
     quoted = re.compile("|".join(f'"{name}"' for name in RENAMED))
     used = {path.relative_to(ROOT).as_posix() for path in files() if quoted.search(path.read_text(errors="replace"))}
-    used -= {"scoring/metrics/executability.py"}  # the published signature has `empty:apart`
     assert {name for name in used if not name.startswith("tests/")} == {"schemas/literals.py"}

@@ -126,7 +126,7 @@ def test_an_environment_has_our_knowledge_or_another():
     [
         (lambda: hearth.home("mapel"), "UNKNOWN_HOME"),
         (lambda: hearth.parse_program(""), "EMPTY"),
-        (lambda: hearth.parse_program("[Fly]\n[Walk] <fridge>"), "2:8: SYNTAX"),
+        (lambda: hearth.parse_program("[Fly]\n[Walk] <fridge"), "2:8: SYNTAX"),
         (lambda: hearth.Env().reset("mapel"), "UNKNOWN_HOME"),
         (lambda: hearth.load("nowhere"), "MISSING_FILE"),
     ],

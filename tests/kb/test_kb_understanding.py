@@ -25,7 +25,7 @@ def test_said_word_by_word(knowledge, sentence, action, names):
     [
         ("Wlak to kitchen", "Walk", ("kitchen",)),
         ("Grab the coffe cup", "Grab", ("coffee_cup",)),
-        ("Pour milk in the glas", "PutIn", ("milk", "glass")),
+        ("Pour milk in the glas", "Pour", ("milk", "glass")),
         ("Sleeep", "Sleep", ()),
     ],
 )

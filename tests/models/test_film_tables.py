@@ -70,7 +70,7 @@ def test_writers_stand_beside_classifiers_and_seeds_are_one_row(monkeypatch):
     monkeypatch.setattr(film_tables, "shown_films", lambda *_: shown)
     monkeypatch.setattr(film_tables, "film_probabilities", lambda *_: (None, None))
     monkeypatch.setattr(film_tables, "score_steps", lambda dataset, pairs: [None for _ in pairs])
-    monkeypatch.setattr(film_tables, "METRICS", dict.fromkeys(("executable", "goal"), lambda _: 1.0))
+    monkeypatch.setattr(film_tables, "METRICS", dict.fromkeys(("executable", "goal", "goal_whole"), lambda _: 1.0))
     rows = {(row.method, row.homes): row for row in film_tables.film_table(None, ["a", "b"])}
     free, engine = rows["films-mle, free", "all"], rows["films-mle, engine", "unseen"]
     assert free.seeds == engine.seeds == 2 and free.films == 2 and engine.films == 1

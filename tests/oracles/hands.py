@@ -7,8 +7,9 @@ from oracles.world import Options, World, need
 
 
 def grab(w: World, o: int, _: int | None, options: Options) -> None:
+    need(not options.one_grip or o not in w.held(), Code.HELD_ALREADY)
     need(w.has(o, "GRABBABLE") or w.name[o] in ("water", "child"), Code.NOT_AFFORDED)
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(not w.hidden(o), Code.INSIDE_CLOSED)
     hand = w.free_hand()
     need(hand, Code.NO_FREE_HAND)
@@ -55,7 +56,7 @@ def put_back(w: World, o: int, s: int | None, options: Options) -> None:
     assert s is not None
     need(o != s, Code.NOT_AFFORDED)
     need(o in w.held(), Code.NOT_HOLDING)
-    need(w.close(s), Code.NOT_CLOSE)
+    need(w.close(s, options), Code.NOT_CLOSE)
     put(w, o, s, "ON")
 
 
@@ -63,7 +64,7 @@ def put_in(w: World, o: int, s: int | None, options: Options) -> None:
     assert s is not None
     need(o != s, Code.NOT_AFFORDED)
     need(o in w.held(), Code.NOT_HOLDING)
-    need(w.close(s), Code.NOT_CLOSE)
+    need(w.close(s, options), Code.NOT_CLOSE)
     need(not shut(w, s), Code.IS_CLOSED)
     put(w, o, s, "INSIDE")
 
@@ -72,7 +73,7 @@ def put_obj_back(w: World, o: int, _: int | None, options: Options) -> None:
     need(o in w.origins, Code.NO_ORIGIN)
     place, relation = w.origins[o]
     need(o in w.held(), Code.NOT_HOLDING)
-    need(w.close(place), Code.NOT_CLOSE)
+    need(w.close(place, options), Code.NOT_CLOSE)
     need(relation != "INSIDE" or not shut(w, place), Code.IS_CLOSED)
     put(w, o, place, relation)
     del w.origins[o]
@@ -93,7 +94,7 @@ def pour(w: World, o: int, s: int | None, options: Options) -> None:
     need(w.has(o, "POURABLE", "DRINKABLE"), Code.NOT_AFFORDED)
     need(w.has(s, "RECIPIENT") or w.name[s] in ("hands_both", "sponge", "face"), Code.NOT_AFFORDED)
     need(o in w.held(), Code.NOT_HOLDING)
-    need(w.close(s), Code.NOT_CLOSE)
+    need(w.close(s, options), Code.NOT_CLOSE)
     w.link(o, "INSIDE", s)
     if w.name[o] == "water":
         w.let_go(o)

@@ -24,9 +24,7 @@ def walk(w: World, o: int, _: int | None, options: Options) -> None:
     assert room is not None
     if options.doors:
         need(reachable(w, w.room(w.me), room), Code.DOOR_CLOSED)
-    near = {o} | w.body | (w.to["INSIDE"][o] - w.rooms)
-    if w.has(o, "SURFACES"):
-        near |= w.back["ON"][o]
+    near = near_today(w, o) if options.today else near_then(w, o)
     w.isolate(w.me, "INSIDE", "CLOSE", "FACING")
     for x in w.held():
         w.isolate(x, "INSIDE", "CLOSE", "FACING")
@@ -35,6 +33,19 @@ def walk(w: World, o: int, _: int | None, options: Options) -> None:
         w.link(x, "INSIDE", room)
     for x in near | w.held():
         w.link(w.me, "CLOSE", x)
+
+
+def near_then(w: World, o: int) -> set[int]:
+    near = {o} | w.body | (w.to["INSIDE"][o] - w.rooms)
+    return near | w.back["ON"][o] if w.has(o, "SURFACES") else near
+
+
+def near_today(w: World, o: int) -> set[int]:
+    """As VirtualHome 2.x has it: nothing in a room; else also what it is ON, and what is INSIDE what can be opened."""
+    if o in w.rooms:
+        return set()
+    near = {o} | w.body | (w.to["INSIDE"][o] - w.rooms) | w.to["ON"][o]
+    return near | w.back["INSIDE"][o] if w.has(o, "CAN_OPEN") else near
 
 
 def side(w: World, start: int | None, o: int, room: int | None) -> int | None:
@@ -71,11 +82,11 @@ def reachable(w: World, start: int | None, goal: int) -> bool:
 
 
 def find(w: World, o: int, s: int | None, options: Options) -> None:
-    near = o in w.back["ON"][w.me] or w.has(o, "BODY_PART") or w.close(o)
+    near = o in w.back["ON"][w.me] or w.has(o, "BODY_PART") or w.close(o, options)
     if not near and not w.resting():
         walk(w, o, s, options)
         return
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     for x in list(w.to["FACING"][w.me]):
         w.unlink(w.me, "FACING", x)
     w.link(w.me, "CLOSE", o)
@@ -88,7 +99,7 @@ def turn_to(w: World, o: int, _: int | None, options: Options) -> None:
 
 
 def sit(w: World, o: int, _: int | None, options: Options) -> None:
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(not w.is_(w.me, "SITTING"), Code.SITTING)
     need(w.has(o, "SITTABLE"), Code.NOT_AFFORDED)
     need(len(taken(w, o, options)) < SEATS.get(w.name[o], 1), Code.OCCUPIED)
@@ -99,7 +110,7 @@ def sit(w: World, o: int, _: int | None, options: Options) -> None:
 
 
 def lie(w: World, o: int, _: int | None, options: Options) -> None:
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(not w.is_(w.me, "LYING"), Code.LYING)
     need(w.has(o, "LIEABLE"), Code.NOT_AFFORDED)
     need(len(taken(w, o, options)) < BEDS.get(w.name[o], 1), Code.OCCUPIED)

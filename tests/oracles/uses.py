@@ -21,7 +21,7 @@ def can_open(w: World, o: int) -> bool:
 
 def open_(w: World, o: int, _: int | None, options: Options) -> None:
     need(can_open(w, o), Code.NOT_AFFORDED)
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(w.free_hand(), Code.NO_FREE_HAND)
     need(not w.is_(o, "OPEN"), Code.IS_OPEN)
     need(w.is_(o, "CLOSED"), Code.NOT_OPENABLE_STATE)
@@ -31,7 +31,7 @@ def open_(w: World, o: int, _: int | None, options: Options) -> None:
 
 def close(w: World, o: int, _: int | None, options: Options) -> None:
     need(can_open(w, o), Code.NOT_AFFORDED)
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(not w.is_(o, "CLOSED"), Code.IS_CLOSED)
     need(w.is_(o, "OPEN"), Code.NOT_OPENABLE_STATE)
     w.enter(o, "CLOSED")
@@ -39,7 +39,7 @@ def close(w: World, o: int, _: int | None, options: Options) -> None:
 
 def switch_on(w: World, o: int, _: int | None, options: Options) -> None:
     need(w.has(o, "HAS_SWITCH"), Code.NOT_AFFORDED)
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(w.is_(o, "OFF"), Code.IS_ON)
     need(not w.is_(o, "PLUGGED_OUT"), Code.IS_UNPLUGGED)
     w.enter(o, "ON")
@@ -47,7 +47,7 @@ def switch_on(w: World, o: int, _: int | None, options: Options) -> None:
 
 def switch_off(w: World, o: int, _: int | None, options: Options) -> None:
     need(w.has(o, "HAS_SWITCH"), Code.NOT_AFFORDED)
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(w.is_(o, "ON"), Code.IS_OFF)
     w.enter(o, "OFF")
 
@@ -55,7 +55,7 @@ def switch_off(w: World, o: int, _: int | None, options: Options) -> None:
 def plug(state: str, code: Code) -> Action:
     def act(w: World, o: int, _: int | None, options: Options) -> None:
         need(w.has(o, "HAS_PLUG"), Code.NOT_AFFORDED)
-        need(w.close(o), Code.NOT_CLOSE)
+        need(w.close(o, options), Code.NOT_CLOSE)
         need(w.free_hand(), Code.NO_FREE_HAND)
         need(w.is_(o, OPPOSITE[state]), code)
         w.enter(o, state)
@@ -88,31 +88,31 @@ def drink(w: World, o: int, _: int | None, options: Options) -> None:
 
 
 def eat(w: World, o: int, _: int | None, options: Options) -> None:
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(any(w.has(x, "EATABLE") for x in {o} | w.back["ON"][o]), Code.NOTHING_TO_EAT)
 
 
 def cut(w: World, o: int, _: int | None, options: Options) -> None:
     need(w.free_hand(), Code.NO_FREE_HAND)
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need({"EATABLE", "CUTTABLE"} <= w.properties[o], Code.NOT_AFFORDED)
     need(any("knife" in w.name[x] for x in w.held()), Code.NOT_HOLDING)
 
 
 def type_(w: World, o: int, _: int | None, options: Options) -> None:
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(w.has(o, "HAS_SWITCH") or w.name[o] == "keyboard", Code.NOT_AFFORDED)
 
 
 def touch(w: World, o: int, _: int | None, options: Options) -> None:
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(not w.hidden(o), Code.INSIDE_CLOSED)
 
 
 def shift(anything: bool) -> Action:
     def act(w: World, o: int, _: int | None, options: Options) -> None:
         need(anything or w.has(o, "MOVABLE") or w.name[o] in ("chair", "curtain", "button"), Code.NOT_AFFORDED)
-        need(w.close(o), Code.NOT_CLOSE)
+        need(w.close(o, options), Code.NOT_CLOSE)
         need(not w.hidden(o), Code.INSIDE_CLOSED)
         need(w.free_hand(), Code.NO_FREE_HAND)
 
@@ -120,19 +120,19 @@ def shift(anything: bool) -> Action:
 
 
 def wipe(w: World, o: int, _: int | None, options: Options) -> None:
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(w.held(), Code.NOT_HOLDING)
     w.enter(o, "CLEAN")
 
 
 def wash(w: World, o: int, _: int | None, options: Options) -> None:
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     w.enter(o, "CLEAN")
 
 
 def squeeze(w: World, o: int, _: int | None, options: Options) -> None:
     need(w.free_hand(), Code.NO_FREE_HAND)
-    need(w.close(o), Code.NOT_CLOSE)
+    need(w.close(o, options), Code.NOT_CLOSE)
     need(w.has(o, "CLOTHES") or w.name[o] in SQUEEZABLE, Code.NOT_AFFORDED)
 
 

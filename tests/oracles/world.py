@@ -106,8 +106,10 @@ class World:
     def hidden(self, x: int) -> bool:
         return any(y not in self.rooms and self.is_(y, "CLOSED") for y in self.to["INSIDE"][x])
 
-    def close(self, x: int) -> bool:
+    def close(self, x: int, options: Options) -> bool:
         mine = self.to["CLOSE"][self.me]
+        if options.near_hands and x not in mine and self.room(x) != self.room(self.me):
+            mine = mine - self.body
         return x in mine or any(y in self.to["CLOSE"][x] or y in self.to["ON"][x] for y in mine)
 
     def facing(self, x: int) -> bool:
@@ -138,12 +140,25 @@ class World:
 
 
 class Options:
-    """Whether doors stop walks, what is off can be watched, and the bedding on a bed takes no room."""
+    """Whether doors stop walks, what is off can't be watched, the bedding on a bed takes no room, hands reach into no
+    other room, walks are those of `evolving_graph`, and what is held is not grabbed again.
+    """
 
-    def __init__(self, doors: bool = True, watch_needs_on: bool = True, made_bed: bool = True) -> None:
+    def __init__(
+        self,
+        doors: bool = True,
+        watch_needs_on: bool = True,
+        made_bed: bool = True,
+        near_hands: bool = True,
+        today: bool = False,
+        one_grip: bool = False,
+    ) -> None:
         self.doors = doors
         self.watch_needs_on = watch_needs_on
         self.made_bed = made_bed
+        self.near_hands = near_hands
+        self.today = today
+        self.one_grip = one_grip
 
 
 def _copied(relations: dict[str, dict[int, set[int]]]) -> dict[str, dict[int, set[int]]]:

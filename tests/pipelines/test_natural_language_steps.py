@@ -109,7 +109,7 @@ def test_a_language_model_s_markdown(write, knowledge):
     ]  # fmt: skip
     assert found.program.lines == (12, 13, 17, 17, 20)
     assert [(fault.code, fault.line, fault.column) for fault in found.faults] == [("NOT_UNDERSTOOD", 18, 4)]
-    assert [(warning.code, warning.line) for warning in found.warnings] == [("FUZZY_MATCH", 13)]
+    assert [(warning.code, warning.line) for warning in found.warnings] == [("FUZZY_MATCH", 13), ("NO_STEP", 14)]
     assert (second["title"], second["program_id"]) == ("Watch TV", "spoken:chat.md:23")
     found = parse_steps(second["text"], second["line"], "chat.md", knowledge)
     assert found.program.lines == (27, 28) and not found.faults
@@ -156,7 +156,7 @@ def test_programs_of_bullets_and_bullets_that_are_remarks(write):
 
 
 def test_a_step_in_brackets_is_checked_by_the_grammar(knowledge):
-    found = parse_steps("1. [Walk] <bed> (2)\n2. [Fly] <bed> (1)\n3. [Walk] <bed>\n", 4, "a.txt", knowledge)
+    found = parse_steps("1. [Walk] <bed> (2)\n2. [Fly] <bed> (1)\n3. [Walk] <bed> x\n", 4, "a.txt", knowledge)
     assert list(print_lines(found.program)) == ["[Walk] <bed> (2)"]
     assert [(f.code, f.line, f.column) for f in found.faults] == [("UNKNOWN_ACTION", 6, 5), ("SYNTAX", 7, 11)]
 

@@ -26,7 +26,6 @@ FAULTS = [
     ("[Walk] cup (1)", Code.SYNTAX, 8, "cup (1)"),
     ("[Walk] <cup (1)", Code.SYNTAX, 8, "<cup (1)"),
     ("[Walk] <cup> 1", Code.SYNTAX, 8, "<cup> 1"),
-    ("[Walk] <cup>", Code.SYNTAX, 8, "<cup>"),
     ("[Read] <book> (1) quietly", Code.SYNTAX, 19, "quietly"),
     ("<chef> [Walk] <cup> (1)", Code.SYNTAX, 1, "<chef>"),
     ("<char0> [Walk] <cup> (1) |", Code.SYNTAX, 26, "|"),

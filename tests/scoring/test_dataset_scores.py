@@ -229,7 +229,9 @@ def test_baselines_of_a_dataset(ds):
     found = baselines(ds)
     if found:
         assert {each.baseline for each in found} <= {*BASELINES, *BY_SKETCH, *BY_START}
-        assert all(value is None or 0 <= value <= 1 for each in found for value in each[1:])
+        assert all(value is None or 0 <= value <= 1 for each in found for value in each[1:-1])
+        assert {each.source for each in found} == {"here"}
+    assert {each.source for each in THESIS} == {"thesis"}
     assert baselines(ds, "nothing") == []
 
 
@@ -242,7 +244,7 @@ def test_starts_are_near_by_the_share_of_what_they_have_in_common():
 
 
 def test_the_thesis_s_figures_are_shares():
-    figures = [value for row in THESIS for value in row[1:] if value is not None]
+    figures = [value for row in THESIS for value in row[1:-1] if value is not None]
     assert len(figures) > 100 and all(0 <= value <= 1 for value in figures)
 
 

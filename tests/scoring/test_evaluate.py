@@ -3,6 +3,7 @@ from functools import partial
 import pytest
 
 from hearth.kb.loading.load import default
+from hearth.schemas.failures import Code
 from hearth.scoring.dataset_scores import read_line
 from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, reference_of, signatures, summarise
 from hearth.scoring.lines import read
@@ -39,12 +40,14 @@ def values(scored, metric):
     ("metric", "expected"),
     [
         ("lcs_step", (1, 0.5, 0, 0, 0, 0)),
-        ("parsable", (1, 1, 1, 0, 0, 1)),
-        ("parsable_names", (1, 1, 1, 0, 0, 1)),
-        ("executable", (1, 0, 1, 0, 0, 1)),
+        ("parsable", (1, 1, 0, 0, 0, 1)),
+        ("parsable_names", (1, 1, 0, 0, 0, 1)),
+        ("executable", (1, 0, 0, 0, 0, 1)),
         ("executable_filled", (1, 0, None, 0, 0, 1)),
         ("goal", (1, 0, 0, 0, 0, None)),
         ("goal_fraction", (1, 0, 0, 0, 0, None)),
+        ("goal_whole", (1, 0, 0, 0, 0, None)),
+        ("goal_whole_fraction", (1, 0, 0, 0, 0, None)),
     ],
 )
 def test_scores_by_name(scored, metric, expected):
@@ -70,7 +73,9 @@ def test_summary(scored):
     assert summary.errors == {ErrorClass.SYNTAX: 1, ErrorClass.WRONG_ORDER: 1}
     assert summary.failed_at == {0: 2}
     assert summary.means["lcs_step"].mean == 0.25
-    assert summary.means["executable"].mean == 0.5
+    assert summary.codes == {Code.SYNTAX: 1, Code.NOT_CLOSE: 1}
+    assert (summary.unreferenced, summary.reached_before) == (0, 0)
+    assert summary.means["executable"].mean == pytest.approx(2 / 6)
     assert summary.means["executable_filled"].mean == 0.4
     assert summary.means["goal"].mean == 0.2
     assert list(summary.means) == list(METRICS)

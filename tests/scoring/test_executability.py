@@ -76,9 +76,9 @@ def test_a_program_that_runs(world):
     assert (20, "ON", 10) in found.final.edges()
 
 
-def test_an_empty_program_runs_and_says_that_it_is_empty(world):
+def test_an_empty_program_is_not_executable_and_says_that_it_is_empty(world):
     found = executability((), world)
-    assert (found.empty, found.executable, found.final) == (True, True, world)
+    assert (found.empty, found.executable, found.final) == (True, False, world)
 
 
 def test_the_first_fault_is_the_earliest_whatever_its_kind(world):

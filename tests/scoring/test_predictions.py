@@ -9,7 +9,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.scoring.first_faults import SHOWN, FirstFaults
 from hearth.scoring.lines import read
-from hearth.scoring.prediction_rows import rows_of, source_of
+from hearth.scoring.prediction_rows import has_predictions, rows_of, source_of
 from hearth.scoring.predictions import Pair, read_pairs
 
 WALK = read(["[Walk] <sofa> (1)"])
@@ -95,10 +95,67 @@ def test_an_unknown_id_is_named_with_the_nearest(write):
     ]
 
 
-def test_many_faults_of_a_kind_are_counted(write):
-    found = faults(write(*({"id": n} for n in range(SHOWN + 5))))
-    assert len(found) == SHOWN + 1
-    assert found[-1][:3] == (Code.BAD_TABLE, 0, "and 5 more of this kind")
+def test_equal_faults_are_one_with_a_count(write):
+    found = faults(write(*({"id": n} for n in range(63))))
+    message = "no `predicted`, `reference` (and 62 more rows: lines 2, 3, 4, 5, 6, ...)"
+    assert [fault[:3] for fault in found] == [(Code.BAD_TABLE, 1, message)]
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        (
+            [row("a"), row("a"), row("b"), row("b")],
+            "a second row of id `a`; the first is line 1 (and 1 more row: line 4)",
+        ),
+        ([row("a", 3), row("b"), row("c", 4)], "`predicted` of id `a` is int, not a program (and 1 more row: line 3)"),
+        ([[1], [2], [3]], "a list, not an object (and 2 more rows: lines 2, 3)"),
+    ],
+)
+def test_faults_that_differ_in_their_row_alone_are_equal(write, rows, message):
+    assert [fault[2] for fault in faults(write(*rows))] == [message]
+
+
+def test_a_bad_row_is_left_out_and_the_rest_is_read(write):
+    rejects = FirstFaults()
+    path = write(row("a"), "{", row("b", 3), row("a"), {"id": "c"}, row("d"))
+    assert [pair.id for pair in read_pairs(path, rejects=rejects)] == ["a", "d"]
+    assert (rejects.rows, sorted(fault.line for fault in rejects)) == (4, [2, 3, 4, 5])
+    assert 2 + rejects.rows == 6  # rows in = rows out + rejects
+
+
+def test_a_bad_row_of_a_known_id_is_a_missing_prediction(write):
+    rejects, known = FirstFaults(), {"a": "[Walk] <sofa> (1)", "b": "[Walk] <sofa> (1)"}
+    path = write({"id": "a", "predicted": 3}, {"id": "b", "predicted": "[Walk] <sofa> (1)"})
+    assert read_pairs(path, known, rejects=rejects) == [Pair("a", None, WALK), Pair("b", WALK, WALK, 2)]
+    assert rejects.rows == 1
+    with pytest.raises(HearthError, match="is int"):
+        read_pairs(write({"id": "a", "predicted": 3}), known, rejects=FirstFaults())
+
+
+def test_rows_without_a_reference_or_an_id(write):
+    path = write({"predicted": "[Walk] <sofa> (1)"}, row("b"), {"id": "c", "predicted": None, "reference": None})
+    assert read_pairs(path, alone=True) == [
+        Pair("1", WALK, (), 1, referenced=False),
+        Pair("b", WALK, WALK, 2),
+        Pair("c", None, (), 3, referenced=False),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "rows"),
+    [
+        ('{"id": 1, "predicted": ""}', True),
+        ('\n{\n{"id": 1, "reference": ""}', True),
+        ("PAR1", True),
+        ("1. Walk to sofa\n2. Sit", False),
+        ('{"title": "TV", "steps": ["Walk to sofa"]}', False),
+        ("", False),
+    ],
+)
+def test_files_with_predictions_are_distinguished_from_programs(tmp_path, text, rows):
+    (tmp_path / "f").write_text(text)
+    assert has_predictions(tmp_path / "f") is rows
 
 
 @pytest.mark.parametrize(
@@ -163,10 +220,11 @@ def test_a_table_may_name_its_rows_otherwise(tmp_path):
 def test_of_many_faults_the_first_of_each_kind_are_kept_and_the_others_counted():
     found = FirstFaults()
     assert not found
-    found.extend(Diagnostic(Code.BAD_TABLE, str(n), "f", n) for n in range(1_000))
+    words = ("".join(chr(97 + int(digit)) for digit in str(n)) for n in range(1_000))
+    found.extend(Diagnostic(Code.BAD_TABLE, word, "f", n) for n, word in enumerate(words))
     found.append(Diagnostic(Code.DUPLICATE, "again", "f", 7))
-    assert found and len(found._kept) == SHOWN + 1
-    assert [fault.message for fault in found][-3:] == ["19", "again", f"and {1_000 - SHOWN} more of this kind"]
+    assert found.rows == 1_001 and len(found._groups) == SHOWN + 1
+    assert [fault.message for fault in found][-3:] == ["bj", "again", f"and {1_000 - SHOWN} more of this kind"]
 
 
 @pytest.mark.parametrize("step", [{"action": ["x"], "objects": []}, {"action": "Walk", "objects": [{"name": 3}]}])
@@ -181,7 +239,7 @@ def test_what_more_there_is_of_a_kind_names_the_file_of_that_kind():
 
     found = FirstFaults()
     found.append(Diagnostic(Code.BAD_JSON, "x", "one.jsonl"))
-    found.extend(Diagnostic(Code.UNKNOWN_ID, "y", "other.jsonl") for _ in range(SHOWN + 5))
+    found.extend(Diagnostic(Code.UNKNOWN_ID, "y" * n, "other.jsonl") for n in range(SHOWN + 5))
     assert [each.file for each in found][-1] == "other.jsonl"
 
 

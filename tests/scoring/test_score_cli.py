@@ -126,8 +126,11 @@ def test_a_row_may_have_a_goal_of_its_own(score, tmp_path):
     lines = (json.dumps({"id": number, **row, **goal}) for number, goal in enumerate([*goals, {}]))
     (tmp_path / "rows.jsonl").write_text("\n".join(lines))
     found = json.loads(score("program", "rows.jsonl", "--graph", "flat.json", "--json").stdout)
-    assert [each["goal"] for each in found["scores"]] == [1, 0, 1, 1]
-    assert found["signatures"]["goal"] == "goal|level:program|empty:1|own:3|v1"
+    assert [each.get("goal") for each in found["scores"]] == [1, 0, 1, None]
+    assert [each["goal_whole"] for each in found["scores"]] == [1, 0, 1, 1]
+    assert found["reached_before"] == 1  # the reference walks: it achieves nothing that lasts
+    assert found["signatures"]["goal"] == "goal|level:program|empty:0|own:3|v2"
+    assert found["signatures"]["goal_whole"] == "goal_whole|level:program|empty:1|own:3|v2"
     (tmp_path / "rows.jsonl").write_text(json.dumps({"id": "a", **row, "goal": "GRAB(cup) then SHINY(cup)"}))
     refused = score("program", "rows.jsonl", "--graph", "flat.json").output
     assert "SHINY is not a known state" in refused and "goal of `a`, row 1:1:16" in refused

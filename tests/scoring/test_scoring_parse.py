@@ -1,5 +1,6 @@
 import pytest
 
+from hearth.pipelines.checks.checked_text import check_text
 from hearth.schemas.failures import Code
 from hearth.scoring.lines import read
 from hearth.scoring.metrics.parsability import parsability
@@ -34,8 +35,29 @@ def test_an_affordance_is_not_asked_about(knowledge):
     assert parsability(read(["[Grab] <bedroom> (1)"]), knowledge).named  # invalid only to execute, A.3
 
 
-def test_an_empty_program_parses(knowledge):
-    assert parsability((), knowledge).named
+def test_an_empty_program_does_not_parse(knowledge):
+    """Nothing was answered: a model that says nothing to a third of the tasks got the score of that third."""
+    found = parsability((), knowledge)
+    assert (found.parsable, found.named, found.faults) == (False, False, ())
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "[PUTBACK] <television> (1) <television> (1)",
+        "[PutBack] <television> (1) <Television> (1)",
+        "[putin] <TV> (2) <television> (2)",
+        "[PutIn] <cup> (1.20) <cup> (1.20)",
+    ],
+)
+def test_an_object_given_twice_is_the_wrong_number_of_objects(knowledge, line):
+    (fault,) = parsability(read([line]), knowledge).faults
+    assert fault.code is Code.WRONG_ARITY
+    assert [each.code for each in check_text(line, knowledge).faults] == [Code.WRONG_ARITY]
+
+
+def test_two_of_a_class_are_two_objects(knowledge):
+    assert parsability(read(["[PutBack] <cup> (1) <cup> (2)"]), knowledge).named
 
 
 def test_spelling_as_grounded_programs_have_it(knowledge):

@@ -90,7 +90,9 @@ def test_engine_mask_plain_engine_literals_and_conditions_agree(seed):
         for action in ("Sit", "Lie"):
             found = code(act(world, step(action, seat), rules))
             plain = PlainWorld(graph, rules.origin == "release")
-            assert found == reference.step(plain, step(action, seat), Options(made_bed=rules.made_bed))
+            assert found == reference.step(
+                plain, step(action, seat), Options(made_bed=rules.made_bed, near_hands=rules.near_hands)
+            )
             on = frozenset(("made_bed",) if rules.made_bed else ())
             failed = first_failure(KNOWN, Facts.of(graph), KNOWN.actions[action], {"a": ME, "o": BED}, on)
             assert found == (failed and failed.code)
@@ -101,7 +103,7 @@ def test_engine_mask_plain_engine_literals_and_conditions_agree(seed):
 
 def test_every_option_of_the_knowledge_is_a_rule():
     named = {check.option for action in KNOWN.actions.values() for check in action.preconditions} - {""}
-    assert options(KNOWN) == ["made_bed"] and named | {"made_bed"} <= {*DEFAULT._fields}
+    assert options(KNOWN) == ["made_bed", "near_hands"] and named | {"made_bed"} <= {*DEFAULT._fields}
 
 
 def test_the_bedding_of_the_knowledge_are_its_classes_of_bedding():
@@ -122,8 +124,10 @@ def test_a_planning_problem_states_the_rule(rules):
 
 
 def test_datasets_and_episodes_from_before_are_read_with_the_bedding_counted():
-    assert [name for name, rules in RULES.items() if rules.made_bed] == ["made_bed", "made_bed_watching_off"]
-    assert RULES["default"] == DEFAULT._replace(made_bed=False) and not RULES["watching_off"].made_bed
+    made = ["near_hands", "near_hands_watching_off", "made_bed", "made_bed_watching_off"]
+    assert [name for name, rules in RULES.items() if rules.made_bed] == made
+    assert [name for name, rules in RULES.items() if rules.near_hands] == made[:2]
+    assert RULES["default"] == DEFAULT._replace(made_bed=False, near_hands=False) and not RULES["watching_off"].made_bed
     assert not read({"origin": "sensible", "watch_needs_on": True, "doors": True}).made_bed
     assert len(set(RULES.values())) == len(RULES)
 

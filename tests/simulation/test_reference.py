@@ -13,7 +13,7 @@ from small_worlds import random_graph, random_step
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
 from hearth.simulation.engine import act
-from hearth.simulation.rules import DEFAULT, REPLAY
+from hearth.simulation.rules import DEFAULT, EVOLVING_GRAPH, REPLAY
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -22,8 +22,9 @@ def agree(seed: int, steps: int = 30) -> int:
     """Do random steps in both, in a random home; how many could be done."""
     rng = random.Random(seed)
     graph = random_graph(rng)
-    rules = rng.choice((DEFAULT, REPLAY))
-    options = Options(rules.doors, rules.watch_needs_on, rules.made_bed)
+    rules = rng.choice((DEFAULT, REPLAY, EVOLVING_GRAPH))
+    today = rules.near == "evolving_graph"
+    options = Options(rules.doors, rules.watch_needs_on, rules.made_bed, rules.near_hands, today, rules.one_grip)
     world, plain = World.start(Home.from_graph(graph, "", default())), PlainWorld(graph, rules.origin == "release")
     done = 0
     for number in range(steps):
@@ -43,7 +44,7 @@ def agree(seed: int, steps: int = 30) -> int:
 @pytest.mark.parametrize("block", range(10))
 def test_the_engine_does_what_the_table_says_on_random_programs(block):
     done = sum(agree(seed) for seed in range(block * 100, block * 100 + 100))
-    assert done > 500
+    assert done > 450  # after a walk into a room little can be done by `evolving_graph`
 
 
 @pytest.mark.slow

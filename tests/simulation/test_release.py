@@ -56,7 +56,10 @@ def test_the_engine_reproduces_every_stored_end_graph(real_data, knowledge, ever
 def test_so_does_the_plain_reading(real_data, knowledge, every):
     for name, program, start, end in cases(real_data, knowledge, every):
         world = PlainWorld(from_release(start), release=True)
-        assert reference.run(world, program, Options(doors=False, watch_needs_on=False, made_bed=False)) is None, name
+        assert (
+            reference.run(world, program, Options(doors=False, watch_needs_on=False, made_bed=False, near_hands=False))
+            is None
+        ), name
         edges, states = facts(end)
         assert world.edges() == edges, name
         assert world.state_pairs() == states, name

@@ -1,5 +1,6 @@
 """A whole study with agents in people's places: the same bytes, however often it is stopped; tables without names."""
 
+import json
 import re
 import subprocess
 import sys
@@ -7,8 +8,10 @@ from dataclasses import replace
 
 import pyarrow.parquet as pq
 import pytest
-from studies.small import simulated
+from studies.small import SMALL, simulated
 
+from hearth.agents.agent_registry import HELPERS
+from hearth.commands.study import report, simulate
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -160,3 +163,36 @@ def test_who_is_forgotten_is_in_no_table(made, folder):
     assert person not in again.ledger.streams()
     assert not re.search(person.encode(), (folder / "small" / EVENTS).read_bytes())
     assert len(list(Rows(again).participants())) == 4
+
+
+def test_a_helper_that_fails_is_counted_as_the_helpers_failure(tmp_path, monkeypatch, capsys):
+    """Its trials are in the tables with its code, in no figure of the people, and said in every report."""
+
+    class Failing:
+        def reset(self, observation, goal, seed):
+            pass
+
+        def act(self, observation, legal):
+            raise RuntimeError("out of order")
+
+    monkeypatch.setitem(HELPERS, "hp_random", replace(HELPERS["hp_random"], make=lambda partner: Failing()))
+    made = simulated(tmp_path)
+    rows = [row for row in Rows(made).trials() if row["counted"]]
+    assert [(row["condition"] == "hp_rg", row["helper_fault"]) for row in rows] == [
+        (row["condition"] == "hp_rg", "AGENT_FAILED" if row["condition"] == "hp_rg" else "") for row in rows
+    ]
+    found = findings(made)
+    failed = sum(row["condition"] == "hp_rg" for row in rows)
+    assert found.helper_faults == {"hp_rg": failed}
+    assert found.figure(PEOPLE, "hp_rg", "success") is None and found.figure(PEOPLE, "alone", "success").mean > 0
+    assert f"the helper failed in {failed} trials" in page(found, [])
+    report(tmp_path / "small")
+    assert f"the helper failed in {failed} trials" in capsys.readouterr().out
+    (tmp_path / "small.yaml").write_text(SMALL)
+    simulate(str(tmp_path / "small.yaml"), out=tmp_path, workers=1, as_json=True)
+    assert json.loads(capsys.readouterr().out)["helper_faults"] >= failed
+
+
+def test_nothing_is_said_of_helpers_that_did_not_fail(made):
+    assert findings(made).helper_faults == {}
+    assert "helper failed" not in page(findings(made), [])

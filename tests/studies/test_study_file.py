@@ -91,3 +91,26 @@ def test_a_study_whose_helpers_ask_networks_does_not_begin_without_them(monkeypa
 
 def test_yaml_that_holds_itself_is_refused():
     assert faults("&a [*a]")
+
+
+@pytest.mark.parametrize(
+    ("challenge", "helper"),
+    [
+        ("owah", "asking"),
+        *(("wah", name) for name in ("asking", "nopa_gpn", "nopa_gpn_s", "hp_gpn", "hp_gpn_s", "af_gpn")),
+    ],
+)
+def test_a_helper_that_would_end_every_trial_is_a_fault_of_the_file(challenge, helper):
+    split = "test-1" if challenge == "wah" else "test"
+    text = SMALL.replace("challenge: owah, split: test", f"challenge: {challenge}, split: {split}")
+    text = text.replace("helper: hp_random, goal: random", f"helper: {helper}")
+    (found,) = faults(text)
+    assert (found.line, found.code) == (14, "BAD_ARGUMENT")
+    assert f"`{helper}` can't help in `{challenge}`" in found.message
+    assert found.suggestion.startswith("hp, nopa")
+    assert study_of(text, "study.yaml", begun=True).name == "small", "what was collected with it is still to be read"
+
+
+@pytest.mark.parametrize("helper", ["nopa_gpn", "hp_gpn_s", "af_gpn", "nopa"])
+def test_the_same_networks_help_where_they_were_trained(helper):
+    assert study_of(SMALL.replace("helper: hp_random, goal: random", f"helper: {helper}"), "study.yaml").name == "small"

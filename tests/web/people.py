@@ -97,9 +97,23 @@ def browser():
     if path is None:
         pytest.skip("no Chromium here: apt-get install chromium")
     with playwright.sync_playwright() as running:
-        started = running.chromium.launch(executable_path=path, args=list(CHROMIUM))
-        yield started
+        started, uncaught = running.chromium.launch(executable_path=path, args=list(CHROMIUM)), []
+        yield strict(started, uncaught)
         started.close()
+    assert uncaught == [], "a page's script failed"
+
+
+def strict(started, uncaught: list[str]):
+    """The browser; an error that a script of any page of it did not catch is put into `uncaught`."""
+    plain = started.new_context
+
+    def new_context(**options):
+        context = plain(**options)
+        context.on("weberror", lambda found: uncaught.append(f"{found.page.url}: {found.error}"))
+        return context
+
+    started.new_context = new_context
+    return started
 
 
 AXE = ROOT / "web/node_modules/axe-core/axe.min.js"

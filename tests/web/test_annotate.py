@@ -73,7 +73,7 @@ def submitted(client, text, steps=STEPS) -> None:
 
 def reviewer(server: Server):
     client = server.person()
-    assert "You have passed" in client.post("/annotate/test", data=RIGHT).text
+    assert "You have passed" in client.get(client.post("/annotate/test", data=RIGHT).headers["location"]).text
     return client
 
 
@@ -141,14 +141,40 @@ def test_only_declared_things_and_only_what_the_grammar_affords(person, set_up):
         ({"action": "Fly", "things": []}, "UNKNOWN_ACTION"),
         ({"action": "Grab", "things": []}, "WRONG_ARITY"),
         ({"action": "Grab"}, "WRONG_ARITY"),
-        ({"special": "a\n[Walk] <x> (1)"}, "BAD_ARGUMENT"),
-        ({"special": "x> (1)"}, "BAD_ARGUMENT"),
-        ({"special": "x" * 300}, "BAD_ARGUMENT"),
+        ({"special": "x" * 2_001}, "BAD_ARGUMENT"),
         (7, "UNKNOWN_ACTION"),
     ):
         answer = save(person, set_up, [step])
         assert answer.json()["error"]["code"] == code, (step, answer.text)
     assert person.get(f"/annotate/task/{set_up}/work").json()["steps"] == []
+
+
+UNFIT = ("dance 💃", "a\n[Walk] <x> (1)", "x> (1)", "[Special] <x>", "x" * 300, "<", "\u2028[")
+
+
+@pytest.mark.parametrize("words", UNFIT)
+def test_a_special_block_that_can_not_stand_in_a_line_is_kept_and_is_a_fault(server, person, set_up, words):
+    """All else is saved; it is handed in, run and written to files by nobody."""
+    steps = [*STEPS, {"special": words}]
+    answer = save(person, set_up, steps)
+    assert answer.status_code == 200, answer.text
+    faults = [(each["step"], each["code"]) for each in answer.json()["found"] if each["fault"]]
+    assert faults == [(len(STEPS), "SYNTAX")]
+    work = person.get(f"/annotate/task/{set_up}/work").json()
+    assert work["steps"] == [*STEPS, {"special": " ".join(words.split())}]
+    sent = {"version": work["version"], "steps": steps}
+    assert person.post(f"/annotate/task/{set_up}/submit", json=sent).status_code == 400
+    assert person.post(f"/annotate/task/{set_up}/run", json={"steps": steps, "home": "maple"}).status_code == 400
+    assert save(person, set_up, STEPS).json()["found"] == save(person, set_up, STEPS).json()["found"]
+
+
+def test_to_save_what_is_saved_takes_nothing_from_another_tab(person, set_up):
+    version = save(person, set_up, STEPS).json()["version"]
+    again = person.post(f"/annotate/task/{set_up}/save", json={"version": version - 1, "steps": STEPS})
+    assert again.status_code == 200 and again.json()["version"] == version
+    other = person.post(f"/annotate/task/{set_up}/save", json={"version": version - 1, "steps": STEPS[:-1]})
+    assert other.json()["error"]["code"] == "LOCKED", "what changes something is still refused"
+    assert person.get(f"/annotate/task/{set_up}/work").json()["steps"] == STEPS
 
 
 def test_instances_are_distinguished(person, text):
@@ -271,9 +297,23 @@ def test_the_test_is_failed_by_saying_yes_to_everything_and_taken_three_times_at
     client = server.person()
     always = dict.fromkeys(RIGHT, "yes")
     for _ in range(3):
-        assert "That is not enough" in client.post("/annotate/test", data=always).text
+        assert "That is not enough" in client.get(client.post("/annotate/test", data=always).headers["location"]).text
     assert client.post("/annotate/test", data=RIGHT).status_code == 303
     assert waiting(client) == [] and "as often as one may" in client.get("/annotate/test").text
+
+
+def test_a_test_that_is_loaded_or_sent_again_costs_one_try(server):
+    client = server.person()
+    assert "Tries" not in client.get("/annotate/test?given=yyyyyy").text, "who has not tried sees no answers"
+    always = {**dict.fromkeys(RIGHT, "yes"), "taken": "0"}
+    result = client.post("/annotate/test", data=always).headers["location"]
+    for _ in range(3):
+        page = client.get(result).text
+        assert "That is not enough" in page and "Tries that are left: 2" in page
+        assert client.post("/annotate/test", data=always).headers["location"] == "/annotate/test"
+    assert 'name="taken" value="1"' in client.get("/annotate/test").text
+    passed = client.post("/annotate/test", data={**RIGHT, "taken": "1"}).headers["location"]
+    assert "You have passed" in client.get(passed).text
 
 
 def test_one_session_reaches_nothing_of_another(server, person, set_up):

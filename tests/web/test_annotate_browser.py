@@ -39,7 +39,7 @@ def opened(browser, serving):
         page.goto(server.address)
         return page
 
-    person.server = server
+    person.server, person.faults = server, faults
     yield person
     assert faults == []
 
@@ -244,6 +244,93 @@ def test_a_whole_way_by_keyboard_alone(opened, tmp_path):
     page.keyboard.press("Enter")
     page.wait_for_url("**/annotate/tasks")
     reviewed_and_built(opened, tmp_path)
+
+
+def composing(opened, **options):
+    """A page that writes a program, by the list and the form."""
+    page = opened(**options)
+    page.click("text=Begin with Annotate")
+    describe(page)
+    page.goto(f"{opened.server.address}/annotate/tasks")
+    set_scene(page)
+    page.wait_for_selector("#action option", state="attached")
+    page.click("#show-list")
+    return page
+
+
+def add(page, action, thing):
+    page.select_option("#action", action)
+    page.select_option("#slot-0", label=thing)
+    page.click("#add-step button")
+
+
+def test_a_special_block_with_a_picture_stops_no_saving(opened):
+    page = composing(opened)
+    page.fill("#special", "dance 💃")
+    page.click("#add-special button")
+    add(page, "Walk", "sofa")
+    expect(page.locator("#state")).to_contain_text("Saved. Faults: 1.")
+    expect(page.locator("#steps li").first.locator(".fault")).to_contain_text("leave out other signs")
+    page.locator("#steps button[aria-label^='Take step 1 out']").click()
+    expect(page.locator("#state")).to_contain_text("Saved. No faults.")
+    page.reload()
+    expect(page.locator("#steps .words")).to_have_text(["Walk to sofa"])
+
+
+def test_a_second_tab_that_is_opened_takes_nothing_and_a_conflict_is_chosen(opened):
+    page = composing(opened)
+    add(page, "Walk", "sofa")
+    saved(page)
+    other = watched(page.context.new_page(), faults := [])
+    other.goto(page.url)
+    saved(other)
+    add(page, "Sit", "sofa")
+    saved(page)
+    other.click("#show-list")
+    add(other, "Find", "television")
+    expect(other.locator("#state")).to_contain_text("another tab has changed this program")
+    other.click("text=Keep what is here")
+    saved(other)
+    add(page, "Find", "remote control")
+    expect(page.locator("#steps .words")).to_have_count(3)
+    page.click("text=Take what the other tab has")
+    saved(page)
+    both = ["Walk to sofa", "Find television"]
+    expect(page.locator("#steps .words")).to_have_text(both)
+    page.reload()
+    expect(page.locator("#steps .words")).to_have_text(both)
+    assert [fault for fault in faults if "409" not in fault] == []
+    opened.faults[:] = [fault for fault in opened.faults if "409" not in fault]
+
+
+def test_what_could_not_be_saved_is_saved_once_the_server_answers(opened):
+    page = composing(opened)
+    page.context.set_offline(True)
+    add(page, "Walk", "sofa")
+    expect(page.locator("#state")).to_contain_text("tried again")
+    page.context.set_offline(False)
+    expect(page.locator("#state")).to_contain_text("Saved.", timeout=15_000)
+    page.reload()
+    expect(page.locator("#steps .words")).to_have_text(["Walk to sofa"])
+    opened.faults[:] = [fault for fault in opened.faults if "INTERNET_DISCONNECTED" not in fault]
+
+
+LOOK = """() => [...document.querySelectorAll("#blocks .blocklyText")].filter((each) => each.checkVisibility())
+    .map((each) => { const look = getComputedStyle(each); return [look.fill, look.fontSize, look.fontFamily]; })"""
+
+
+@pytest.mark.skipif("blockly" in missing(), reason="no Blockly: make web")
+def test_blocks_stay_readable_when_the_colours_of_the_page_change(opened):
+    page = composing(opened, color_scheme="light")
+    add(page, "Walk", "sofa")
+    page.click("#show-blocks")
+    page.wait_for_selector("#blocks .blocklyText")
+    before = page.evaluate(LOOK)
+    for scheme in ("dark", "light"):
+        page.emulate_media(color_scheme=scheme)
+        page.wait_for_timeout(300)
+        assert page.evaluate(LOOK) == before, f"as it was, in {scheme}"
+    assert before and all(fill == "rgb(255, 255, 255)" for fill, _, _ in before)
 
 
 def reviewed_and_built(opened, tmp_path) -> None:

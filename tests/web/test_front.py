@@ -54,6 +54,7 @@ def test_nothing_of_a_person_is_reachable_without_a_token(server):
         assert client.get("/mine").json()["error"]["code"] == "NO_SESSION"
         page = client.get("/mine", headers=HTML)
         assert page.status_code == 401 and "Begin a session" in page.text
+        assert ("not known here any more" in page.text) is bool(client.cookies.get("hearth"))
 
 
 def test_a_session_begins_returns_by_its_link_and_is_deleted(server):
@@ -68,6 +69,15 @@ def test_a_session_begins_returns_by_its_link_and_is_deleted(server):
     assert other.get(link).status_code == 303 and other.get("/mine").status_code == 200
     assert other.post("/mine/delete").status_code == 303
     assert person.get("/mine").status_code == 401 and server.client().get(link).status_code == 401
+
+
+def test_a_link_that_is_not_known_says_so_and_begins_nothing(server, person):
+    before = person.cookies["hearth"]
+    for client, words in ((server.client(), "a new session, without"), (person, "another session")):
+        answer = client.get("/come/not-a-link", headers=HTML)
+        assert answer.status_code == 401 and "link is not known" in answer.text and words in answer.text
+        assert 'action="/begin"' not in answer.text and "NO_SESSION" not in answer.text
+    assert person.cookies["hearth"] == before
 
 
 def test_the_store_has_no_token(server, person):

@@ -5,10 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+import time
+from dataclasses import replace
 
 import pytest
 from web.playing import Player, alone, begun, connected, session_of
 
+from hearth.challenges.definition import challenge
+from hearth.challenges.lineup import Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify
@@ -16,12 +20,15 @@ from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking
-from hearth.web.play import recorded_episode
+from hearth.simulation.world.bits import indices
+from hearth.web.play import game_store, recorded_episode, start_trial
+from hearth.web.play.game_messages import Telling, legal_json
 from hearth.web.play.game_results import results
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import LiveGame, games
 from hearth.web.play.trials import helpers, offered, published, read_trial, trial
 
+OWAH = challenge("owah")
 TASK = published("wah", "test-1", 0)
 TURN = "[Turnleft]"
 
@@ -48,8 +55,34 @@ def test_a_helper_that_asks_a_network_is_not_offered_without_it(monkeypatch):
     monkeypatch.setattr("hearth.challenges.lineup.lacking", lambda extra: ["torch"])
     with pytest.raises(HearthError, match="asks the network `helping-subgoals`, and torch is not installed"):
         trial(TASK, default(), "hybrid")
-    assert {"hybrid", "hrl", "hp_gpn", "nopa_gpn"}.isdisjoint(offered())
-    assert {"none", "person", "program", "hp", "nopa"} <= set(offered())
+    assert {"hybrid", "hrl", "hp_gpn", "nopa_gpn"}.isdisjoint(offered(OWAH))
+    assert {"none", "person", "program", "hp", "nopa"} <= set(offered(OWAH))
+
+
+UNFIT = {"wah": {"asking", "nopa_gpn", "nopa_gpn_s", "hp_gpn", "hp_gpn_s", "af_gpn"}, "owah": {"asking"}}
+"""Helpers that would end every game of a challenge: they talk, or ask a network of other goals."""
+
+
+@pytest.mark.parametrize("name", UNFIT)
+def test_a_helper_that_could_not_go_on_is_neither_offered_nor_begun(name):
+    known = [each for each in helpers() if each != "none"]
+    task = published(name, "test-1" if name == "wah" else "test", 3)
+    assert UNFIT[name].isdisjoint(offered(challenge(name)))
+    for helper in sorted(UNFIT[name]):
+        with pytest.raises(HearthError, match=f"the helper `{helper}` can't help in `{name}`") as found:
+            trial(task, default(), helper)
+        assert found.value.diagnostics[0].suggestion
+    for helper in offered(challenge(name)).keys() & known:
+        game = Game(trial(task, default(), helper), default())
+        for _ in range(5):
+            game.advance(("Turnleft", game.helper_decides())[: len(game.start.agents)])
+        assert game.tick == 5, helper
+
+
+def test_who_asks_may_help_where_agents_may_talk():
+    talking = challenge("owah_messages")
+    assert {"asking", "nopa"} <= set(offered(talking))
+    assert Lineup(helper="nopa_gpn").fits(talking).helper == "nopa_gpn"
 
 
 def test_without_libraries_for_pictures_there_are_buttons_alone(monkeypatch, person):
@@ -228,14 +261,56 @@ def test_two_people_in_one_home(server, person):
     assert games(server.store, default()).open(game).game.texts == [("Turnleft", "Turnright")]
 
 
-def test_who_keeps_the_other_waiting_waits(server, person, monkeypatch):
-    monkeypatch.setattr("hearth.web.play.live_games.PATIENCE", 0.0)
-    game = begun(server, person, TASK, "person")
+@pytest.fixture
+def for_two(server, person):
+    """A game for two people that both may play; and the second."""
+    game, other = begun(server, person, TASK, "person"), server.person()
+    other.post(f"/play/join/{games(server.store, default()).open(game).stored.code}")
+    return game, other
+
+
+def test_nobody_acts_before_the_other_is_there(server, person, for_two):
+    """The page says so, and nothing is kept; once the other has come, it says that, and acts."""
+    game, other = for_two
     with Player(person, game) as player:
+        assert player.state["other"] == "awaited"
+        assert player.act(TURN)["error"]["code"] == "NOT_ALLOWED"
+        assert games(server.store, default()).open(game).decided == ()
+        with Player(other, game) as second:
+            assert second.state["other"] == "here"
+            while player.state["other"] == "awaited":
+                player.receive()
+            assert player.act(TURN)["decided"] == [0]
+
+
+def test_who_keeps_the_other_waiting_waits(server, person, for_two, monkeypatch):
+    monkeypatch.setattr("hearth.web.play.live_games.PATIENCE", 0.0)
+    game, other = for_two
+    with Player(other, game), Player(person, game) as player:
         player.act(TURN)
         while player.state["tick"] < 1:
             player.receive()
     assert games(server.store, default()).open(game).game.texts == [("Turnleft", None)]
+
+
+def test_who_has_left_keeps_nobody_waiting(server, person, for_two, monkeypatch):
+    monkeypatch.setattr("hearth.web.play.presence.GONE_AFTER", 1.5)
+    game, other = for_two
+    with Player(person, game) as player:
+        with Player(other, game):
+            pass
+        while player.state["other"] != "gone":
+            player.receive()
+        since = time.monotonic()
+        for tick in range(5):
+            player.act(TURN)
+            assert player.state["tick"] == tick + 1
+        assert time.monotonic() - since < 5
+        with Player(other, game) as again:
+            assert again.state["tick"] == 5
+            while player.state["other"] != "here":
+                player.receive()
+    assert games(server.store, default()).open(game).game.texts == [("Turnleft", None)] * 5
 
 
 def test_a_study_gets_the_record_once_it_is_over(server, person, game):
@@ -246,7 +321,47 @@ def test_a_study_gets_the_record_once_it_is_over(server, person, game):
         assert player.act(TURN)["error"]["code"] == "NOT_ALLOWED"
     record = recorded_episode(server.store, default(), game)
     assert record.actions == (("Turnleft",),)
-    assert record.end["code"] == "DISCONNECTED"
+    assert record.end["code"] == "FINISHED"
+
+
+@pytest.mark.parametrize("number", range(5))
+def test_what_is_offered_is_about_what_is_shown_and_makes_sense(number):
+    """A thing in the hand goes on surfaces and into containers alone, of which a menu does not list a hundred."""
+    task, most = published("wah", "test-1", number), 0
+    game = Game(trial(task, default(), partial=False), default())
+    telling, home, shown = Telling(game, 0), game.start.home, set()
+    has = {name: {home.ids[i] for i in indices(mask)} for name, mask in home.properties.items()}
+    for act, _ in alone(task):
+        shown |= telling.tick()["things"].keys()
+        offered = legal_json(game.legal(0), game.view(0).me.node)
+        assert {str(node) for places in offered.values() for ids in places for node in ids} <= shown
+        assert set(offered.get("PutBack", [[], []])[1]) <= has["SURFACES"]
+        assert set(offered.get("PutIn", [[], []])[1]) <= has["CONTAINERS"] | has["CAN_OPEN"]
+        most = max(most, sum(len(offered[name][1]) for name in ("PutBack", "PutIn") if name in offered))
+        game.advance((act,))
+    assert 0 < most < 40, "something was held, and could be put somewhere"
+
+
+def test_nothing_is_accepted_once_the_time_is_over(server, person):
+    """The page shows how long it has, and that it is over, though nobody does anything."""
+    chosen = replace(trial(TASK, default()), seconds=2.0)
+    game = server.store.write(lambda connection: start_trial(connection, session_of(server, person), chosen))
+    with Player(person, game) as player:
+        assert 0 < player.state["left"] <= 2
+        assert player.act(TURN)["tick"] == 1
+        time.sleep(2.1)
+        late = player.ask({"type": "act", "tick": 1, "act": TURN})
+        assert late.get("over") or late["error"]["code"] == "NOT_ALLOWED"
+        while not player.state["over"]:
+            player.receive()
+        assert (player.state["end"], player.state["ended_by"], player.state["tick"]) == ("TIMED_OUT", 0, 1)
+    found = server.store.read(lambda connection: game_store.stored(connection, game))
+    assert found.result["at"] - found.created == pytest.approx(2.0), "the time ends it, not who looks at it afterwards"
+
+
+def test_a_game_without_a_limit_has_no_clock(server, person, game):
+    with Player(person, game) as player:
+        assert player.state["left"] is None
 
 
 def test_results_of_many_games_verify(server, person, tmp_path):
@@ -275,7 +390,7 @@ def test_researchers_get_everybodys_results(server, person, game):
 
 def test_the_form_begins_a_game(person):
     page = person.get("/play/").text
-    assert all(f'value="{name}"' in page for name in helpers())
+    assert all((f'value="{name}"' in page) is (name != "asking") for name in helpers())
     begun = person.post("/play/new", data={"challenge": "owah", "task": "1", "helper": "none", "sees": "partial"})
     assert begun.status_code == 303
     assert "in rowan" in person.get(begun.headers["location"]).text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import shutil
 import subprocess
 import time
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from web.people import accessibility, watched
+from web.people import accessibility, strict, watched
 from web.playing import alone
 
 from hearth.kb.loading.load import default
@@ -77,6 +78,69 @@ def test_the_ten_tasks_are_of_ten_kinds():
     assert len(kinds) == 10
 
 
+def tick_of(page):
+    return int(page.get_attribute("#game", "data-tick"))
+
+
+def press(page, thing, text):
+    """Open the menu of a thing, press one of its buttons, and wait until that has done something."""
+    tick = tick_of(page)
+    page.locator(f'#game button.thing[data-id="{thing}"]').first.click()
+    page.locator("#menu-actions button").get_by_text(text, exact=True).first.click()
+    page.wait_for_selector(f'#game:not([data-tick="{tick}"])', timeout=30_000)
+
+
+def offered(page, thing):
+    button = page.locator(f'#game button.thing[data-id="{thing}"]').first
+    if button.is_disabled():
+        return []
+    button.click()
+    words = page.locator("#menu-actions button").all_text_contents()
+    page.locator("#menu-close").click()
+    return words
+
+
+def settled(page):
+    """Wait until the page asks for no more ticks."""
+    before = -1
+    while before != (before := tick_of(page)):
+        page.wait_for_timeout(600)
+
+
+KINDS = {"Go all the way", "One step towards it", "Open", "Close", "Take", "Put", "Switch on", "Switch off",
+         "Sit down on"}  # fmt: skip
+
+
+def kind_of(words):
+    return next((kind for kind in sorted(KINDS, key=len, reverse=True) if words.startswith(kind)), words)
+
+
+def test_every_button_of_the_page_does_something(serving, page):
+    """Those of menus, a kind each; each move; what opens and closes the menu."""
+    begin(page, serving(), "wah", 0, sees="full")
+    pressed = set()
+    for name in ("fridge", "mug", "coffee table", "couch"):
+        button = page.locator("#game .lists button.thing:not([disabled])").filter(has_text=re.compile(f"^{name}"))
+        thing = button.first.get_attribute("data-id")
+        press(page, thing, "Go all the way")
+        pressed.add("Go all the way")
+        settled(page)
+        assert page.locator(f'#game .lists button.thing.close[data-id="{thing}"]').count() == 1, f"not at the {name}"
+        for _ in range(12):
+            left = [words for words in offered(page, thing) if kind_of(words) not in pressed]
+            if not left:
+                break
+            press(page, thing, left[0])
+            pressed.add(kind_of(left[0]))
+    assert pressed == KINDS
+    for move in ("StandUp", "", "Turnright", *["Turnleft"] * 12, "Walkforward"):
+        if move == "Turnleft" and page.locator('[data-move="Walkforward"]').is_enabled():
+            continue
+        tick = tick_of(page)
+        page.locator(f'[data-move="{move}"]').click()
+        page.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [360, 1400])
 def test_the_page_is_accessible_and_fits(serving, browser, scheme, width):
@@ -128,19 +192,40 @@ def test_the_older_of_two_tabs_says_so(serving, page):
 
 
 def test_two_people_in_two_browsers(serving, browser, page):
+    """One waits for the other, both decide, one leaves and comes back; each page says so."""
     server = serving()
     begin(page, server, helper="person")
     link = page.locator("#banner a").get_attribute("href")
+    assert page.locator('[data-move="Turnleft"]').is_disabled()
+    page.keyboard.press(".")
+    assert "not here yet" in page.inner_text("#said")
     other = browser.new_context().new_page()
     other.goto(f"{server.address}/")
     other.locator('form[action="/begin"] button').first.click()
     other.goto(link)
     other.get_by_role("button", name="Join").click()
     other.wait_for_selector("#game[data-tick]")
+    page.locator("#banner", has_text="The other person is here").wait_for()
+    assert page.locator("#banner a").count() == 0, "the invitation goes"
     page.keyboard.press("ArrowLeft")
+    page.locator("#said", has_text="Waiting for the other person").wait_for()
+    other.locator("#said", has_text="It is your turn").wait_for()
+    page.keyboard.press("ArrowRight")  # has decided already
+    assert "You have decided" in page.inner_text("#said")
     other.keyboard.press("ArrowRight")
     for each in (page, other):
         each.wait_for_selector('#game[data-tick="1"]')
+    page.locator("#banner").wait_for(state="hidden")
+    address = other.url
+    other.goto("about:blank")
+    page.locator("#banner", has_text="The other person has left").wait_for()
+    since = time.monotonic()
+    for tick in range(1, 6):
+        page.keyboard.press("ArrowLeft")
+        page.wait_for_selector(f'#game[data-tick="{tick + 1}"]')
+    assert time.monotonic() - since < 5, "nobody waits for who has left"
+    other.goto(address)
+    page.locator("#banner", has_text="is back").wait_for()
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
@@ -166,9 +251,11 @@ def drawing(browser):
     """A page of a browser that draws in 3D, in software."""
     if "three" in missing():
         pytest.skip("no three.js: make web")
-    started = browser.browser_type.launch(executable_path=shutil.which("chromium"), args=list(WEBGL))
+    faults = []
+    started = strict(browser.browser_type.launch(executable_path=shutil.which("chromium"), args=list(WEBGL)), faults)
     yield started.new_context(viewport={"width": 1400, "height": 1000}).new_page()
     started.close()
+    assert faults == []
 
 
 def test_what_is_under_the_cursor_is_what_our_renderer_shows(serving, drawing):
@@ -230,6 +317,68 @@ def test_a_thing_is_clicked_and_acted_on_in_3d(serving, drawing):
     for key in ("ArrowUp", "t", "Enter"):
         drawing.keyboard.press(key)
     assert drawing.locator("#menu").is_visible()
+
+
+@pytest.mark.parametrize("how", ["late", "lost"])
+def test_the_view_in_3d_goes_on_whatever_becomes_of_its_models(serving, drawing, how):
+    """A model that comes after others have gone, or never; an error that nobody catches fails the fixture."""
+
+    def answered(route):
+        if how == "lost":
+            route.fulfill(status=404)
+        else:
+            drawing.wait_for_timeout(300)
+            route.continue_()
+
+    drawing.route("**/models/*.glb", answered)
+    begin(drawing, serving(), "wah", 0, helper="hp_true", interface="visual")
+    drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+    for _ in range(4):
+        tick = tick_of(drawing)
+        drawing.locator('[data-move="Turnleft"]').click()
+        drawing.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)
+    drawing.wait_for_selector(f'#view[data-tick="{tick_of(drawing)}"]', timeout=30_000)
+
+
+def test_every_model_that_the_page_asks_for_is_there(serving, drawing):
+    """Also when the game has gone on before the page asks: a helper that walks looks different in every tick."""
+    refused = []
+    drawing.on("response", lambda answer: refused.append(answer.url) if answer.status >= 400 else None)
+    drawing.route("**/models/*.glb", lambda route: (drawing.wait_for_timeout(200), route.continue_()))
+    begin(drawing, serving(), "wah", 0, helper="hp_true", interface="visual", sees="full")
+    drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+    drawing.focus("#view")
+    drawing.keyboard.press("s")  # turns six times, as fast as the server answers
+    drawing.wait_for_selector('#view[data-tick="6"]', timeout=60_000)
+    assert refused == []
+
+
+@pytest.mark.parametrize("way", ["g", "button"])
+def test_a_task_is_finished_once_that_is_confirmed(serving, drawing, way):
+    begin(drawing, serving(), "wah", 0, interface="visual")
+    drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+    drawing.locator("#save").click()
+    assert "saved" in drawing.inner_text("#said")
+
+    def ask():
+        if way == "g":
+            drawing.focus("#view")
+            drawing.keyboard.press("g")
+        else:
+            drawing.locator("#finish").click()
+        drawing.locator("#sure").wait_for()
+
+    ask()
+    drawing.keyboard.press(".")  # no move of the game behind it
+    drawing.keyboard.press("Escape")
+    drawing.locator("#sure").wait_for(state="hidden")
+    ask()
+    drawing.get_by_role("button", name="Go on playing").click()
+    drawing.locator('[data-move="Turnleft"]').click()
+    drawing.wait_for_selector('#game[data-tick="1"]')
+    ask()
+    drawing.locator("#sure").get_by_role("button", name="Finish").click()
+    drawing.locator("#banner", has_text="You finished this task after 1 tick").wait_for()
 
 
 def test_pictures_of_our_renderer_need_no_webgl(serving, page):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict
 
 import numpy as np
@@ -138,7 +139,6 @@ def test_a_person_practises_does_the_trials_and_rates_the_helper(serving, page, 
     agree(page, server)
     go(page, "I have read this")
     rated = 0
-    page.on("dialog", lambda dialog: dialog.accept())
     for name in ("Practise", "Begin", "Begin"):
         assert seen(page) == []
         go(page, name, exact=True)
@@ -147,6 +147,7 @@ def test_a_person_practises_does_the_trials_and_rates_the_helper(serving, page, 
         page.wait_for_selector('#game[data-tick="1"]')
         assert "hp_random" not in page.inner_text("main")
         page.locator("#finish").click()
+        page.locator("#sure").get_by_role("button", name="Finish").click()
         go(page, "Go on", "link")
         if page.locator("legend").count() and "Last" not in page.locator("h1").inner_text():
             assert seen(page) == []
@@ -157,3 +158,20 @@ def test_a_person_practises_does_the_trials_and_rates_the_helper(serving, page, 
     assert page.locator("h1").inner_text() == "Last questions"
     go(page, "Finish")
     assert page.locator("h1").inner_text() == "Thank you"
+
+
+def test_the_time_that_is_left_is_shown_and_kept(serving, page, tmp_path):
+    """The clock runs; when it is over, so is the task, without a move of anybody."""
+    (tmp_path / "study.yaml").write_text(SMALL.replace("practice: 1", "practice: 1\nlimits: {minutes: 0.15}"))
+    server = serving("--study", str(tmp_path / "study.yaml"))
+    agree(page, server)
+    go(page, "I have read this")
+    go(page, "Practise", exact=True)
+    page.wait_for_selector("#time:not([hidden])")
+    first = page.inner_text("#time")
+    assert re.fullmatch(r"Time left: 0:0\d", first)
+    page.locator('[data-move="Turnleft"]').click()
+    page.wait_for_selector('#game[data-tick="1"]')
+    assert seen(page) == []
+    page.locator("#banner", has_text="The time is over, after 1 tick").wait_for()
+    assert page.inner_text("#time") < first and page.locator('[data-move="Turnleft"]').is_disabled()

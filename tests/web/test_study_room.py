@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import re
 import sqlite3
+import time
 import zipfile
 from dataclasses import asdict
 
@@ -152,13 +154,25 @@ def test_a_person_goes_the_whole_way(playing):
     assert "Last questions" in page
     assert person.post("/study/answer", data={"answer-age": "ancient"}).status_code == 400
     person.post("/study/answer", data={"answer-comments": "<script>"})
-    assert name in person.get("/study/").text and "Thank you" in person.get("/study/").text
+    page, desk = person.get("/study/").text, playing.researcher()
+    assert "Thank you" in page and name not in page
+    code = re.search("Your code is <strong>(.+)</strong>", page)[1]
+    assert f"<code>{code}</code>" in desk.get("/desk/study/").text, "the desk knows people by the code they are given"
+    for table in ("participants", "trials", "decisions", "ratings"):
+        assert {row["participant"] for row in table_of(desk, table)} == {code}
     events = conduct.standing(name).events
     assert [each.kind for each in events].count("did") == 2
     assert events[-1].data == {"answers": {"comments": "<script>"}}
     did = [each.data["record"] for each in events if each.kind == "did"]
     assert all(len(each["actions"]) == 6 and each["end"]["agent"] == 0 for each in did)
     assert {each["helped"] for each in did} == {False, True}
+    assert desk.post("/desk/study/forget", data={"person": code}).status_code == 303
+    assert conduct.ledger.streams() == [], "who asks with the code is deleted"
+
+
+def table_of(desk, name):
+    with zipfile.ZipFile(io.BytesIO(desk.get("/desk/study/tables.zip").content)) as packed:
+        return pq.read_table(io.BytesIO(packed.read(f"{name}.parquet"))).to_pylist()
 
 
 def test_a_game_is_begun_once_and_gone_on_with(playing):
@@ -182,6 +196,56 @@ def test_a_game_that_takes_too_long_is_ended(playing):
     person.post("/study/begin")
     playing.store.write(lambda c: c.execute(sql.update(GAMES).values(created=GAMES.c.created - 21 * 60)))
     assert "Task 1 of 2" in person.get("/study/").text
+
+
+def test_a_trial_lasts_until_its_end_and_has_the_times_of_its_decisions(playing, monkeypatch):
+    """Not until the person leaves the last banner; the export has when each decided, began and ended."""
+    person, desk = playing.person(), playing.researcher()
+    at_trial(person)
+    finish(playing, person)
+    address = person.post("/study/begin").headers["location"]
+    cookie = {"cookie": f"hearth={person.cookies['hearth']}"}
+    with person.websocket_connect(f"ws://127.0.0.1{address}/live", headers=cookie) as link:
+        link.send_json({"type": "hello", "n": 1, "tab": "t"})
+        assert link.receive_json()["left"] > 19 * 60
+        for tick in range(3):
+            link.send_json({"type": "act", "n": tick + 2, "tick": tick, "act": "Turnleft"})
+            link.receive_json()
+        link.send_json({"type": "finish", "n": 5})
+        over = link.receive_json()
+    assert (over["end"], over["ended_by"]) == ("FINISHED", 0)
+    playing.store.write(lambda c: c.execute(sql.update(GAMES).values(created=GAMES.c.created - 60)))
+    later = time.time() + 300
+    with monkeypatch.context() as patch:  # five minutes on the last banner
+        patch.setattr("time.time", lambda: later)
+        person.get("/study/")
+    (row,) = table_of(desk, "trials")
+    assert 60 <= row["seconds"] < 90 and row["end"] == "FINISHED"
+    times = [each["seconds"] for each in table_of(desk, "decisions") if each["agent"] == 0]
+    assert len(times) == 3 and 60 <= times[0] <= times[1] <= times[2] <= row["seconds"] + 0.1
+    (who,) = table_of(desk, "participants")
+    assert 0 < time.time() - who["began"] < 60 and who["ended"] is None
+    person.post("/study/leave")
+    (who,) = table_of(desk, "participants")
+    assert who["began"] <= who["ended"]
+
+
+def test_no_move_is_taken_once_the_time_of_a_trial_is_over(playing):
+    person = playing.person()
+    at_trial(person)
+    finish(playing, person)
+    address = person.post("/study/begin").headers["location"]
+    playing.store.write(lambda c: c.execute(sql.update(GAMES).values(created=GAMES.c.created - 20 * 60)))
+    cookie = {"cookie": f"hearth={person.cookies['hearth']}"}
+    with person.websocket_connect(f"ws://127.0.0.1{address}/live", headers=cookie) as link:
+        link.send_json({"type": "hello", "n": 1, "tab": "t"})
+        begun = link.receive_json()
+        assert (begun["over"], begun["end"], begun["left"]) == (True, "TIMED_OUT", 0)
+        link.send_json({"type": "act", "n": 2, "tick": 0, "act": "Turnleft"})
+        assert link.receive_json()["error"]["code"] == "NOT_ALLOWED"
+    person.get("/study/")
+    (row,) = table_of(playing.researcher(), "trials")
+    assert (row["seconds"], row["ticks"], row["end"]) == (20 * 60, 0, "TIMED_OUT")
 
 
 def test_one_answers_what_is_asked_and_nothing_else(playing):
@@ -219,7 +283,9 @@ def test_places_are_given_away_and_people_deleted(judging):
         client.post("/study/agree", data={"agree": "yes"})
     assert clients[2].post("/study/agree", data={"agree": "yes"}).status_code == 400
     clients[0].post("/study/leave")
-    assert "stopped taking part" in clients[0].get("/study/").text
+    page = clients[0].get("/study/").text
+    assert "stopped taking part" in page
+    assert re.search("code: <strong>(.+)</strong>", page)[1] in judging.researcher().get("/desk/study/").text
     assert clients[2].post("/study/agree", data={"agree": "yes"}).status_code == 303
     desk = judging.researcher()
     page = desk.get("/desk/study/").text
@@ -237,6 +303,44 @@ def test_places_are_given_away_and_people_deleted(judging):
     assert conduct.standing(people[2]).stage == "left"
     assert clients[2].post("/mine/delete").status_code == 303
     assert conduct.ledger.streams() == [people[0]], "who deletes the session is deleted from the study"
+
+
+def counted(server):
+    """The figures of the desk: Finished, Under way, Silent, Left, Deleted."""
+    page = server.researcher().get("/desk/study/").text
+    return {name: int(re.search(rf"<dt>{name}</dt><dd>(\d+)", page)[1]) for name in FIGURES}
+
+
+FIGURES = ("Finished", "Under way", "Silent", "Left", "Deleted")
+
+
+def test_the_desk_counts_nobody_as_under_way_who_has_gone(judging):
+    """By the page, by deletion, by silence; the page of the third has not been seen for longer than is allowed."""
+    clients = [judging.person() for _ in range(2)]
+    for client in clients:
+        client.post("/study/agree", data={"agree": "yes"})
+    assert counted(judging) == dict(zip(FIGURES, (0, 2, 0, 0, 0), strict=True))
+    clients[0].post("/study/leave")
+    assert counted(judging) == dict(zip(FIGURES, (0, 1, 0, 1, 0), strict=True))
+    clients[0].post("/mine/delete")
+    assert counted(judging) == dict(zip(FIGURES, (0, 1, 0, 0, 1), strict=True))
+    judging.store.write(lambda c: c.execute(sql.update(HAPPENED).values(at=HAPPENED.c.at - 25 * 3600)))
+    assert counted(judging) == dict(zip(FIGURES, (0, 0, 1, 0, 1), strict=True))
+    assert "(silent)" in judging.researcher().get("/desk/study/").text
+
+
+def test_a_full_study_says_so_before_it_asks_for_consent(judging):
+    clients = [judging.person() for _ in range(3)]
+    last = clients[2]
+    assert "agree to take part" in last.get("/study/").text
+    for client in clients[:2]:
+        client.post("/study/agree", data={"agree": "yes"})
+    page = last.get("/study/").text
+    assert "places in this study are taken" in page and "/study/agree" not in page
+    late = last.post("/study/agree", data={"agree": "yes"}, headers={"accept": "text/html"})
+    assert late.status_code == 303 and late.headers["location"] == "/study/"
+    clients[0].post("/study/leave")
+    assert "agree to take part" in last.get("/study/").text
 
 
 def test_the_desk_is_behind_its_token(judging):

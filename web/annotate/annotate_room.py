@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlalchemy as sql
 from starlette.responses import Response
 
+from hearth.schemas.yaml_extent import packaged
 from hearth.web.annotate import annotate_desk, annotated_programs, composing, descriptions, marking, reviewing
 from hearth.web.annotate.annotate_tables import TEXTS
 from hearth.web.annotate.collected_files import write_collected
@@ -27,7 +28,7 @@ def _home(visit: Visit) -> Response:
 
 
 def _tutorial(visit: Visit) -> Response:
-    return visit.page("annotate/tutorial.html")
+    return visit.page("annotate/tutorial.html", taught=packaged("hearth.web.annotate", "tutorial.yaml"))
 
 
 ROOM = Room(

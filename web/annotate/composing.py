@@ -103,15 +103,20 @@ def work_of(visit: Visit, program: Row, draft: Draft) -> dict[str, Any]:
     """The same of any program."""
     known = visit.web.known
     blocks = {"actions": block_grammar.actions(known), "things": block_grammar.things(draft, known)}
-    return {"version": program["version"], "steps": draft.as_json()["steps"], **blocks}
+    changes = program["state"] in annotated_programs.CHANGED
+    return {"version": program["version"], "steps": draft.as_json()["steps"], "changes": changes, **blocks}
 
 
 def save(visit: Visit) -> Response:
     """Keep the steps as they are; they may have empty slots."""
     message = visit.json()
     draft = sent(visit, message, _draft(visit))
-    version = int_field(message, "version", 1, 10**9)
-    version = annotated_programs.save(visit.web.store, visit.person, visit.part("text"), version, draft)
+    version, program = int_field(message, "version", 1, 10**9), _own(visit)
+    same = draft.dumped() == program["draft"] and program["state"] in annotated_programs.CHANGED
+    if same:  # as a page does that is opened; it takes nothing from another tab
+        version = int(program["version"])
+    else:
+        version = annotated_programs.save(visit.web.store, visit.person, visit.part("text"), version, draft)
     return visit.answer({"version": version, "found": check_of(visit, _text(visit), draft)})
 
 

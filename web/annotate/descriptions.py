@@ -24,7 +24,7 @@ FEWEST_WORDS, MOST_TITLE, MOST_DESCRIPTION = 10, 80, 2_000
 EXAMPLES = (
     ("living room", "Watch TV",
      "Walk to the living room and sit down on the sofa. Pick up the remote control from the table and switch on the "
-     "television. Then watch it until the film is over."),
+     "television. Then turn to it and watch it until the film is over."),
     ("kitchen", "Make tea",
      "Fill the kettle with water and put it on. Take a cup out of the cupboard and put a tea bag in. When the water "
      "boils, pour it into the cup."),

@@ -18,6 +18,9 @@ from hearth.web.web_errors import WebError
 SPECIAL = "Special"
 MOST_STEPS, MOST_KINDS, MOST_PIECES, MOST_SPECIAL = 100, 60, 9, 200
 
+MOST_KEPT = 2_000
+"""Characters of a special block that are kept, though it is to be shortened before it is handed in."""
+
 _PLAIN = re.compile(r"[^\W_](?:[\w ,.;:'’!?%/+=&-]*[\w.!?%)])?")
 
 
@@ -179,14 +182,18 @@ def _thing(value: Any, place: str, declared: set[ObjectRef]) -> ObjectRef | None
     return ref
 
 
+def is_plain(text: str) -> bool:
+    """Whether the free text of a special block can stand in a line of a program; others are kept until handed in."""
+    return len(text) <= MOST_SPECIAL and (not text or _PLAIN.fullmatch(text) is not None)
+
+
 def _special(text: str, place: str) -> str:
-    """The free text of a special block: words that can stand in a line of a program.
+    """The free text of a special block, with single spaces.
 
     Raises:
-        WebError: BAD_ARGUMENT.
+        WebError: BAD_ARGUMENT: it is longer than anybody writes.
     """
     text = " ".join(text.split())
-    if len(text) > MOST_SPECIAL or (text and not _PLAIN.fullmatch(text)):
-        expected = f"at most {MOST_SPECIAL} letters, digits and usual marks"
-        raise WebError(Code.BAD_ARGUMENT, place, expected, text[:40])
+    if len(text) > MOST_KEPT:
+        raise WebError(Code.BAD_ARGUMENT, place, f"at most {MOST_KEPT:,} characters", f"{len(text):,}")
     return text

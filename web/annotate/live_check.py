@@ -12,7 +12,7 @@ from hearth.pipelines.checks.checked_text import check_program
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_program
-from hearth.web.annotate.draft import SPECIAL, Draft
+from hearth.web.annotate.draft import SPECIAL, Draft, is_plain
 
 REFUSED = frozenset({Code.CONTRADICTION})
 """Codes that `check` warns of and `build` refuses."""
@@ -38,7 +38,7 @@ class Found(NamedTuple):
 
 def check_draft(draft: Draft, title: str, description: str, known: Knowledge) -> list[Found]:
     """All faults and warnings of a draft, ordered by step."""
-    lines = draft.lines()
+    lines = _shown_plain(draft).lines()
     expanded = special.expand("\n".join(lines), 0)
     pairs = zip(expanded.text.split("\n"), expanded.lines, strict=True)
     kept = [(line, number) for line, number in pairs if not line.startswith(f"[{SPECIAL}]")]
@@ -53,6 +53,18 @@ def check_draft(draft: Draft, title: str, description: str, known: Knowledge) ->
         undeclared = programs.undeclared(program, scene, known)
         found += [Found(-1, False, str(each.code), each.message, each.remedy) for each in undeclared]
     return sorted((*found, *_unfinished(draft, dict(expanded.replaced))), key=lambda each: (each.step, not each.fault))
+
+
+_UNFIT = (
+    "a special block has letters, digits and the usual marks, 200 characters at most",
+    "leave out other signs, such as pictures and brackets",
+)
+
+
+def _shown_plain(draft: Draft) -> Draft:
+    """The draft without texts of special blocks that can't stand in a line; they are faults of their own."""
+    blocks = (each if is_plain(each.text) else each._replace(text="") for each in draft.blocks)
+    return replace(draft, blocks=tuple(blocks))
 
 
 def _rows(quantities: Mapping[str, int]) -> list[dict[str, Any]]:
@@ -72,7 +84,9 @@ def _unfinished(draft: Draft, replaced: Mapping[int, str]) -> list[Found]:
     for number, block in enumerate(draft.blocks):
         if block.action != SPECIAL:
             continue
-        if not block.text:
+        if not is_plain(block.text):
+            found.append(Found(number, True, str(Code.SYNTAX), *_UNFIT))
+        elif not block.text:
             found.append(Found(number, True, str(Code.EMPTY), "a special block without text", "write what is done"))
         elif number + 1 not in replaced:
             message = "there is no block for this yet: a researcher reads it, and it does not run"

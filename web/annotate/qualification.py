@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import secrets
 import time
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -14,6 +15,9 @@ from hearth.schemas.yaml_extent import packaged
 from hearth.web.annotate.annotate_tables import QUALIFIED
 from hearth.web.store import Store
 from hearth.web.visit import Visit
+
+YES, NO = "yes", "no"
+"""The answers."""
 
 MOST_TRIES = 3
 """Tests that one session may take, since the answers are shown afterwards."""
@@ -32,25 +36,35 @@ def is_qualified(store: Store, person: str) -> bool:
 
 
 def test_page(visit: Visit) -> Response:
-    """The questions."""
-    left = MOST_TRIES - _taken(visit)
-    return visit.page("annotate/test.html", questions=_test()["questions"], left=left, answers=None, passed=False)
+    """The questions; for who has just answered them, what was right, and why. To load it again costs no try."""
+    questions, taken = _test()["questions"], _taken(visit)
+    values: dict[str, Any] = {"questions": questions, "taken": taken, "left": MOST_TRIES - taken}
+    given = visit.field("given", len(questions)) if taken else ""
+    answers = [YES if letter == YES[0] else NO for letter in given]
+    if len(answers) != len(questions):
+        return visit.page("annotate/test.html", answers=None, passed=False, **values)
+    passed = is_qualified(visit.web.store, visit.person)
+    return visit.page("annotate/test.html", answers=answers, right=_right(answers), passed=passed, **values)
+
+
+def _right(answers: Sequence[str]) -> int:
+    return sum((answer == YES) is each["right"] for answer, each in zip(answers, _test()["questions"], strict=True))
 
 
 def take_test(visit: Visit) -> Response:
-    """Count the right answers, store the result and show the reasons."""
-    questions, left = _test()["questions"], MOST_TRIES - _taken(visit)
-    if left <= 0:
+    """Count the right answers, store the result, and lead to the reasons. A form that is sent again counts once."""
+    questions, taken = _test()["questions"], _taken(visit)
+    again = visit.field("taken", 10) not in ("", str(taken))
+    if taken >= MOST_TRIES or again:
         return visit.go("/annotate/test")
     answers = [visit.field(f"answer {number}", 10) for number in range(len(questions))]
-    if not all(answer in ("yes", "no") for answer in answers):
+    if not all(answer in (YES, NO) for answer in answers):
         return visit.go("/annotate/test")
-    right = sum((answer == "yes") is each["right"] for answer, each in zip(answers, questions, strict=True))
+    right = _right(answers)
     row = {"id": secrets.token_hex(8), "session": visit.person, "right": right, "passed": right >= _test()["passing"]}
     query = sql.insert(QUALIFIED).values(**row, created=time.time())
     visit.web.store.write(lambda connection: connection.execute(query))
-    values = {"answers": answers, "right": right, "passed": row["passed"], "left": left - 1}
-    return visit.page("annotate/test.html", questions=questions, **values)
+    return visit.go(f"/annotate/test?given={''.join(answer[0] for answer in answers)}")
 
 
 def _taken(visit: Visit) -> int:

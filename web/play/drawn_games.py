@@ -88,6 +88,7 @@ class DrawnGame:
         self.sensor = CameraSensor(game.start.graph(), knowledge, size=SIZE)
         base = base_scene(task.challenge, task.home, knowledge)
         self._base = node_names(base)
+        self._sent: dict[str, Thing] = {}
         self.address = f"/play/home/{task.challenge}/{task.home}.glb?{base_key(task.challenge, task.home, knowledge)}"
 
     @property
@@ -108,22 +109,24 @@ class DrawnGame:
         """
         now = dict.fromkeys(self._in_sight())
         off = [name for thing, name in self._base.items() if thing not in now]
-        on = [_on(thing) for thing in now if thing not in self._base]
+        others = [thing for thing in now if thing not in self._base]
+        self._sent.update((model_key(thing), thing) for thing in others)
+        on = [_on(thing) for thing in others]
         camera = self.camera
         eyes = {"eye": _point(camera.eye), "target": _point(camera.target), "fov": camera.fov}
         return {"base": self.address, "off": off, "on": on, "camera": eyes}
 
     def model(self, key: str) -> bytes:
-        """A model that is there now, as glTF.
+        """A model that is there now, or was sent to a page before, which may ask once the game has gone on.
 
         Raises:
             HearthError: UNKNOWN_ID: there is none with that key.
         """
-        for thing in self.others():
-            if model_key(thing) == key:
-                alone = thing if thing.structural else Thing(thing.id, thing.class_name, thing.model)
-                return glb(Scene((alone,)), textures=False)
-        raise HearthError.of(Code.UNKNOWN_ID, f"nothing looks like {key[:40]} now")
+        thing = self._sent.get(key) or next((each for each in self.others() if model_key(each) == key), None)
+        if thing is None:
+            raise HearthError.of(Code.UNKNOWN_ID, f"nothing looks like {key[:40]} now")
+        alone = thing if thing.structural else Thing(thing.id, thing.class_name, thing.model)
+        return glb(Scene((alone,)), textures=False)
 
     def others(self) -> Iterator[Thing]:
         """What is there now and is not of the home's fixed part."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import reduce
+from operator import or_
 from typing import Any
 
 from hearth.challenges.observations import last_json
 from hearth.homes.geometry import footprint
+from hearth.kb.groups import relation_of
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
@@ -90,11 +93,12 @@ class Telling:
             "things": {str(node): _thing(view.world.home, node) for node in new},
             "changed": changed,
             "gone": gone,
-            "legal": legal_json(legal),
+            "legal": legal_json(legal, view.me.node),
             "agents": [_character(pose, view) for pose in (view.me, *view.others)],
             "over": game.over,
             "success": game.playing.progress[-1].satisfied,
             "end": None if game.end is None else game.end["code"],
+            "ended_by": None if game.end is None else game.end["agent"],
         }
 
     def tick(self) -> dict[str, Any]:
@@ -105,9 +109,7 @@ class Telling:
 def seen_objects(view: View) -> Objects:
     """Things that can be used and that a person sees: their room, what they are on or in, states, and whether close."""
     home, world = view.world.home, as_seen(view.world, view.mask)
-    usable = home.rooms | home.characters
-    for name in USES:
-        usable |= home.properties[name]
+    usable = usable_things(home)
     agent = world.agents[view.agent]
     close = reach.close_to(world, agent)
     held = {i: other for other in world.agents for i in rows.held_indices(other)}
@@ -157,9 +159,37 @@ def floor_plan(home: Home) -> list[list[Any]]:
     return [[kinds[node.category], node.class_name, _rect(node), node.id] for node in order]
 
 
-def legal_json(legal: Legal) -> dict[str, list[list[int]]]:
-    """The instructions that can be done: action -> the ids that each of its places may have."""
-    return {name: [list(legal.objects(name, n)) for n in range(len(masks))] for name, masks in legal.masks.items()}
+PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}
+"""Properties of the places that people put things on or in; the engine takes anything that is close."""
+
+
+def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
+    """The instructions that are offered: action -> the ids that each of its places may have.
+
+    They are those that can be done with things that the page shows, and that make sense to people. `me` is the node of
+    who decides, which the page does not show as a thing.
+    """
+    home = legal.home
+    things = usable_things(home) & ~(1 << home.index[me])
+    found = {}
+    for name, masks in legal.masks.items():
+        shown = [mask & things for mask in masks]
+        relation = relation_of(home.knowledge.actions[name])
+        if relation in PLACES:
+            shown[1] &= _with(home, PLACES[relation]) | (home.characters if relation == "ON" else 0)
+        if all(shown):
+            found[name] = [[home.ids[i] for i in indices(mask)] for mask in shown]
+    return found
+
+
+def usable_things(home: Home) -> int:
+    """The things of a home that pages show."""
+    return home.rooms | home.characters | _with(home, USES)
+
+
+def _with(home: Home, properties: Iterable[str]) -> int:
+    """The things that have one of some properties."""
+    return reduce(or_, (home.properties[name] for name in properties))
 
 
 def _character(pose: Any, view: View) -> dict[str, Any]:

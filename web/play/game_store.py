@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import secrets
 import time
 from collections.abc import Mapping
@@ -28,7 +29,7 @@ class Stored(NamedTuple):
         code: the secret by which a second person joins.
         go_on: address to go on to after its end.
         end: why it ended early; None if it did not.
-        result: `success` and `ticks`; None until it is over.
+        result: `success`, `ticks`, and `at`, when it was over, in seconds since 1970; None until it is over.
     """
 
     id: str
@@ -38,6 +39,11 @@ class Stored(NamedTuple):
     go_on: str
     end: dict[str, Any] | None
     result: dict[str, Any] | None
+
+    @property
+    def deadline(self) -> float:
+        """When its time is over, in seconds since 1970; infinite where it has no limit."""
+        return self.created + self.trial.seconds if self.trial.seconds else math.inf
 
     @property
     def blind(self) -> bool:
@@ -175,10 +181,11 @@ def end(connection: sql.Connection, game: str, why: Mapping[str, Any]) -> None:
     connection.execute(query.values(end=orjson.dumps(why).decode()))
 
 
-def over(connection: sql.Connection, game: str, success: bool, ticks: int) -> None:
-    """Write that a game is over."""
-    result = orjson.dumps({"success": success, "ticks": ticks}).decode()
-    connection.execute(sql.update(GAMES).where(GAMES.c.id == game).values(result=result))
+def over(connection: sql.Connection, game: str, success: bool, ticks: int, at: float) -> None:
+    """Write that a game is over, and when; what was written first stays."""
+    result = orjson.dumps({"success": success, "ticks": ticks, "at": at}).decode()
+    query = sql.update(GAMES).where(GAMES.c.id == game, GAMES.c.result.is_(None))
+    connection.execute(query.values(result=result))
 
 
 def accept(store: Store, session: str, tab: str, turn: Turn, acts: Mapping[int, str | None]) -> None:

@@ -17,7 +17,7 @@ GAMES = sql.Table(
     sql.Column("code", sql.Text, nullable=False, unique=True, comment="the secret by which a second person joins"),
     sql.Column("go_on", sql.Text, nullable=False, comment="address of ours to go on to after its end"),
     sql.Column("end", sql.Text, comment="JSON: why it ended before its goal and time, if it did"),
-    sql.Column("result", sql.Text, comment="JSON: success and ticks, once it is over"),
+    sql.Column("result", sql.Text, comment="JSON: success, ticks and the time, once it is over"),
 )
 """A trial that was begun."""
 
@@ -45,3 +45,12 @@ DECISIONS = sql.Table(
     sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when it was accepted"),
 )
 """What each character tried in each tick. A tick is done once every character has a row of it; a row never changes."""
+
+SIGNS = sql.Table(
+    "play_signs",
+    METADATA,
+    _game(),
+    sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
+    sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when its page was open last"),
+)
+"""Which people of games for two are there."""

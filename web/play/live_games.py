@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import threading
 import time
 from collections import OrderedDict
@@ -18,6 +19,7 @@ from hearth.schemas.failures import Code
 from hearth.web.play import game_store
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
+from hearth.web.play.presence import AWAITED, HERE, presence, signs
 from hearth.web.play.trials import PROGRAM
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
@@ -29,7 +31,7 @@ MOST_GAMES = 300
 """Games that a process keeps; the one that was not asked for longest is forgotten first, and done again if needed."""
 
 PATIENCE = 15.0
-"""Seconds after which the other of two people waits in a tick, if one has decided and the other has not."""
+"""Seconds after which the other of two people waits in a tick, if one has decided and the other is there, undecided."""
 
 PROGRAM_WITHIN = 10.0
 """Seconds that a helper's program may think about a tick."""
@@ -51,6 +53,7 @@ class LiveGame:
         self.lock = threading.RLock()
         self.waiting_since = 0.0
         self.decided: tuple[int, ...] = ()
+        self.signs: dict[int, float] = {}
         self._drawn: dict[int, DrawnGame] = {}
         self._listener: Listener | None = None
         self._program: WireAgent | None = None
@@ -65,6 +68,11 @@ class LiveGame:
         """How many there are."""
         return len(self.game.start.agents)
 
+    def other(self, number: int) -> str:
+        """Whether the other of two people is there; "" in a game of one."""
+        people = self.game.trial.people
+        return presence(self.signs.get(1 - number)) if len(people) > 1 else ""
+
     def drawn(self, knowledge: Knowledge, number: int) -> DrawnGame:
         """The game's scene for the eyes of a character. Hold the lock."""
         if number not in self._drawn:
@@ -76,10 +84,11 @@ class LiveGame:
     def sync(self) -> Game:
         """The game with every tick that the store has. Hold the lock."""
         game = self.game
-        found, row = self.store.read(
+        found, row, self.signs = self.store.read(
             lambda connection: (
                 game_store.decisions(connection, self.stored.id, game.tick),
                 game_store.stored(connection, self.stored.id),
+                signs(connection, self.stored.id) if len(game.trial.people) > 1 else {},
             )
         )
         while len(rows := found.get(game.tick, [])) == self.characters:
@@ -87,7 +96,14 @@ class LiveGame:
         self._now(found.get(game.tick, []))
         if row.end is not None:
             game.end = row.end
+        elif not game.over and time.time() >= row.deadline:
+            self._stop(0, Code.TIMED_OUT, "the time for this trial was over")
         return game
+
+    def seconds_left(self) -> float | None:
+        """The seconds until the game's time is over; None where it has no limit."""
+        left = self.stored.deadline - time.time()
+        return None if left == math.inf else max(0.0, left)
 
     def _now(self, rows: list[Decided]) -> None:
         """Who has decided in the tick that is under way, and since when."""
@@ -98,13 +114,15 @@ class LiveGame:
         """Take a person's decision; once this returns, no kill loses it.
 
         Raises:
-            WebError: OUT_OF_ORDER, LOCKED; NOT_ALLOWED: the game is over.
+            WebError: OUT_OF_ORDER, LOCKED; NOT_ALLOWED: the game is over, or the other of two people has not come yet.
             HearthError: it can't be done now, as far as the person sees; the game is as before.
         """
         with self.lock:
             game = self.sync()
             if game.over:
                 raise WebError(Code.NOT_ALLOWED, "act", "a game that is not over", "its end")
+            if self.other(number) == AWAITED:
+                raise WebError(Code.NOT_ALLOWED, "act", "a game that both people have come to", "the other is awaited")
             if tick != game.tick or number in self.decided:
                 raise WebError(Code.OUT_OF_ORDER, "tick", str(game.tick), str(tick))
             acts: dict[int, str | None] = {number: game.read(number, text)}
@@ -121,6 +139,7 @@ class LiveGame:
                 self._written_if_over()
             else:
                 self._after()
+                self.hurry()
 
     def _after(self) -> None:
         """Do what is complete, and write the result once it is over."""
@@ -131,14 +150,15 @@ class LiveGame:
         game = self.game
         if game.over:
             success, ticks = game.playing.progress[-1].satisfied, game.tick
-            self.store.write(lambda connection: game_store.over(connection, self.stored.id, success, ticks))
+            at = min(time.time(), self.stored.deadline)
+            self.store.write(lambda connection: game_store.over(connection, self.stored.id, success, ticks, at))
             self.close()
 
     def leave(self, number: int) -> None:
         """End the game before its goal and time."""
         with self.lock:
             if not self.sync().over:
-                self._stop(number, Code.DISCONNECTED, "the person ended it")
+                self._stop(number, Code.FINISHED, "the person finished it")
 
     def _stop(self, number: int, code: Code, message: str) -> None:
         why = {"agent": number, "code": str(code), "message": message[:300]}
@@ -146,12 +166,13 @@ class LiveGame:
         self._after()
 
     def hurry(self) -> None:
-        """Let whoever keeps the other waiting for too long wait in this tick."""
+        """Let whoever keeps the other waiting for too long wait in this tick; who has left, at once."""
         with self.lock:
-            if not self.decided or self.game.over or time.time() - self.waiting_since < PATIENCE:
+            late: dict[int, str | None] = {n: None for n in self.game.trial.people if n not in self.decided}
+            there = any(presence(self.signs.get(n)) == HERE for n in late)
+            if not self.decided or self.game.over or (there and time.time() - self.waiting_since < PATIENCE):
                 return
             turn = Turn(self.stored.id, self.game.tick, self.characters)
-            late: dict[int, str | None] = {n: None for n in self.game.trial.people if n not in self.decided}
             with contextlib.suppress(WebError):
                 self.store.write(lambda connection: game_store.decide(connection, turn, late))
             self._after()

@@ -37,15 +37,14 @@ def start_page(visit: Visit) -> Response:
     mine = visit.web.store.read(lambda connection: game_store.games_of(connection, visit.person))
     return visit.page(
         "play/start.html",
-        challenges=[(name, challenge(name).title, list(_offered(name))) for name in NAMES],
-        helpers=offered(),
+        challenges=[(name, challenge(name).title, list(_tasks(name)), offered(challenge(name))) for name in NAMES],
         interfaces={name: SHOWN[name] for name in drawable()},
         lacking=missing(),
         games=[_line(each) for each in mine[:30] if not each.blind],
     )
 
 
-def _offered(name: str) -> Iterator[tuple[int, str]]:
+def _tasks(name: str) -> Iterator[tuple[int, str]]:
     which = challenge(name)
     split = "test-1" if "test-1" in which.splits else "test"
     for number in range(FIRST_TASKS):

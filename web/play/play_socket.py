@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from hearth.web.link import Link
 from hearth.web.messages import int_field, text_field
 from hearth.web.play.game_messages import Telling
 from hearth.web.play.live_games import LiveGame, games
+from hearth.web.play.presence import SIGN_EVERY, give_sign
 from hearth.web.play.trials import PERSON, PROGRAM, SIZE
 from hearth.web.web_errors import WebError
 
@@ -45,6 +47,7 @@ class Page:
         self.telling = Telling(live.game, number)
         self.tab = ""
         self._told: tuple[Any, ...] = ()
+        self._sign = 0.0
         self._sending = asyncio.Lock()
 
     async def take(self, message: dict[str, Any]) -> None:
@@ -80,11 +83,19 @@ class Page:
 
     def _begin(self) -> dict[str, Any]:
         with self.live.lock:
+            self._signed()
             self.telling.game = self.live.sync()
             port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
             self._told = self._state()
             begun = {**self.telling.begin(), **self._unnamed()}
-            return {**begun, "port": port, "code": self._code(), **self._waiting(), **self._scene()}
+            return {
+                **begun,
+                "port": port,
+                "code": self._code(),
+                "left": self.live.seconds_left(),
+                **self._waiting(),
+                **self._scene(),
+            }
 
     def _unnamed(self) -> dict[str, str]:
         """The helper of a study's trial, without its name."""
@@ -125,14 +136,23 @@ class Page:
 
     def _state(self) -> tuple[Any, ...]:
         game = self.live.game
-        return game.tick, game.over, self.live.decided
+        return game.tick, game.over, self.live.decided, self.live.other(self.number)
 
     def _waiting(self) -> dict[str, Any]:
-        return {"decided": list(self.live.decided), "go_on": self.live.stored.go_on}
+        other = self.live.other(self.number)
+        return {"decided": list(self.live.decided), "go_on": self.live.stored.go_on, "other": other}
+
+    def _signed(self) -> None:
+        """Keep from time to time that this person is there, for the other of two."""
+        if self.live.game.trial.helper == PERSON and time.monotonic() - self._sign > SIGN_EVERY:
+            give_sign(self.link.web.store, self.live.stored.id, self.number)
+            self._sign = time.monotonic()
 
     def _news(self) -> dict[str, Any] | None:
         """What others did, if anything."""
         with self.live.lock:
+            if self._told:
+                self._signed()
             self.live.sync()
             self.live.hurry()
             return self._new() if self._told else None

@@ -47,6 +47,7 @@ class Trial:
         interface: one of `INTERFACES`.
         seed: number of the episode among those of its task.
         partial: whether the person sees only what is around it.
+        seconds: after which it ends, counted from when it was begun; 0 for never.
     """
 
     task: Task
@@ -56,6 +57,7 @@ class Trial:
     interface: str = INTERFACES[0]
     seed: int = 0
     partial: bool = True
+    seconds: float = 0.0
 
     @property
     def challenge(self) -> Challenge:
@@ -89,6 +91,7 @@ class Trial:
             "interface": self.interface,
             "seed": self.seed,
             "partial": self.partial,
+            "seconds": self.seconds,
         }
 
 
@@ -100,9 +103,9 @@ def helpers() -> dict[str, str]:
     return {**others, **ours, **online}
 
 
-def offered() -> dict[str, str]:
-    """Those of `helpers` that can be here: not those that ask networks where the extra `models` is not installed."""
-    return {name: about for name, about in helpers().items() if _here(name)}
+def offered(which: Challenge) -> dict[str, str]:
+    """Those of `helpers` that can help in a challenge, here: some ask networks, which need the extra `models`."""
+    return {name: about for name, about in helpers().items() if _can_help(name, which)}
 
 
 def drawable() -> tuple[str, ...]:
@@ -110,9 +113,9 @@ def drawable() -> tuple[str, ...]:
     return INTERFACES[:1] if lacking("pictures") else INTERFACES
 
 
-def _here(helper: str) -> bool:
+def _can_help(helper: str, which: Challenge) -> bool:
     try:
-        Lineup(helper=helper).installed()
+        Lineup(helper=helper).installed().fits(which)
     except HearthError:
         return False
     return True
@@ -152,8 +155,9 @@ def trial(
         goal: what the helper is asked to do; as its row in the registry says where empty.
 
     Raises:
-        HearthError: BAD_ARGUMENT: there is no such helper, goal or interface; MISSING_FILE: the helper asks a network,
-            and the extra `models` is not installed; or the interface draws, and the extra `pictures` is not.
+        HearthError: BAD_ARGUMENT: there is no such helper, goal or interface, or the helper can't help there;
+            MISSING_FILE: it asks a network, and the extra `models` is not installed; or the interface draws, and the
+            extra `pictures` is not.
     """
     _check("helper", helper, helpers())
     _check("interface", interface, INTERFACES)
@@ -163,7 +167,7 @@ def trial(
     usual = {PERSON: "true", PROGRAM: "true"} | {name: each.goal for name, each in HELPERS.items()}
     kind = goal or usual.get(helper, "none")
     _check("goal", kind, GOALS)
-    Lineup(helper=helper, goal=kind).installed()
+    Lineup(helper=helper, goal=kind).installed().fits(challenge(task.challenge))
     seen = challenge(task.challenge).partial if partial is None else partial
     return Trial(task, helper, kind, _asked(task, kind, seed, knowledge), interface, seed, seen)
 
@@ -201,4 +205,7 @@ def read_trial(given: Mapping[str, Any]) -> Trial:
         _check(name, str(fields[name]), known)
     asked = given.get("helper_goal")
     goal = None if asked is None else challenge(task.challenge).grammar.read(asked)
-    return Trial(task, helper_goal=goal, **fields)  # type: ignore[arg-type]
+    seconds = given.get("seconds", 0.0)  # trials of earlier versions have none
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+        raise HearthError.of(Code.BAD_JSON, f"`seconds` of a trial is {str(seconds)[:60]}")
+    return Trial(task, helper_goal=goal, seconds=float(seconds), **fields)  # type: ignore[arg-type]

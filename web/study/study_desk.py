@@ -10,7 +10,7 @@ import sqlalchemy as sql
 from starlette.responses import Response
 
 from hearth.studies.conduct import DONE, LEFT, Conduct
-from hearth.studies.events import PLACES, salted
+from hearth.studies.events import PLACES
 from hearth.studies.study_findings import findings
 from hearth.studies.study_folder import Collected
 from hearth.studies.study_report import page
@@ -20,6 +20,10 @@ from hearth.web.study.study_schema import STUDIES
 from hearth.web.study.study_store import collected_in
 from hearth.web.visit import Visit
 
+SILENT, DELETED = "silent", "deleted"
+OVER = (DONE, LEFT, SILENT, DELETED)
+"""What is not under way: also who gives no sign for longer than the study allows, and who was deleted."""
+
 
 def overview(visit: Visit) -> Response:
     """The people of the study, and how far they are."""
@@ -27,38 +31,39 @@ def overview(visit: Visit) -> Response:
         return visit.page("study/desk_none.html")
     conduct = conduct_here(visit.web)
     people = list(_people(conduct))
-    stages = Counter(each["stage"] for each in people)
+    stages = Counter(SILENT if each["silent"] else each["stage"] for each in people)
     return visit.page(
         "study/desk.html",
         study=conduct.study,
         people=people,
         done=stages[DONE],
         left=stages[LEFT],
-        going=sum(stages.values()) - stages[DONE] - stages[LEFT],
+        silent=stages[SILENT],
+        deleted=stages[DELETED],
+        going=sum(count for stage, count in stages.items() if stage not in OVER),
         places=len(conduct.slots),
     )
 
 
 def _people(conduct: Conduct) -> Any:
-    salt = conduct.ledger.secret("participants")
     now = conduct.clock()
     for event in conduct.ledger.read(PLACES):
         person = event.data["person"]
         if not person:
-            nothing = {"id": "", "why": "", "trials": 0, "of": 0, "last": ""}
-            yield {**nothing, "place": event.data["place"] + 1, "stage": "forgotten"}
+            nothing = {"id": "", "why": "", "trials": 0, "of": 0, "last": "", "silent": False}
+            yield {**nothing, "place": event.data["place"] + 1, "stage": DELETED}
             continue
         standing = conduct.standing(person)
-        last = max([each.at for each in standing.events] or [event.at])
         why = [str(each.data["why"]) for each in standing.events if each.kind == "left"]
         yield {
-            "id": salted(salt, person),
+            "id": conduct.code(person),
             "place": standing.place + 1,
             "stage": standing.stage,
             "why": why[0] if why else "",
             "trials": sum(each.kind == "did" for each in standing.events),
             "of": len(conduct.slots[standing.place]),
-            "last": _ago(now - last),
+            "last": _ago(now - conduct.last_sign(standing)),
+            "silent": conduct.is_silent(standing),
         }
 
 

@@ -81,6 +81,8 @@ def way(visit: Visit) -> Response:
         return visit.page("study/none.html")
     conduct = conduct_here(visit.web)
     standing = _here(visit, conduct)
+    if standing is None and not conduct.has_room():
+        return visit.page("study/full.html", study=conduct.study)
     if standing is None:
         return visit.page("study/consent.html", study=conduct.study, note=_note(visit, conduct.study, None))
     return shown(visit, conduct, standing)
@@ -105,6 +107,7 @@ def shown(
         "given": given or {},
         "total": len(conduct.slots[standing.place]),
         "most": MOST_TEXT,
+        "code": conduct.code(standing.person),
     }
     status = 400 if fault else 200
     if study.room == JUDGE and standing.stage in (TRIAL, QUESTIONS):
@@ -138,6 +141,8 @@ def agree(visit: Visit) -> Response:
     conduct = conduct_here(visit.web)
     if visit.field("agree", 10) != "yes":
         raise WebError(Code.BAD_ARGUMENT, "agree", "that you agree, or nothing is begun", "no answer")
+    if _standing(conduct, visit.person) is None and not conduct.has_room():
+        raise WebError(Code.BAD_ARGUMENT, "place", "a free place in the study", "every place is taken", "/study/")
     in_turn(conduct.study, conduct.join(visit.person), "agree")
     conduct.consent(visit.person)
     return visit.go("/study/")

@@ -166,7 +166,8 @@ def collected_in(store: Store, name: str, out: Path, known: Callable[[], Knowled
         HearthError: BAD_JSON: the store has another study by that name; every fault of the study.
     """
     query = sql.select(STUDIES.c.text).where(STUDIES.c.name == name)
-    study = study_of(str(store.read(lambda connection: connection.execute(query).scalar())), f"{name}.yaml")
+    text = str(store.read(lambda connection: connection.execute(query).scalar()))
+    study = study_of(text, f"{name}.yaml", begun=True)
     if study.name != name:
         raise HearthError.of(Code.BAD_JSON, f"the store has `{study.name}` as the study `{name[:60]}`", file=str(out))
     folder = inside(out, f"{FOLDER}/{name}")

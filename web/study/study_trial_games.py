@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+from dataclasses import replace
 from typing import Any
 
 import sqlalchemy as sql
@@ -44,33 +44,35 @@ def _query(key: dict[str, Any]) -> sql.Select[Any]:
 def _chosen(web: Web, conduct: Conduct, standing: Standing) -> Trial:
     """The trial as the room Play has it; a practice is alone."""
     study = conduct.study
+    seconds = study.limits.minutes * 60
     if standing.stage == PRACTICE:
         task = practice_task(study, standing.number)
-        return trial(task, web.known, interface=study.interface)
+        return replace(trial(task, web.known, interface=study.interface), seconds=seconds)
     job = job_of(study, conduct.trial(standing), conduct.known)
     lineup, task = job.lineup, job.task
     plain = trial(task, web.known, interface=study.interface, seed=job.seed)
     goal = lineup.goal if job.helped else "none"
-    return Trial(task, lineup.helper, goal, job.helper_goal, study.interface, job.seed, plain.partial)
+    return Trial(task, lineup.helper, goal, job.helper_goal, study.interface, job.seed, plain.partial, seconds)
 
 
 def gone_on(web: Web, conduct: Conduct, standing: Standing) -> Standing:
     """Where a person is once the game of the trial, if it is over, is recorded in the study.
 
-    A game that has taken longer than the study allows is ended.
+    What it took lasts from its beginning to its end, however long the person stays on the page afterwards.
     """
     key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
     game = web.store.read(lambda connection: connection.execute(_query(key)).scalar())
     if game is None:
         return standing
-    seconds = time.time() - web.store.read(lambda connection: game_store.stored(connection, game)).created
-    if seconds > conduct.study.limits.minutes * 60:
-        why = {"agent": 0, "code": "TIMED_OUT", "message": "the study's time for a trial was over"}
-        web.store.write(lambda connection: game_store.end(connection, game, why))
     record = play.recorded_episode(web.store, web.known, game)
     if record is None:
         return standing
     if standing.stage == PRACTICE:
         return conduct.practised(standing.person)
     data = {**episode_data(record), "actions": [list(tick) for tick in record.actions]}
-    return conduct.played(standing.person, data, round(seconds, 1))
+    stored, decided = web.store.read(
+        lambda connection: (game_store.stored(connection, game), game_store.decisions(connection, game))
+    )
+    ended = (stored.result or {}).get("at") or max((each.at for tick in decided.values() for each in tick), default=0.0)
+    times = [round(each.at - stored.created, 2) for tick in decided.values() for each in tick if each.agent == 0]
+    return conduct.played(standing.person, data, round(max(0.0, ended - stored.created), 1), times)

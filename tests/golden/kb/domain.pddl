@@ -2,6 +2,7 @@
   (:requirements :adl :derived-predicates)
   (:predicates
     (option-made-bed)
+    (option-near-hands)
     (bed-limit-1 ?x)
     (bed-limit-2 ?x)
     (bed-limit-3 ?x)
@@ -102,7 +103,7 @@
   (:derived (bedding ?x)
     (or (class-blanket ?x) (class-comforter ?x) (class-pillow ?x) (class-sheets ?x)))
   (:derived (loosely-close ?a ?x)
-    (or (close ?a ?x) (exists (?y) (and (close ?a ?y) (or (close ?y ?x) (on ?x ?y))))))
+    (or (close ?a ?x) (exists (?y) (and (close ?a ?y) (or (close ?y ?x) (on ?x ?y)) (or (not (option-near-hands)) (not (p-body-part ?y)) (same-room ?a ?x))))))
   (:derived (loosely-facing ?a ?x)
     (or (facing ?a ?x) (exists (?y) (and (facing ?a ?y) (facing ?y ?x)))))
   (:derived (found ?a ?o)

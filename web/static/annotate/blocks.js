@@ -141,7 +141,7 @@ export function mount(element, model, changed, loose) {
     last = JSON.stringify(steps);
     changed(steps);
   });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => workspace.setTheme(theme()));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => withAdoptedStyles(() => workspace.setTheme(theme())));
   return {
     workspace,
     show(steps) {

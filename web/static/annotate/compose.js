@@ -2,7 +2,7 @@
 import { mount } from "./blocks.js";
 import { player } from "./player.js";
 
-const SAVE_AFTER = 250;
+const [SAVE_AFTER, AGAIN] = [250, 1000];
 const byId = (id) => document.getElementById(id);
 const composer = byId("composer");
 const base = composer.dataset.base;
@@ -10,6 +10,7 @@ const base = composer.dataset.base;
 const model = { version: 0, steps: [], actions: new Map(), things: [], found: [] };
 let blocks = null;
 let timer = 0;
+let again = AGAIN; // milliseconds until a save that had no answer is tried again
 let saving = Promise.resolve();
 
 function element(name, text, className) {
@@ -27,7 +28,7 @@ async function ask(path, body) {
   const value = await answer.json();
   if (!answer.ok) {
     const { code, place, expected, actual } = value.error;
-    throw Object.assign(new Error(`${place}: ${actual || code}; expected ${expected}`), { value });
+    throw Object.assign(new Error(`${place}: ${actual || code}; expected ${expected}`), { value, code });
   }
   return value;
 }
@@ -69,12 +70,42 @@ function save() {
     try {
       const { version, found } = await ask("/save", { version: model.version, steps });
       model.version = version;
+      again = AGAIN;
       if (steps === model.steps) checked(found);
     } catch (error) {
-      say(`Not saved. ${error.message}. Reload the page to see what was saved last.`, true);
+      if (error.code === "LOCKED") await otherTab().catch(() => later());
+      else if (error.code && error.code !== "TOO_FAST") say(`Not saved. ${error.message}.`, true);
+      else later();
     }
   });
   return saving;
+}
+
+// No answer, or too many questions: what is written stays here, and is saved as soon as that is possible.
+function later() {
+  say("Not saved yet: the server can't be reached. It is tried again; keep this page open.", true);
+  clearTimeout(timer);
+  timer = setTimeout(save, again);
+  again = Math.min(2 * again, 30_000);
+}
+
+// Another tab has saved since: one chooses, and nothing is lost before.
+async function otherTab() {
+  const { version, steps, changes } = await ask("/work");
+  if (!changes) {
+    say("Not saved: this program was handed in from another tab.", true);
+    return;
+  }
+  say("Not saved: another tab has changed this program since. ", true);
+  const mine = tool("Keep what is here", "Keep what is here", () => {
+    model.version = version;
+    save();
+  });
+  const other = tool("Take what the other tab has", "Take what the other tab has", () => {
+    model.version = version;
+    changed(steps, "other tab");
+  });
+  byId("state").append(mine, " ", other);
 }
 
 function checked(found) {

@@ -29,7 +29,7 @@ export class Connection {
     };
     this.socket.onclose = ({ code }) => {
       if (code === 4401 || code === 4404) return;
-      this.trouble({ code: "DISCONNECTED", place: "", expected: "", actual: "the connection is lost; trying again" });
+      this.trouble({ code: "DISCONNECTED" });
       setTimeout(() => this.open(), this.pause);
       this.pause = Math.min(this.pause * 2, 5000);
     };

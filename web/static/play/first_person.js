@@ -87,39 +87,61 @@ export class FirstPerson {
     if (id && this.state) this.label.textContent = this.state.things.has(id) ? name(this.state.things, id) : this.names.get(id) ?? "";
   }
 
+  // Draws what is wanted last; what comes meanwhile waits, and only the last of it is drawn.
   async update(state, message) {
     this.state = state;
-    if (message.drawn) await this.draw(message.drawn);
+    if (!message.drawn) return;
+    this.wanted = { tick: state.tick, ...message.drawn };
+    if (this.drawing) return;
+    this.drawing = true;
+    try {
+      while (this.wanted) {
+        const drawn = this.wanted;
+        this.wanted = null;
+        await this.draw(drawn);
+      }
+    } catch (fault) {
+      this.say(`The home can't be drawn. Reload the page to try again. (${fault.message})`);
+    } finally {
+      this.drawing = false;
+    }
+  }
+
+  say(text) {
+    this.label.textContent = text;
+    this.label.hidden = !text;
   }
 
   async draw(drawn) {
     if (!this.parts) {
-      this.parts = [];
       const rooms = this.state.plan.filter(([kind]) => kind === "room").map(([, , box]) => box);
       const { meshes, walls } = merged(await load(drawn.base), rooms);
       Object.assign(this, { parts: meshes, walls });
       for (const mesh of meshes) this.world.add(mesh);
       this.element.dataset.ready = "yes";
-      this.label.hidden = true;
+      this.say("");
     }
     const off = new Set(drawn.off);
     for (const mesh of this.parts) hide(mesh, off);
     await this.place(drawn.on);
     this.glide(drawn.camera);
-    this.element.dataset.tick = this.state.tick;
+    this.element.dataset.tick = drawn.tick;
   }
 
-  async place(on) {
+  async place(every) {
+    const shapes = await Promise.all(every.map((each) => this.fetched(each[2], each[0])));
+    const on = every.filter((each, number) => shapes[number]); // what did not come is asked for again with the next tick
     const now = new Map(on.map((each) => [`${each[0]} ${each[2]} ${each[1]}`, each]));
-    await Promise.all(on.map((each) => this.fetched(each[2], each[0])));
+    const shape = new Map(every.map((each, number) => [each, shapes[number]]));
     for (const [key, meshes] of this.placed) {
       if (!now.has(key)) {
         this.world.remove(...meshes);
         this.placed.delete(key);
       }
     }
-    for (const [key, [id, , kind, x, y, z, yaw]] of now) {
-      if (!this.placed.has(key)) this.placed.set(key, this.models.get(`${kind} ${id}`).map((each) => new THREE.Mesh(each, SHOWN)));
+    for (const [key, each] of now) {
+      const [id, , , x, y, z, yaw] = each;
+      if (!this.placed.has(key)) this.placed.set(key, shape.get(each).map((part) => new THREE.Mesh(part, SHOWN)));
       for (const mesh of this.placed.get(key)) {
         mesh.position.set(x, y, z);
         mesh.rotation.y = THREE.MathUtils.degToRad(yaw + (this.state.mine?.holding.includes(id) ? this.turned : 0));
@@ -132,11 +154,17 @@ export class FirstPerson {
     this.moved = true;
   }
 
-  async fetched(kind, id) {
+  // A promise of the shapes of a thing; of null where they can't be had now.
+  fetched(kind, id) {
     const key = `${kind} ${id}`;
-    if (this.models.has(key)) return;
-    this.models.set(key, null);
-    this.models.set(key, model(await load(`/play/game/${this.game}/models/${kind}.glb`), id));
+    if (!this.models.has(key)) {
+      const coming = load(`/play/game/${this.game}/models/${kind}.glb`).then((scene) => model(scene, id));
+      this.models.set(key, coming.catch(() => {
+        this.models.delete(key);
+        return null;
+      }));
+    }
+    return this.models.get(key);
   }
 
   glide({ eye, target, fov }) {

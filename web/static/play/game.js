@@ -4,16 +4,18 @@ import { FloorPlan } from "./floor_plan.js";
 import { Menu } from "./menu.js";
 import { ObjectPanels } from "./object_panels.js";
 import { State } from "./state.js";
-import { name, retold, spoken, written } from "./words.js";
+import { name, refused, retold, spoken, written } from "./words.js";
 
 const root = document.getElementById("game");
 const state = new State();
 const said = document.getElementById("said");
 const banner = document.getElementById("banner");
+const sure = document.getElementById("sure");
 let busy = false; // a decision is on its way
 let walking = null; // the thing that one goes all the way to
 let view = null; // first person
 let again = 0; // how often the same move is still wanted
+let [shown, shownAt] = ["", -1]; // what was said last of the other person, and at which tick
 let latest = null; // the last message about the game
 
 const choose = (id, from) => state.things.has(id) && state.things.get(id).seen && menu.open(id, state, from);
@@ -28,11 +30,19 @@ function decide(action, ids = []) {
 }
 
 function send(action, ids = []) {
-  if (busy || state.over || state.tick < 0) return false;
+  if (busy || state.over || state.tick < 0 || waits()) return false;
   const act = action ? written(action, ids, state.things) : null;
   busy = connection.send({ type: "act", tick: state.tick, act });
   if (busy) said.textContent = action ? `${spoken(action, ids, state.things)} …` : "Waiting a tick …";
   return busy;
+}
+
+// Whether it is for the other of two people to come or to decide; then that is said.
+function waits() {
+  const decided = state.decided.includes(state.me);
+  if (state.other !== "awaited" && !decided) return false;
+  said.textContent = decided ? "You have decided. Waiting for the other person …" : "The other person is not here yet.";
+  return true;
 }
 
 function walk(id) {
@@ -87,6 +97,7 @@ function begin(message) {
   plan.begin(state);
   panels?.begin();
   banner.hidden = true;
+  shown = "";
   if (root.dataset.interface !== "symbolic" && view === null) {
     view = {}; // until it has loaded
     const file = root.dataset.interface === "visual" ? "./first_person.js" : "./pictures.js";
@@ -108,18 +119,40 @@ function show() {
   const left = state.limit - state.tick;
   root.dataset.tick = state.tick;
   document.getElementById("clock").textContent = `Tick ${state.tick} of ${state.limit}; ${left} left. Helper: ${state.helper}.`;
+  showTime();
   showGoal();
   showHands();
   for (const button of document.querySelectorAll("[data-move]")) {
     const move = button.dataset.move;
-    button.disabled = state.over || (move !== "" && !state.can(move));
+    button.disabled = state.over || state.other === "awaited" || (move !== "" && !state.can(move));
     if (move === "StandUp") button.hidden = !state.can(move);
   }
   document.getElementById("finish").disabled = state.over;
   said.textContent = lastActions();
   if (state.over) showEnd();
   else if (state.port) tell("note", `Connect your program to port ${state.port} of this machine.`);
-  else if (state.code && state.agents.length) showCode();
+  else if (state.other) showOther();
+}
+
+// Of a game for two: whether the other person is there, said when it changes and until the next tick.
+function showOther() {
+  if (state.other === shown && state.tick === shownAt) return;
+  if (state.other === "awaited") showInvitation();
+  else if (state.other === "gone") tell("note", "The other person has left. You can go on: their character waits until they come back.");
+  else if (state.other !== shown) tell("good", shown === "gone" ? "The other person is back." : "The other person is here. A tick passes once both of you have decided.");
+  else banner.hidden = true;
+  [shown, shownAt] = [state.other, state.tick];
+}
+
+// The time that is left, where there is a limit; the last minute is also said.
+function showTime() {
+  if (state.until === null || state.until === undefined || state.over) return;
+  const left = Math.max(0, Math.ceil((state.until - performance.now()) / 1000));
+  const clock = document.getElementById("time");
+  clock.hidden = false;
+  clock.textContent = `Time left: ${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
+  clock.classList.toggle("short", left <= 60);
+  if (left === 60) said.textContent = "One minute is left.";
 }
 
 function showGoal() {
@@ -161,26 +194,40 @@ function heldButton(id) {
 }
 
 function lastActions() {
+  if (state.decided.length && state.tick === 0) return whoDecided();
   if (state.tick === 0) return "Choose a thing to see what you can do with it.";
   const lines = state.agents.filter((agent) => agent.last).map((agent) => {
     const who = agent.agent === state.me ? "You" : "The other";
     const failure = agent.last.failure ? `: that failed (${agent.last.failure.message})` : "";
     return `${who}: ${retold(agent.last.instruction)}${failure}.`;
   });
-  if (state.decided.length && !state.over) lines.push(state.decided.includes(state.me) ? "Waiting for the other …" : "The other has decided.");
+  if (state.decided.length && !state.over) lines.push(whoDecided());
   return lines.join(" ");
 }
 
+const whoDecided = () => (state.decided.includes(state.me) ? "You have decided. Waiting for the other person …" : "The other person has decided. It is your turn.");
+
+// Why it is over, in words.
+function why() {
+  const after = `after ${state.tick} ${state.tick === 1 ? "tick" : "ticks"}`;
+  if (state.success) return `Done: the goal is reached ${after}.`;
+  if (state.end === "FINISHED") return `${state.ended_by === state.me ? "You" : "The other person"} finished this task ${after}.`;
+  if (state.end === "TIMED_OUT" && state.ended_by === 0) return `The time is over, ${after}.`;
+  if (state.end) return `The helper could not go on, so this is over ${after}. That is no fault of yours.`;
+  return `This is over ${after}: that is as many as there are.`;
+}
+
 function showEnd() {
-  const text = state.success ? `Done: the goal is reached after ${state.tick} ticks. ` : `This is over after ${state.tick} ticks. `;
+  const text = `${why()} `;
   const studied = !state.go_on.startsWith("/play/"); // whose helper is not to be known
   const episode = studied ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, "The episode"), " · "];
   tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, "Go on"));
 }
 
-function showCode() {
+function showInvitation() {
+  if (!state.code) return tell("note", "The other person is not here yet. You begin together.");
   const address = `${location.origin}/play/join/${state.code}`;
-  tell("note", "Two people play this. The other joins by this link: ", link(address, address));
+  return tell("note", "Two people play this. It begins once the other has come, by this link: ", link(address, address));
 }
 
 function link(address, text) {
@@ -198,13 +245,13 @@ function trouble(fault) {
     Object.assign(button, { type: "button", textContent: "Go on here" });
     button.addEventListener("click", () => connection.takeOver());
     tell("note", "This session is open in another tab. ", button);
-  } else said.textContent = fault.place === "act" ? `That can't be done: ${fault.actual}` : `${fault.code}: ${fault.actual}`;
+  } else said.textContent = refused(fault);
 }
 
 const KEYS = { ArrowLeft: "Turnleft", ArrowRight: "Turnright", ArrowUp: "Walkforward" };
 
 document.addEventListener("keydown", (event) => {
-  const typing = event.target.closest("input, select, textarea, #view");
+  const typing = event.target.closest("input, select, textarea, #view, dialog");
   if (typing || event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === ".") decide("");
   else if (event.key in KEYS && state.can(KEYS[event.key])) decide(KEYS[event.key]);
@@ -218,11 +265,19 @@ document.getElementById("save").addEventListener("click", save);
 document.getElementById("finish").addEventListener("click", finish);
 
 function save() {
-  said.textContent = "Everything up to here is saved.";
+  const kept = busy ? "Everything but what you just decided is saved." : "Everything up to here is saved. You can close the page and come back.";
+  said.textContent = kept;
 }
 
+// Asks first: what is finished can't be gone on with.
 function finish() {
-  connection.send({ type: "finish" });
+  if (!state.over && !sure.open) sure.showModal();
 }
 
+sure.addEventListener("close", () => {
+  if (sure.returnValue === "finish" && !connection.send({ type: "finish" })) trouble({ code: "DISCONNECTED" });
+  sure.returnValue = "";
+});
+
+setInterval(showTime, 1000);
 const connection = new Connection(root.dataset.game, receive, trouble);

@@ -1,6 +1,16 @@
 // What one can do with a thing: a panel with a button for each legal instruction about it.
 import { name, spoken } from "./words.js";
 
+// Of pieces of floor that nobody can tell apart, the first.
+function distinct(options, state) {
+  const known = new Set();
+  return options.filter(([action, ids]) => {
+    if (!ids.some((id) => state.things.get(id).group === "floor")) return true;
+    const words = spoken(action, ids, state.things);
+    return !known.has(words) && Boolean(known.add(words));
+  });
+}
+
 export class Menu {
   constructor(act, walk) {
     this.panel = document.getElementById("menu");
@@ -31,17 +41,18 @@ export class Menu {
   }
 
   fill(state) {
-    const thing = state.things.get(this.id);
+    const id = this.id; // the menu forgets it when it closes, before it does what was pressed
+    const thing = state.things.get(id);
     const states = (thing.states ?? []).map((each) => each.toLowerCase().replaceAll("_", " ")).join(", ");
-    this.title.textContent = `${name(state.things, this.id)}${states ? ` (${states})` : ""}`;
-    const options = state.over ? [] : state.about(this.id);
+    this.title.textContent = `${name(state.things, id)}${states ? ` (${states})` : ""}`;
+    const options = state.over ? [] : distinct(state.about(id), state);
     const buttons = options.map(([action, ids]) => {
       const made = this.button(spoken(action, ids, state.things), () => this.act(action, ids));
       made.dataset.instruction = [action, ...ids].join(" ");
       return made;
     });
-    if (state.can("Walktowards", [this.id])) {
-      buttons.unshift(this.button("Go all the way", () => this.walk(this.id)));
+    if (state.can("Walktowards", [id])) {
+      buttons.unshift(this.button("Go all the way", () => this.walk(id)));
       const step = buttons.findIndex((button) => button.textContent.startsWith("Walk to"));
       buttons[step].textContent = "One step towards it";
     }

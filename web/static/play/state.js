@@ -13,6 +13,7 @@ export class State {
     if (message.type === "begin") {
       Object.assign(this, { me: message.me, plan: message.plan, limit: message.limit, helper: message.helper });
       Object.assign(this, { partial: message.partial, code: message.code, port: message.port, characters: message.characters });
+      this.until = message.left === null ? null : performance.now() + 1000 * message.left;
       this.things.clear();
       this.trails = new Map(Object.entries(message.trails).map(([who, way]) => [Number(who), way]));
     }
@@ -23,7 +24,7 @@ export class State {
       Object.assign(this.things.get(Number(id)), { room, relation, holder, states, close: Boolean(close), seen: true });
     }
     for (const id of message.gone) this.things.get(id).seen = false;
-    for (const key of ["tick", "goal", "legal", "agents", "over", "success", "end", "decided", "go_on"]) this[key] = message[key];
+    for (const key of ["tick", "goal", "legal", "agents", "over", "success", "end", "ended_by", "decided", "go_on", "other"]) this[key] = message[key];
     if (message.type === "tick") this.follow();
     this.usable = new Set(Object.values(this.legal).flat(2));
     this.wanted = new Set(this.goal.flatMap((each) => each.classes));

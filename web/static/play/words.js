@@ -28,3 +28,17 @@ export function retold(instruction) {
   if (action in PUTS) return `put ${names[0]} ${PUTS[action]} ${names[1]}`;
   return [(VERBS[action] ?? action).toLowerCase(), ...names].join(" ");
 }
+
+// What a refusal means to who plays; what the engine says of an act comes in words.
+const REFUSED = {
+  OUT_OF_ORDER: "That came too late: the game has gone on. Decide again.",
+  TOO_FAST: "That was too fast. Wait a moment, then go on.",
+  DISCONNECTED: "The connection is lost. Trying again …",
+  NO_SESSION: "Your session is not known here any more. Open the link of your session again.",
+  UNKNOWN_ID: "This game is not there any more.",
+  LOCKED: "This game is open in another tab.",
+};
+
+export function refused({ code, place, actual }) {
+  return REFUSED[code] ?? (place === "act" ? `That can't be done: ${actual}.` : "That did not work. Try again.");
+}

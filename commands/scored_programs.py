@@ -1,0 +1,80 @@
+"""What `score program` reads: rows of predictions, or programs in any form that `check` reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hearth.commands import inputs
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.scoring.dataset_scores import read_line
+from hearth.scoring.environments import GRAPH, HOME
+from hearth.scoring.first_faults import FirstFaults
+from hearth.scoring.lines import Line, Refused
+from hearth.scoring.prediction_rows import has_predictions
+from hearth.scoring.predictions import Pair, read_pairs
+from hearth.storage.input_files import placed
+from hearth.storage.rejects import Reject
+
+if TYPE_CHECKING:
+    from hearth.kb.knowledge import Knowledge
+
+ALL = "all"
+"""The value of `--homes` that names all homes of ours."""
+
+
+def read_predictions(file: Path, references: Path | None, known: Knowledge, rejects: FirstFaults) -> list[Pair]:
+    """Read predictions, with their references where they have one.
+
+    Raises:
+        HearthError: nothing in the file can be scored.
+    """
+    if references or has_predictions(file):
+        return read_pairs(file, references, partial(read_line, known), rejects=rejects, alone=references is None)
+    with placed(file) as path:
+        pairs = list(_programs(path, known, inputs.name_of(file), rejects))
+    if not pairs:
+        raise _nothing(file, rejects)
+    return pairs
+
+
+def in_homes(pairs: Sequence[Pair], names: Sequence[str]) -> list[Pair]:
+    """Return each prediction once for each home, whatever environment its row names."""
+    return [replace(pair, more={**_unplaced(pair), HOME: name}) for pair in pairs for name in names]
+
+
+def _unplaced(pair: Pair) -> dict[str, object]:
+    return {name: value for name, value in pair.more.items() if name not in (HOME, GRAPH)}
+
+
+def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults) -> Iterator[Pair]:
+    number = 0
+    for found in inputs.read_programs(path, known, name):
+        if isinstance(found, Reject):
+            rejects.reject(found.diagnostics)
+        elif not found.program.steps and all(fault.code is Code.EMPTY for fault in found.faults):
+            rejects.reject(found.faults)
+        else:
+            number += 1
+            first = min((*found.program.lines, *(fault.line for fault in found.faults)), default=0)
+            more = {"title": found.program.title}
+            yield Pair(str(number), _lines(found), (), first, more, referenced=False)
+
+
+def _lines(given: inputs.Given) -> tuple[Line, ...]:
+    """The lines of a program in order: its steps, and those that are refused with their codes."""
+    program = given.program
+    lines: list[tuple[int, Line]] = list(zip(program.lines, program.steps, strict=True))
+    refused = {fault.line: fault for fault in reversed(given.faults)}
+    lines += [(line, Refused(fault.source or fault.found, fault.code)) for line, fault in refused.items()]
+    return tuple(line for _, line in sorted(lines, key=lambda each: each[0]))
+
+
+def _nothing(file: Path, rejects: FirstFaults) -> HearthError:
+    if rejects:
+        return HearthError(rejects)
+    return HearthError.of(Code.EMPTY, "no program in it", file=str(file), suggestion="write one step a line")

@@ -1,0 +1,34 @@
+"""The forms in which steps are written, besides numbered and bulleted lines."""
+
+import re
+from collections.abc import Sequence
+
+from hearth.kb.language.forms.code import CODE
+from hearth.kb.language.forms.commands import COMMANDS
+from hearth.kb.language.forms.form import Form
+from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
+from hearth.kb.language.forms.pddl import PDDL
+from hearth.kb.language.forms.quoted import QUOTED
+from hearth.kb.language.forms.react import REACT
+from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
+
+FORMS: dict[str, Form] = {
+    "quoted list": QUOTED,
+    "SayCanPay": SAY_CAN_PAY,
+    "ReAct": REACT,
+    "ALFWorld": COMMANDS,
+    "PDDL": PDDL,
+    "code": CODE,
+    "Markdown table": MARKDOWN_TABLE,
+}
+"""Forms by name, in the order in which they are tried."""
+
+_HINT = re.compile(r"[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|.*\bcharacter\b", re.IGNORECASE).match
+"""Whether a line has what some line of each form has: most plans have none, and are not tried."""
+
+
+def form_of(lines: Sequence[str]) -> Form | None:
+    """Return the form that the lines of a text are written in; None for numbered, bulleted and bracketed lines."""
+    if not any(map(_HINT, lines)):
+        return None
+    return next((form for form in FORMS.values() if form.fits(lines)), None)

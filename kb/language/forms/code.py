@@ -1,0 +1,66 @@
+"""Plans as code: calls such as `walk('kitchen')` and `robot.grab("milk")`, as ProgPrompt writes them."""
+
+import ast
+import re
+from collections.abc import Sequence
+
+from hearth.kb.language.forms.form import Form, Placed, note, step, title, written
+
+_DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
+_CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*;?\s*(?:#.*|//.*)?$")
+_LEFT_OUT = re.compile(
+    r"\s*(?:(?:assert|else|if|elif|for|while|try|except|import|return|pass|class|with)\b|from\b.*\bimport\b|print\(|\"{3}|'{3})"
+)
+_MADE_TRUE = re.compile(r"\s*else\s*:(?!\s*find\b)\s*(\S.*)")
+"""What ProgPrompt does where a state lacks, `else: open('fridge')`; that a thing is found again is no step."""
+
+_COMMENT = re.compile(r"\s*(?:#|//|`{3}|~{3}|$)")
+_LONGEST = 500
+
+
+def _fits(lines: Sequence[str]) -> bool:
+    """Return whether most lines are calls: a text in which some line is nothing that code has is none."""
+    code = [line for line in lines if not _COMMENT.match(line)]
+    calls = sum(_is_call(line) for line in code)
+    return any(map(_DEF.match, code)) or (calls > 0 and calls >= 0.6 * len(code))
+
+
+def _is_call(line: str) -> bool:
+    return len(line) <= _LONGEST and not _LEFT_OUT.match(line) and _CALL.match(line) is not None
+
+
+def _lines(lines: Sequence[str]) -> list[Placed]:
+    found: list[Placed] = []
+    for row, raw in enumerate(lines):
+        named = _DEF.match(raw)
+        if named:
+            found.append(title(row, named[1].replace("_", " ")))
+        elif not _COMMENT.match(raw):
+            made_true = _MADE_TRUE.match(raw)
+            words = made_true[1] if made_true else raw
+            call = _CALL.match(words) if len(raw) <= _LONGEST else None
+            is_step = made_true is not None or not _LEFT_OUT.match(raw)
+            found.append(step(row, _called(call) if call else words) if is_step else note(row, raw))
+    return found
+
+
+def _called(call: re.Match[str]) -> str:
+    """Return the step of a call; its arguments are texts or names, and nothing is run."""
+    try:
+        parsed = ast.parse(call[1], mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return call[1]
+    if not isinstance(parsed, ast.Call):
+        return call[1]
+    arguments = [_name(each) for each in (*parsed.args, *(keyword.value for keyword in parsed.keywords))]
+    return written(call[2], [each for each in arguments if each]) if None not in arguments else call[1]
+
+
+def _name(argument: ast.expr) -> str | None:
+    """Return the thing that an argument names; None for one that is an expression."""
+    if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
+        return argument.value
+    return argument.id if isinstance(argument, ast.Name) else None
+
+
+CODE = Form(_fits, _lines, _is_call, re.compile(r"\s*(?:async\s+)?def\s"))

@@ -1,0 +1,108 @@
+"""ALFWorld's commands: `go to fridge 1`, `take apple 1 from countertop 1`, `> open fridge 1`."""
+
+import re
+from collections.abc import Callable, Sequence
+
+from hearth.kb.language.forms.form import Form, Placed, step, written
+
+_THING = r"([a-z]+(?: [a-z]+){0,2} \d{1,3})"
+_COMMANDS: dict[str, tuple[str, ...]] = {
+    rf"go to {_THING}": ("Walk", "0"),
+    rf"open {_THING}": ("Open", "0"),
+    rf"close {_THING}": ("Close", "0"),
+    rf"(?:use|toggle) {_THING}": ("SwitchOn", "0"),
+    rf"examine {_THING}(?: with {_THING})?": ("LookAt", "0"),
+    rf"take {_THING} from {_THING}": ("Grab", "0"),
+    rf"(?:put|move) {_THING} (in) {_THING}": ("PutIn", "0", "2"),
+    rf"(?:put|move) {_THING} (in/on|on|to) {_THING}": ("PutBack", "0", "2"),
+    rf"clean {_THING} with {_THING}": ("Wash", "0"),
+    rf"heat {_THING} with {_THING}": ("Heat", "0", "1"),
+    rf"cool {_THING} with {_THING}": ("Cool", "0", "1"),
+}
+"""A command -> the action, and which of its words are the objects."""
+
+_READ = [(re.compile(rf"(?:> ?)?{words}\.?", re.IGNORECASE), meant) for words, meant in _COMMANDS.items()]
+_NO_STEP = re.compile(r"(?:> ?)?(?:look|inventory|think: .*)\.?", re.IGNORECASE)
+_HOLLOW = frozenset(
+    [
+        "fridge",
+        "cabinet",
+        "drawer",
+        "microwave",
+        "safe",
+        "garbagecan",
+        "box",
+        "bathtubbasin",
+        "sinkbasin",
+        "washingmachine",
+    ]
+)
+"""Things into which `put in/on` puts, as on others it does not."""
+
+_NAMES = {
+    "countertop": "kitchen counter",
+    "sinkbasin": "sink",
+    "bathtubbasin": "bathtub",
+    "stoveburner": "stove",
+    "sidetable": "table",
+}
+"""ALFWorld's names for what has another name here."""
+
+_OTHERS = re.compile(r"\s*(?:\d+[.)]|[-*•]|\[?step \d+\]?:?)\s+", re.IGNORECASE)
+
+
+def command(words: str) -> str:
+    """Return the step of a command, in the syntax of programs; empty for words that are none."""
+    text = " ".join(words.split())
+    for pattern, (action, *at) in _READ:
+        found = pattern.fullmatch(text)
+        if found:
+            things = [_named(found[int(place) + 1]) for place in at]
+            hollow = action == "PutBack" and found[2] == "in/on" and found[3].rpartition(" ")[0].lower() in _HOLLOW
+            return written("PutIn" if hollow else action, things)
+    return ""
+
+
+def _named(thing: str) -> str:
+    name, _, number = thing.lower().rpartition(" ")
+    return f"{_NAMES.get(name, name)} {number}"
+
+
+def _words(raw: str) -> str:
+    return _OTHERS.sub("", raw, count=1).strip()[:300]
+
+
+def _fits(lines: Sequence[str]) -> bool:
+    """Return whether a third of the lines, and two at least, are commands, or `>` stands before one."""
+    texts = [line for line in lines if line.strip()]
+    found = [line for line in texts if command(_words(line))]
+    return (len(found) > 1 and 3 * len(found) >= len(texts)) or any(line.lstrip().startswith(">") for line in found)
+
+
+def _lines(lines: Sequence[str]) -> list[Placed]:
+    """Return the commands; once a line begins with `>`, the others are what the game answered."""
+    is_log = any(line.lstrip().startswith(">") for line in lines)
+    return read(lines, lambda raw: raw if raw.lstrip().startswith(">") or not is_log else "")
+
+
+def read(lines: Sequence[str], told: Callable[[str], str]) -> list[Placed]:
+    """Return the steps of the lines of which `told` gives words; lines above the first are title and description."""
+    from hearth.kb.language.plan_lines import plan_line
+
+    found: list[Placed] = []
+    begun = False
+    for row, raw in enumerate(lines):
+        words = _words(told(raw))
+        if words and (meant := command(words)):
+            begun = True
+            found.append(step(row, meant))
+        elif words and begun and not _NO_STEP.fullmatch(words):
+            found.append(step(row, words.removeprefix(">")))
+        elif not begun and not raw.lstrip().startswith(">"):
+            found.append(Placed(row, plan_line(raw)._replace(number=None, numbered=False)))
+    return found
+
+
+COMMANDS = Form(
+    _fits, _lines, lambda raw: bool(command(_words(raw))), re.compile(r"\s*(task\b|your task is to:)", re.IGNORECASE)
+)

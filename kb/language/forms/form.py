@@ -1,0 +1,56 @@
+"""A form that steps are written in: how its texts are recognized, and which lines of them are steps."""
+
+import re
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from hearth.kb.language.plan_lines import PlanLine
+
+
+class Placed(NamedTuple):
+    """A line of a plan, or a part of one, with the index of the line of the text that it stands on."""
+
+    row: int
+    line: PlanLine
+
+
+class Form(NamedTuple):
+    """One way of writing steps.
+
+    Attributes:
+        fits: whether the lines of a text, or the first of them, are written so.
+        lines: the steps, headings and notes of a text.
+        is_step: whether a line is a step.
+        begins: matches a line with which a program begins, once the one above has steps or such a line of its own; of
+            lines that differ in the first group, each belongs to one beginning.
+    """
+
+    fits: Callable[[Sequence[str]], bool]
+    lines: Callable[[Sequence[str]], list[Placed]]
+    is_step: Callable[[str], bool]
+    begins: re.Pattern[str]
+
+
+def step(row: int, text: str, indent: int = 0) -> Placed:
+    """Return a step of a form in which every step counts."""
+    return Placed(row, PlanLine(" ".join(text.split()), 1, indent, numbered=True))
+
+
+def note(row: int, text: str) -> Placed:
+    """Return a line that is no step, and is counted as such."""
+    return Placed(row, PlanLine(" ".join(text.split()), 0, 1))
+
+
+def title(row: int, text: str) -> Placed:
+    """Return a title."""
+    return Placed(row, PlanLine(f"Task: {text}", None, 0, heading=True))
+
+
+def written(action: str, objects: Sequence[str]) -> str:
+    """Return a step in the syntax of programs; an object is a name, and its instance behind a blank if it has one."""
+    return " ".join([f"[{action}]", *(f"<{name}> ({number or 1})" for name, number in map(_numbered, objects))])
+
+
+def _numbered(name: str) -> tuple[str, str]:
+    words, _, last = name.strip().rpartition(" ")
+    return (words, last) if words and last.isdecimal() and int(last) else (name.strip(), "")

@@ -1,0 +1,194 @@
+"""Sentences: the steps that one line asks for, which may join several clauses, count things and speak of `it`."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.things import thing_of
+from hearth.kb.language.trailing import changes_act, shortened
+from hearth.kb.language.understanding import Candidate, Understood, understand, understand_exactly
+from hearth.schemas.program import Step
+
+_JOINTS = re.compile(
+    r"(?:\s*[,;])?\s+(?:and then|then|and)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])", re.IGNORECASE
+)
+_PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
+_THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
+_PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
+_CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
+_PERSON = "PERSON"
+REMEMBERED = 6
+"""Steps of which a pronoun may speak."""
+
+_NUMBERS = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+_COUNTS = {"both": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
+_COUNT = re.compile(rf"\b({'|'.join(_COUNTS)})\s+(?:of\s+)?(?:the\s+|my\s+|your\s+)?(?=[a-z])", re.IGNORECASE)
+_BETWEEN = re.compile(r"\b(?:in|on|into|onto|with|to|at|inside)\b", re.IGNORECASE)
+_LEFT_OUT = 3
+_CLAUSES = 12
+
+
+Mentioned = tuple[str, tuple[str, ...]]
+"""A step that was said before: its action and its things."""
+
+
+class Asked(NamedTuple):
+    """A step that a sentence asks for.
+
+    Attributes:
+        meant: the step.
+        instance: the number of its first thing; two forks are fork 1 and fork 2.
+        left_out: words of the sentence that are left out of the step.
+    """
+
+    meant: Candidate
+    instance: int = 1
+    left_out: str = ""
+
+    @property
+    def fuzzy(self) -> bool:
+        """Whether words were corrected or left out."""
+        return self.meant.score < 1 or bool(self.left_out)
+
+
+def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
+    """Return the steps that a line asks for; none where a clause of it is not understood.
+
+    Args:
+        known: the grammar.
+        words: the line.
+        said: the steps before, the last first, as `said_by` gives them.
+        fuzzy: how far from known words a clause may be; off takes exact readings only.
+    """
+    if not _PRONOUN.search(words) and (meant := understand_exactly(known, words).meant):
+        return (Asked(meant),)
+    words = " ".join(words.split()).rstrip(".!;,")
+    whole = _clause(known, words, said, Fuzzy.OFF)
+    if whole:
+        return whole
+    clauses = [clause for clause in _JOINTS.split(words) if clause]
+    if 1 < len(clauses) <= _CLAUSES and (joined := _joined(known, clauses, said, fuzzy)):
+        return joined
+    return _clause(known, words, said, fuzzy) if len(clauses) == 1 and fuzzy is not Fuzzy.OFF else ()
+
+
+def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> Understood:
+    """Return what a line as a whole is understood as, and the nearest steps as hints."""
+    return understand(known, next(_referred(known, words, said), words), fuzzy)
+
+
+def said_by(steps: Sequence[Step]) -> tuple[Mentioned, ...]:
+    """Return the last steps, the last first, as pronouns need them."""
+    return tuple((step.action, tuple(ref.name for ref in step.objects)) for step in reversed(steps[-REMEMBERED:]))
+
+
+def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
+    """The steps of clauses one after another; what shares a verb, as `grab a cup and a plate`, is read together."""
+    for size in range(1, len(clauses) + 1):
+        read = _clause(known, clauses[0], said, fuzzy) if size == 1 else _listed(known, clauses[:size], said)
+        if read and size == len(clauses):
+            return read
+        if read:
+            now = ((each.meant.action.name, each.meant.names) for each in reversed(read))
+            if rest := _joined(known, clauses[size:], (*now, *said), fuzzy):
+                return (*read, *rest)
+    return ()
+
+
+def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The steps of one verb for several things: `put the cup`, `the plate on the table`."""
+    first, last = parts[0].split(), parts[-1].split()
+    middle = [part for part in parts[1:-1] if thing_of(known, part.lower())]
+    if len(middle) != len(parts) - 2:
+        return ()
+    start = next((n for n in range(1, len(first)) if thing_of(known, " ".join(first[n:]).lower())), 0)
+    end = next((n for n in range(len(last), 0, -1) if _is_bare(known, " ".join(last[:n]).lower())), 0)
+    if not start or not end:
+        return ()
+    verb, tail = " ".join(first[:start]), " ".join(last[end:])
+    found: list[Asked] = []
+    for each in (" ".join(first[start:]), *middle, " ".join(last[:end])):
+        read = _clause(known, f"{verb} {each} {tail}".strip(), said, Fuzzy.OFF)
+        if not read:
+            return ()
+        found += read
+    return tuple(found)
+
+
+def _is_bare(known: Knowledge, words: str) -> bool:
+    """Whether words are a thing without the place where it is."""
+    return thing_of(known, words) is not None and not _BETWEEN.search(words)
+
+
+def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
+    """The steps of one clause: exact, else with trailing words left out, else with misspelled words corrected."""
+    if read := _exact(known, words, said):
+        return read
+    if fuzzy is Fuzzy.OFF or changes_act(words.lower()):
+        return ()
+    if read := _shortened(known, words.lower(), said, ""):
+        return read
+    for clause in _referred(known, words, said):
+        meant = understand(known, clause, Fuzzy.TYPOS).meant
+        if meant:
+            return (Asked(meant),)
+    return ()
+
+
+def _shortened(
+    known: Knowledge, words: str, said: Sequence[Mentioned], left_out: str, depth: int = 0
+) -> tuple[Asked, ...]:
+    for shorter, out in shortened(known, words):
+        without = f"{out} {left_out}".strip()
+        read = tuple(each._replace(left_out=without) for each in _exact(known, shorter, said))
+        if not read and depth + 1 < _LEFT_OUT:
+            read = _shortened(known, shorter, said, without, depth + 1)
+        if read:
+            return read
+    return ()
+
+
+def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
+    readings = [found for clause in _referred(known, words, said) if (found := understand_exactly(known, clause).meant)]
+    if len(readings) == 1:
+        return (Asked(readings[0]),)
+    if readings:
+        afforded = (each for each in readings if _affords(known, each))
+        return (Asked(next(afforded, readings[0])),)
+    count = _COUNT.search(words)
+    if count is None or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
+        return ()
+    meant = understand_exactly(known, f"{words[: count.start()]}{words[count.end() :]}").meant
+    if meant is None or not meant.names:
+        return ()
+    return tuple(Asked(meant, number) for number in range(1, _COUNTS[count[1].lower()] + 1))
+
+
+def _affords(known: Knowledge, meant: Candidate) -> bool:
+    return all(known.affords(meant.action.name, place, name) for place, name in enumerate(meant.names))
+
+
+def _referred(known: Knowledge, words: str, said: Sequence[Mentioned]) -> Iterator[str]:
+    """The sentence with each thing that its pronoun may stand for, the likeliest first; itself where it has none."""
+    if not _PRONOUN.search(words):
+        yield words
+        return
+    of_things, of_people = _THINGS.search(words), _PEOPLE.search(words)
+    things = _spoken_of(said, is_closed=bool(_CLOSING.match(words))) if of_things or of_people else ()
+    if not things:
+        yield words
+    for thing in things:
+        name = thing.replace("_", " ")
+        if of_things:
+            yield _THINGS.sub(name, words)
+        elif known.has(thing, _PERSON):
+            yield _PEOPLE.sub(name, words)
+
+
+def _spoken_of(said: Sequence[Mentioned], *, is_closed: bool) -> tuple[str, ...]:
+    """The things of steps, the last first; what was opened comes before others where something is closed."""
+    opened = [name for action, names in said if is_closed and action == "Open" for name in names]
+    return tuple(dict.fromkeys((*opened, *(name for _, names in said for name in names))))

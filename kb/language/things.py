@@ -1,0 +1,46 @@
+"""Things in words: the class that a noun phrase is, as `both plates`, `the fridge door`, `the milk in the fridge`."""
+
+import re
+from functools import lru_cache
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.lexicon import noun_lemmas
+
+_DETERMINERS = re.compile(r"(?:(?:the|a|an|some|my|your|his|her|our|their|its|this|that|these|those)\s+(?:of\s+)?)+")
+_PLACED = re.compile(
+    r"\s+(?:out of|out from|off of|off|from|inside of|inside|in|on top of|on|under|behind|next to|near|at)\s+"
+)
+_PARTS = re.compile(r"(?: door| doors| lid)$")
+_OPENED = "CAN_OPEN"
+
+
+@lru_cache(maxsize=65_536)
+def thing_of(known: Knowledge, words: str) -> str | None:
+    """Return the class that some words mean; None where they mean none.
+
+    The thing may be in the plural, after an article or a possessive, and before the known place where it is; the door
+    of what opens is the thing itself.
+    """
+    name = _named(known, words)
+    if name is not None:
+        return name
+    for place in _PLACED.finditer(words):
+        name = _named(known, words[: place.start()])
+        if name is not None and thing_of(known, words[place.end() :]) is not None:
+            return name
+    return None
+
+
+def _named(known: Knowledge, words: str) -> str | None:
+    bare = words[match.end() :] if (match := _DETERMINERS.match(words)) else words
+    for name in (words, bare, *_singular(bare)):
+        if name and (thing := known.object_class(name)):
+            return thing.name
+    whole = _PARTS.sub("", bare)
+    thing = known.object_class(whole) if whole != bare else None
+    return thing.name if thing and known.has(thing.name, _OPENED) else None
+
+
+def _singular(words: str) -> tuple[str, ...]:
+    before, space, last = words.rpartition(" ")
+    return tuple(before + space + lemma for lemma in noun_lemmas(last) if lemma != last)

@@ -1,0 +1,68 @@
+"""Trailing words: what may be left out of a clause without changing the act, in closed classes."""
+
+import re
+from collections.abc import Iterator
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.lexicon import is_verb
+from hearth.kb.language.things import thing_of
+
+ADVERBS = (
+    "again", "briefly", "calmly", "carefully", "completely", "easily", "firmly", "fully", "gently", "immediately",
+    "lightly", "now", "patiently", "properly", "quickly", "quietly", "safely", "securely", "slowly", "softly",
+    "thoroughly", "well",
+)  # fmt: skip
+"""Adverbs that say how a step is done, before the verb or at the end."""
+
+_MANNER = "|".join(ADVERBS)
+_NUMBER = r"(?:a|an|one|two|three|four|five|six|ten|fifteen|twenty|thirty|\d+|a few|several|some|a couple of|about \d+)"
+_UNIT = r"(?:second|minute|hour|moment|while|bit|time)s?"
+_ENDINGS = tuple(
+    re.compile(rf"\s+{ending}$")
+    for ending in (
+        rf"(?:{_MANNER})",
+        rf"for {_NUMBER} {_UNIT}",
+        r"for (?:breakfast|lunch|dinner|later|[a-z]+ing(?: .+)?)",
+        r"so (?:that )?(?:you|i|we|it|he|she|they) .+",
+    )
+)
+_BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
+_PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
+_TOOL = re.compile(r"\s+(?:with|using) (.+)$")
+_BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
+_WORKED = ("brush", "clean", "cut", "dry", "rinse", "scrub", "slice", "chop", "stir", "sweep", "wash", "wipe", "open")
+"""Verbs after which a tool may be left out; with others, as `cover` or `fill`, it is part of the act."""
+
+_CHANGES = re.compile(
+    r"\b(?:not|never|no|without|instead|rather|except|unless|until|if|but|only|avoid|stop|or|cannot|dont)\b|n['’]t\b"
+)
+
+
+def changes_act(text: str) -> bool:
+    """Return whether a word makes a sentence ask for something else, as `without` does; then nothing is left out."""
+    return bool(_CHANGES.search(text))
+
+
+def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
+    """Yield what is left of a clause, and what is left out: an adverb, a duration, a purpose or a tool.
+
+    Args:
+        known: the grammar.
+        text: a clause in small letters.
+    """
+    if changes_act(text):
+        return
+    if match := _BEGINNING.match(text):
+        yield text[match.end() :], match[0].strip()
+    for ending in _ENDINGS:
+        if match := ending.search(text):
+            yield text[: match.start()], match[0].strip()
+    for match in reversed(list(_PURPOSE.finditer(text))):
+        if is_verb(match[1]) and thing_of(known, text[match.end() :]) is None:
+            yield text[: match.start()], text[match.start() :].strip()
+    if (match := _TOOL.search(text)) and text.startswith(_WORKED) and _is_tool(known, match[1]):
+        yield text[: match.start()], match[0].strip()
+
+
+def _is_tool(known: Knowledge, words: str) -> bool:
+    return bool(_BY_HAND.fullmatch(words)) or thing_of(known, words) is not None or words.endswith("cloth")

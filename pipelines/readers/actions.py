@@ -1,0 +1,208 @@
+"""Steps as JSON objects: an action with its objects, a call of a tool, a mapping of actions to objects."""
+
+import ast
+import json
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+from hearth.kb.loading.load import default
+from hearth.pipelines.readers.located import Pairs, Text, composed, pairs_of, pieces_of
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.syntax import normal_name
+
+ACTIONS = ("action", "verb", "act", "function", "name")
+"""Keys of the action of a step, the likeliest first."""
+
+OBJECTS = frozenset({
+    "object", "objects", "obj", "object1", "object2", "target", "targets", "arg", "args", "arguments", "parameters",
+    "params", "item", "items", "receptacle", "location", "destination", "recipient", "room", "place", "to", "into",
+    "on", "from",
+})  # fmt: skip
+"""Keys of the objects of a step."""
+
+_NAME = re.compile(r"[A-Za-z][\w .'-]*")
+_ACTION = re.compile(r"[A-Z][A-Z_]+", re.ASCII)
+_FENCE = re.compile(r"\s*(?:```\w*[ \t]*\n?)?\s*(?=\{)")
+_OF_MAPPING = re.compile(r"""\s*(?:```\w*\s*)?\{\s*["'][A-Z][A-Z_]+["']\s*:\s*\[""")
+
+
+def is_action(value: Any) -> bool:
+    """Whether a value is an object with an action and perhaps objects, or a call of a tool.
+
+    A row of a dataset's steps, whose objects are objects with a name, is none.
+    """
+    if not isinstance(value, dict) or _action(value) is None:
+        return False
+    objects = value.get("objects")
+    return not (isinstance(objects, list) and all(isinstance(each, dict) for each in objects))
+
+
+def step_of(value: dict[str, Any]) -> str:
+    """The text of a step: as in programs if the action's name is known, else a sentence."""
+    call = value.get("function")
+    if isinstance(call, dict):
+        return _step(call["name"], _arguments(call.get("arguments")))
+    key = _action(value)
+    assert key is not None
+    return _step(value[key], [name for key in value if key.lower() in OBJECTS for name in _names(value[key])])
+
+
+def _action(value: dict[str, Any]) -> str | None:
+    call = value.get("function")
+    if isinstance(call, dict):
+        return "function" if isinstance(call.get("name"), str) else None
+    for key in ACTIONS:
+        if isinstance(value.get(key), str):
+            return key if key != "name" or not OBJECTS.isdisjoint(map(str.lower, value)) else None
+    return None
+
+
+def _arguments(given: Any) -> list[str]:
+    """The names among the arguments of a call, which are an object or its JSON."""
+    source = given
+    if isinstance(given, str):
+        try:
+            given = json.loads(given)
+        except (ValueError, RecursionError):
+            return []
+    found = list(_names(given))
+    return pieces_of(source, found) if isinstance(source, str) else found
+
+
+def _names(value: Any) -> Iterator[str]:
+    """The names in a value: itself, or those in a list or an object."""
+    if isinstance(value, str):
+        yield from [value] if value.strip() else []
+    elif isinstance(value, int) and not isinstance(value, bool):
+        yield str(value)
+    elif isinstance(value, list):
+        for part in value:
+            yield from _names(part) if isinstance(part, (str, int)) else ()
+    elif isinstance(value, dict):
+        for part in value.values():
+            yield from _names(part) if isinstance(part, (str, int)) else ()
+
+
+def _step(action: str, names: Sequence[str]) -> str:
+    if _known(action) and all(map(_NAME.fullmatch, names)):
+        return _written(action, [(name, "1") for name in names])
+    return composed(action, *(piece for name in names for piece in (" ", name)))
+
+
+def _known(action: str) -> bool:
+    return normal_name(action).replace("_", "") in {name.lower() for name in default().actions}
+
+
+def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:
+    pieces = ["[", action, "]"]
+    for name, number in objects:
+        pieces += [" <", name, f"> ({number})"]
+    return composed(*pieces)
+
+
+def is_mapping(value: Any) -> bool:
+    """Whether an object maps names of actions in capitals to lists of names and numbers, and knows one of them."""
+    pairs = pairs_of(value) if isinstance(value, dict) else []
+    if not pairs or not all(_ACTION.fullmatch(key) and _are_names(part) for key, part in pairs):
+        return False
+    return any(_known(key) for key, _ in pairs)
+
+
+def _are_names(value: Any) -> bool:
+    return isinstance(value, list) and len(value) <= 4 and all(_is_name(part) for part in value)
+
+
+def _is_name(value: Any) -> bool:
+    if isinstance(value, str):
+        return value.isdecimal() or (_NAME.fullmatch(value) is not None)
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def steps_of_mapping(value: dict[str, Any], source: str = "") -> list[str]:
+    """The steps of a mapping, in the order of the file. A number after a name is the node of it.
+
+    Args:
+        value: as `is_mapping` takes it.
+        source: the text in which it stands, if it is one within the file.
+    """
+    nodes: dict[str, list[str]] = {}
+    found = []
+    names = [part for key, parts in pairs_of(value) for part in (key, *map(_as_is, parts))]
+    placed = iter(pieces_of(source, names) if source else names)
+    for _, parts in pairs_of(value):
+        action, objects = next(placed), []
+        for name in [next(placed) for _ in parts]:
+            if not name.isdecimal():
+                objects.append((name, "1"))
+            elif objects:
+                known = nodes.setdefault(objects[-1][0], [])
+                known += [] if name in known else [str(name)]
+                objects[-1] = (objects[-1][0], f"{known.index(name) + 1}.{name}")
+        found.append(_written(action, objects))
+    return found
+
+
+def _as_is(value: Any) -> str:
+    return value if isinstance(value, str) else str(value)
+
+
+def looks_like_mapping(text: str) -> bool:
+    """Whether a text begins a mapping of actions, perhaps in a code fence."""
+    return _OF_MAPPING.match(text) is not None
+
+
+def mapping_in(text: str) -> dict[str, Any] | None:
+    """The mapping of a text, as JSON or as Python writes it; None if it is cut off or is something else."""
+    start = _FENCE.match(text)
+    end = text.rfind("}") + 1
+    inner = text[start.end() : end] if start else ""
+    if text[end:].strip() not in ("", "```"):
+        return None
+    try:
+        found = json.loads(inner, object_pairs_hook=Pairs)
+    except (ValueError, RecursionError):
+        found = _of_python(inner)
+    return found if isinstance(found, dict) and is_mapping(found) else None
+
+
+def mapped_steps(text: str) -> list[str]:
+    """The steps of a mapping in a text.
+
+    Raises:
+        HearthError: BAD_JSON, it is cut off or is something else.
+    """
+    found = mapping_in(text)
+    if found is None:
+        line, column = (text.line, text.column) if isinstance(text, Text) else (0, 0)
+        message, remedy = "an answer that is cut off, or that maps actions to no objects", "give it whole"
+        shown = text.partition("\n")[0][:60]
+        raise HearthError(Diagnostic(Code.BAD_JSON, message, "", line, column, len(shown), shown, remedy))
+    return steps_of_mapping(found, text)
+
+
+def _of_python(text: str) -> Any:
+    """A dict of constants as Python writes it, with repeated keys."""
+    try:
+        tree = ast.parse(text, mode="eval").body
+        if isinstance(tree, ast.Dict):
+            pairs = zip(tree.keys, tree.values, strict=True)
+            return Pairs([(ast.literal_eval(key), ast.literal_eval(value)) for key, value in pairs if key])
+    except (SyntaxError, ValueError, RecursionError, MemoryError, TypeError):
+        pass
+    return None
+
+
+_OF_PLANNER = re.compile(r"\(?\s*[a-z]+(?:_[a-z]+)*(?: \S+)* (?:character|agent_n_\d+_\d+)(?: \S+)*\s*\)?")
+_ACTION_NAME = re.compile(r"[a-z]+(?:_[a-z]+)*")
+
+
+def of_planner(plans: Iterable[Any]) -> bool:
+    """Whether lists are all actions of a planner, as `walk_towards character shower`, or names of such actions."""
+    steps = [step for plan in plans if isinstance(plan, list) for step in plan]
+    if not steps or not all(isinstance(step, str) for step in steps):
+        return False
+    if all(map(_OF_PLANNER.fullmatch, steps)):
+        return True
+    return any("_" in step for step in steps) and all(map(_ACTION_NAME.fullmatch, steps))
