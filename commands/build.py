@@ -262,13 +262,11 @@ def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _print(found: Funnel, out: Path, *, whole: bool) -> None:
-    from hearth.pipelines.engine.stages import RECORDS
-
     rows = [
         (
             name,
             *(counts.records_in, counts.through, counts.rejected, counts.partial, counts.rows.total()),
-            RECORDS[name],
+            found.records[name],
             _reasons(counts.codes),
         )
         for name, counts in found.stages.items()

@@ -33,7 +33,7 @@ def export(
     from hearth.datasets.export.formats import export as exported
 
     if not form:
-        raise typer.BadParameter(f"which form? One of {', '.join(FORMATS)}", param_hint="--format")
+        raise typer.BadParameter(f"choose a form: {', '.join(FORMATS)}", param_hint="--format")
     number = exported(Dataset.open(dataset, failures), form, out, Wanted(tuple(program or ()), limit))
     text = f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}"
     output.say(text, {"format": form, "out": out, "count": number}, as_json)

@@ -125,7 +125,7 @@ def _rich_table(columns: Sequence[str], rows: list[list[str]], numeric: list[boo
 
 
 def _text(cell: Any) -> str:
-    if cell is None:
+    if cell is None or (isinstance(cell, float) and isnan(cell)):
         return ""
     if isinstance(cell, bool):
         return "yes" if cell else "no"

@@ -48,5 +48,5 @@ COMMENT ON MACRO TABLE graph_edges IS 'The edges of an execution, by its id, aft
 COMMENT ON MACRO TABLE graph_nodes IS 'The nodes of an execution, by its id, after a number of ticks (0: its start; NULL: its end), with their states: id, class_name, category, properties, states.';
 COMMENT ON MACRO TABLE final_state IS 'The states of all nodes at the end of an execution, by its id, a row each: id, class_name, state.';
 COMMENT ON VIEW start_relations IS 'Number of edges by relation over the initial graphs of all executions.';
-COMMENT ON COLUMN start_relations.relation IS 'ON, INSIDE, CLOSE, ...';
+COMMENT ON COLUMN start_relations.relation IS 'ON, INSIDE, CLOSE, FACING, BETWEEN, HOLDS_RH or HOLDS_LH';
 COMMENT ON COLUMN start_relations.edges IS 'how many edges';

@@ -189,7 +189,7 @@ class _StepParser:
 
     def _fault(self, near: tuple[Candidate, ...], ambiguous: bool, line: str, words: str, number: int) -> Diagnostic:
         code = Code.AMBIGUOUS if ambiguous else Code.NOT_UNDERSTOOD
-        message = "words that may mean several things" if ambiguous else "words that mean no step"
+        message = "words that may mean several things" if ambiguous else "could not read this line as a step"
         near_phrases = " or ".join(f"`{phrase(each)}` ({each.score:.2f})" for each in near)
         otherwise = "write one step a line, as in `Walk to kitchen`"
         remedy = f"did you mean {near_phrases}?" if near_phrases else otherwise

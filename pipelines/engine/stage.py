@@ -28,6 +28,10 @@ from hearth.storage.partitions import Counts, PartWriter, read_rows
 from hearth.storage.rejects import Reject, as_text
 
 Plan = dict[str, Any]
+
+NOTE = "note"
+"""Entry of a plan: what is left out of the records without being a reject; the ledger has it."""
+
 Output = Row | Reject | tuple[str, Row]
 
 BATCH = 64
@@ -191,9 +195,12 @@ def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
 
 def records_of(job: Job, partition: Partition) -> Iterable[Any]:
     """The records of a partition, as the stage has them."""
+    return (job.stage.records or rows_of)(job, partition)
+
+
+def rows_of(job: Job, partition: Partition) -> Iterator[Any]:
+    """The rows of a partition that the stage selects."""
     stage = job.stage
-    if stage.records is not None:
-        return stage.records(job, partition)
     columns = list(stage.columns) if stage.columns is not None else None
     rows: Iterable[Any] = chain.from_iterable(read_rows(Path(path), columns) for path in partition.payload)
     if partition.rows is not None:
