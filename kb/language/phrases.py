@@ -23,7 +23,7 @@ def parses(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """
     cleaned = " ".join(text.strip().rstrip(".!").lower().split())
     found: list[tuple[int, int, Parse]] = []
-    for rank, (pattern, action) in enumerate(_patterns(knowledge)):
+    for rank, pattern, action in _patterns(knowledge).get(cleaned.partition(" ")[0], ()):
         match = pattern.fullmatch(cleaned)
         if match:
             names = tuple(_named(knowledge, name) for name in match.groups())
@@ -39,8 +39,11 @@ def _named(knowledge: Knowledge, words: str) -> str:
 
 
 @lru_cache(maxsize=8)
-def _patterns(knowledge: Knowledge) -> tuple[tuple[re.Pattern[str], Action], ...]:
-    """A pattern for each paraphrase of each action, templates before other words, longer ones first."""
+def _patterns(knowledge: Knowledge) -> dict[str, tuple[tuple[int, re.Pattern[str], Action], ...]]:
+    """The paraphrases of all actions by their first words: rank, pattern, action.
+
+    Templates come before other words, longer ones first.
+    """
     templates: list[tuple[bool, int, str, Action]] = []
     for action in knowledge.actions.values():
         head, _, tail = action.template.lower().partition(" {0}")
@@ -48,8 +51,10 @@ def _patterns(knowledge: Knowledge) -> tuple[tuple[re.Pattern[str], Action], ...
         for words in action.words:
             joined = f"{words} {{0}}{tail}" if action.arity else words
             templates.append((words != head, -len(joined), joined, action))
-    templates.sort(key=lambda each: each[:3])
-    return tuple((_pattern(template), action) for _, _, template, action in templates)
+    found: dict[str, list[tuple[int, re.Pattern[str], Action]]] = {}
+    for rank, (_, _, template, action) in enumerate(sorted(templates, key=lambda each: each[:3])):
+        found.setdefault(template.partition(" ")[0], []).append((rank, _pattern(template), action))
+    return {first: tuple(alike) for first, alike in found.items()}
 
 
 def _pattern(template: str) -> re.Pattern[str]:
