@@ -125,9 +125,7 @@ def _clauses(words: str) -> list[str]:
 
 def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> Understood:
     """Return what a line as a whole is understood as, and the nearest steps as hints."""
-    near = understand(known, next(_referred(known, words, said), words), fuzzy)
-    is_unlikely = near.meant and _PRONOUN.search(words) and not _affords(known, near.meant)
-    return Understood(None, ()) if is_unlikely else near
+    return understand(known, next(_referred(known, words, said), words), fuzzy)
 
 
 def said_by(steps: Sequence[Step]) -> tuple[Mentioned, ...]:
@@ -211,7 +209,8 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
     if len(readings) == 1:
         return (Asked(readings[0]),)
     if readings:
-        return next(((Asked(each),) for each in readings if _affords(known, each)), ())
+        afforded = (each for each in readings if _affords(known, each))
+        return (Asked(next(afforded, readings[0])),)
     count = _COUNT.search(words)
     if count is None or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
         return ()

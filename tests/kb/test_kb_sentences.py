@@ -249,10 +249,6 @@ def test_glasses_that_are_counted_or_said_before_are_to_drink_from(knowledge):
     assert read(knowledge, "Grab a cup", "Put on the glasses")[0][1:] == ["[PutOn] <spectacles> (1)"]
 
 
-def test_it_is_a_thing_that_affords_the_act_or_nothing(knowledge):
-    assert read(knowledge, "Walk to the bedroom", "Walk to the bed", "drink it")[0][2:] == []
-
-
 def test_a_hint_has_the_verb_or_a_thing_of_the_sentence(knowledge):
     for sentence in (
         "Bake the bread",
