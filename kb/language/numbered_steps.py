@@ -1,6 +1,7 @@
 """Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb import grammar
@@ -157,7 +158,8 @@ class _StepParser:
 
     def _take_asked(self, asked: Asked, raw: str, words: str, number: int) -> None:
         self._add(asked, number)
-        self.warnings += [self._fuzzy(asked, raw, words, number)] if asked.fuzzy else []
+        if asked.fuzzy:
+            self.warnings.append(self._fuzzy(asked, raw, words, number))
 
     def _asked(self, shorter: str, said: tuple[Mentioned, ...]) -> tuple[Asked, ...]:
         """The steps of a line before its explanation, which is left out."""
@@ -199,9 +201,7 @@ class _StepParser:
 
     def _add(self, asked: Asked, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        # Only the first thing is counted.
-        refs = tuple([ObjectRef(name, 1 if place else asked.instance) for place, name in enumerate(names)])
-        self.steps.append(Step(action, refs))
+        self.steps.append(_step(action, names, asked.instance))
         self.lines.append(number)
         self._said = ((action, names), *self._said[: REMEMBERED - 1])
 
@@ -223,6 +223,12 @@ class _StepParser:
         at = line.find(words)
         column = max(at if at >= 0 else line.find(words.split(maxsplit=1)[0]), 0) + 1
         return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, line[:200])
+
+
+@lru_cache(maxsize=65_536)
+def _step(action: str, names: tuple[str, ...], instance: int) -> Step:
+    """A step whose first thing is counted."""
+    return Step(action, tuple(ObjectRef(name, 1 if place else instance) for place, name in enumerate(names)))
 
 
 def phrase(candidate: Candidate) -> str:

@@ -4,14 +4,14 @@ import re
 
 _SUBJECT = r"(?:i|you|he|she|we|they|(?:the|a|our|my|your) (?:robot|agent|person|user|character|human)|one)"
 _DUTY = (
-    r"(?:should|shall|must|will|would|needs? to|needed to|ha(?:s|ve|d) to|wants? to|ought to"
+    r"(?:should|shall|must|will|would|(?:need|needs|needed) to|ha(?:s|ve|d) to|wants? to|ought to"
     r"|(?:am|is|are|was|were) (?:going|supposed|asked) to)"
 )
 _TENSE = r"(?:am|is|are|was|were)(?= [a-z]+ing\b)|(?:has|have|had)(?! (?:a|an|the|some|my|your|his|her|it)\b)"
 _OPENINGS = (
     r"(?:(?:i|we) would|(?:i|we)['’]d) like (?:you )?to|(?:i |we )?want you to",
     r"(?:could|can|would|will) you",
-    rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?(?: (?:then|now|also|next|first))?(?: (?:{_DUTY}|{_TENSE}))?",
+    rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?(?: (?:then|now|also|next|first))?(?: (?:{_DUTY}|{_TENSE})){{0,2}}(?: also| then| next| now)?",
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
     r"go ahead and|make sure to|be sure to|remember to|(?:start|begin) (?:off )?by|your (?:next )?(?:job|task) is to",
     r"(?:first|second|third|fourth|fifth|sixth|last|final)(?:ly)?(?: of all)?\s*[,:]",

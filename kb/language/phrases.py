@@ -23,8 +23,8 @@ def parses(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """
     cleaned = " ".join(text.strip().rstrip(".!").lower().split())
     found: list[tuple[int, int, Parse]] = []
-    for rank, pattern, action in _patterns(knowledge).get(cleaned.partition(" ")[0], ()):
-        match = pattern.fullmatch(cleaned)
+    for rank, template, action in _templates(knowledge).get(cleaned.partition(" ")[0], ()):
+        match = _pattern(template).fullmatch(cleaned)
         if match:
             names = tuple(_named(knowledge, name) for name in match.groups())
             unknown = sum(knowledge.object_class(name) is None for name in names)
@@ -39,8 +39,8 @@ def _named(knowledge: Knowledge, words: str) -> str:
 
 
 @lru_cache(maxsize=8)
-def _patterns(knowledge: Knowledge) -> dict[str, tuple[tuple[int, re.Pattern[str], Action], ...]]:
-    """The paraphrases of all actions by their first words: rank, pattern, action.
+def _templates(knowledge: Knowledge) -> dict[str, tuple[tuple[int, str, Action], ...]]:
+    """The paraphrases of all actions by their first words: rank, template, action.
 
     Templates come before other words, longer ones first.
     """
@@ -51,12 +51,13 @@ def _patterns(knowledge: Knowledge) -> dict[str, tuple[tuple[int, re.Pattern[str
         for words in action.words:
             joined = f"{words} {{0}}{tail}" if action.arity else words
             templates.append((words != head, -len(joined), joined, action))
-    found: dict[str, list[tuple[int, re.Pattern[str], Action]]] = {}
+    found: dict[str, list[tuple[int, str, Action]]] = {}
     for rank, (_, _, template, action) in enumerate(sorted(templates, key=lambda each: each[:3])):
-        found.setdefault(template.partition(" ")[0], []).append((rank, _pattern(template), action))
+        found.setdefault(template.partition(" ")[0], []).append((rank, template, action))
     return {first: tuple(alike) for first, alike in found.items()}
 
 
+@lru_cache(maxsize=1024)
 def _pattern(template: str) -> re.Pattern[str]:
     parts = re.split(r"\{\d\}", template)
     return re.compile("(?:the |a |an |some |my )?(.+?)".join(re.escape(part) for part in parts))

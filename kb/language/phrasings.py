@@ -46,9 +46,8 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("spread smear rub", r"(.+) (?:onto|over) (.+)", "spread {0} on {1}"),
     ("squeeze squirt apply", r"(.+) (?:on|onto|to) (.+)", "spread {0} on {1}"),
     ("take have", r"(?:a|your|my) seat (?:on|in|at) (.+)", "sit on {0}"),
-    ("sit", r"(?:back )?(?:down )?(?:on|onto|upon|in|at|by) (.+)", "sit on {0}"),
+    ("sit", r"(?:back )?(?:down )?(?:on|onto|upon|in|at) (.+)", "sit on {0}"),
     ("lie lay", r"(?:back |down )*(?:on|onto|upon|in|into) (.+)", "lie on {0}"),
-    ("get stand rise", r"up from (.+)", "stand up"),
     ("get stand", r"(?:back )?up", "stand up"),
     ("take have", r"(?:another |a )(?:quick |big |small |long )?(?:look at|glance at) (.+)", "look at {0}"),
     ("look", r"(?:in|into|out of|out|through|inside|over|down at|up at) (.+)", "look at {0}"),
@@ -71,6 +70,7 @@ def _by_verb() -> dict[str, tuple[tuple[re.Pattern[str], str], ...]]:
 
 
 _PHRASINGS = _by_verb()
+_RISING = ("get", "stand", "rise")
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE = "SURFACES"
 
@@ -97,5 +97,7 @@ def _placed(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
     """Yield the phrasings that depend on the place in them: a room is entered, what has a top has things put on it."""
     if verb == "enter" and (room := thing_of(known, rest)) and known.is_room(room):
         yield f"walk to {rest}"
+    if verb in _RISING and rest.startswith("up from ") and thing_of(known, rest.removeprefix("up from ")):
+        yield "stand up"
     if verb in _CARRYING.split() and (match := _BROUGHT.fullmatch(rest)) and (place := thing_of(known, match[2])):
         yield f"put {match[1]} {'on' if known.has(place, _SURFACE) else 'in'} {match[2]}"

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
@@ -20,6 +21,7 @@ _JOINTS = re.compile(
 _PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
 _THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 _PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
+_PLURAL = re.compile(r"\b[a-z]+es\b")
 _CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
 _PERSON = "PERSON"
 REMEMBERED = 6
@@ -65,10 +67,9 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
         said: the steps before, the last first, as `said_by` gives them.
         fuzzy: how far from known words a clause may be; off takes exact readings only.
     """
-    words = _plurals_of_said(known, words, said)
-    if not _PRONOUN.search(words) and (meant := understand_exactly(known, words).meant):
-        return (Asked(meant),)
-    words = verb_phrase(" ".join(words.split()))
+    if plain := _plain(known, words):
+        return plain
+    words = verb_phrase(" ".join(_plurals_of_said(known, words, said).split()))
     whole = _clause(known, words, said, Fuzzy.OFF)
     if whole:
         return whole
@@ -78,13 +79,32 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
     return _clause(known, words, said, fuzzy) if len(clauses) == 1 and fuzzy is not Fuzzy.OFF else ()
 
 
+@lru_cache(maxsize=65_536)
+def _plain(known: Knowledge, words: str) -> tuple[Asked, ...]:
+    """The step of a line that reads exactly, whatever was said before: without pronoun and without double plural."""
+    if _PRONOUN.search(words) or _double_plurals(known, words):
+        return ()
+    meant = understand_exactly(known, words).meant
+    return (Asked(meant),) if meant else ()
+
+
 def _plurals_of_said(known: Knowledge, words: str, said: Sequence[Mentioned]) -> str:
     """A line in which a plural that has a meaning of its own is many of a thing said before, as two `glasses` are."""
-    for plural in re.findall(r"\b[a-z]+es\b", words.lower()) if said else ():
-        own, many = (known.object_class(word) for word in (plural, plural.removesuffix("es")))
-        if own and many and own.name != many.name and _is_said(many.name, said) and not _is_said(own.name, said):
-            words = re.sub(rf"\b{plural}\b", plural.removesuffix("es"), words, flags=re.IGNORECASE)
+    for plural, own, singular, many in _double_plurals(known, words) if said else ():
+        if _is_said(many, said) and not _is_said(own, said):
+            words = re.sub(rf"\b{plural}\b", singular, words, flags=re.IGNORECASE)
     return words
+
+
+def _double_plurals(known: Knowledge, words: str) -> list[tuple[str, str, str, str]]:
+    """The plurals in a line that are classes of their own, with their class, their singular, and its class."""
+    found = []
+    for plural in _PLURAL.findall(words.lower()):
+        singular = plural.removesuffix("es")
+        own, many = known.object_class(plural), known.object_class(singular)
+        if own and many and own.name != many.name:
+            found.append((plural, own.name, singular, many.name))
+    return found
 
 
 def _is_said(name: str, said: Sequence[Mentioned]) -> bool:
@@ -212,7 +232,7 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
         afforded = (each for each in readings if _affords(known, each))
         return (Asked(next(afforded, readings[0])),)
     count = _COUNT.search(words)
-    if count is None or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
+    if not count or not count.start() or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
         return ()
     meant = _of_one(known, words[: count.start()], words[count.end() :])
     if meant is None or not meant.names:

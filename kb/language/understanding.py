@@ -103,15 +103,17 @@ def _exact_otherwise(knowledge: Knowledge, text: str) -> Understood:
 def _readings(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first.
 
-    Where no wording is of things that afford the act, the first counts, as in exact readings.
+    Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings.
     """
     unlikely: tuple[Parse, ...] = ()
+    first = text.partition(" ")[0]
+    verbs = (first, *verb_lemmas(first))
     for phrasing in (text, *phrasings(knowledge, text)):
         found = (_with_things(knowledge, parse) for parse in _acts(knowledge, phrasing))
         read = tuple(dict.fromkeys(parse for parse in found if parse))
         if any(_afforded(knowledge, parse) for parse in read):
             return read
-        unlikely = unlikely or read
+        unlikely = unlikely or (read if phrasing.partition(" ")[0] in verbs else ())
     return unlikely[:1]
 
 
