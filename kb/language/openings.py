@@ -8,10 +8,11 @@ _DUTY = (
     r"|(?:am|is|are|was|were) (?:going|supposed|asked) to)"
 )
 _TENSE = r"(?:am|is|are|was|were)(?= [a-z]+ing\b)|(?:has|have|had)(?! (?:a|an|the|some|my|your|his|her|it)\b)"
+_ORDER = "(?: (?:then|now|also|next|first))?"
 _OPENINGS = (
     r"(?:(?:i|we) would|(?:i|we)['’]d) like (?:you )?to|(?:i |we )?want you to",
     r"(?:could|can|would|will) you",
-    rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?(?: (?:then|now|also|next|first))?(?: (?:{_DUTY}|{_TENSE})){{0,2}}(?: also| then| next| now)?",
+    rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?{_ORDER}(?: (?:{_DUTY}|{_TENSE})){{0,2}}{_ORDER}",
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
     r"go ahead and|make sure to|be sure to|remember to|(?:start|begin) (?:off )?by|your (?:next )?(?:job|task) is to",
     r"(?:first|second|third|fourth|fifth|sixth|last|final)(?:ly)?(?: of all)?\s*[,:]",

@@ -190,7 +190,8 @@ def test_what_is_left_out_is_counted(knowledge, sentence, step, out):
     ["He opens the fridge", "You should open the fridge", "The robot opens the fridge.", "You need to open the fridge",
      "Could you please open the fridge?", "I'd like you to open the fridge", "Let me open the fridge",
      "she is opening the fridge", "I have opened the fridge", "Lastly, open the fridge", "Second, open the fridge",
-     "Would you open the fridge, please?", "They will then open the fridge", "You will need to open the fridge", "the person opened the fridge"],
+     "Would you open the fridge, please?", "They will then open the fridge", "You will need to open the fridge",
+     "the person opened the fridge"],
 )  # fmt: skip
 def test_subjects_duties_and_courtesies_ask_for_the_same(knowledge, sentence):
     lines, found = read(knowledge, sentence, fuzzy=Fuzzy.OFF)
