@@ -277,7 +277,7 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
     for place, columns in found.columns.items():
         print(output.shown(shown(place, columns)))
     if fuzzy := found.fuzzy:
-        print(f"Read with words corrected or left out: {output.counted(fuzzy, 'program')}; `--strict` refuses them.")
+        print(f"Read with words corrected or left out: {output.counted(fuzzy, 'step')}; `--strict` refuses them.")
     for line in found.unread:
         print(output.shown(f"Not read: {line}"))
     head = ("records in", "passed", "rejected", "parts rejected", "rows out", "records are", "reasons")

@@ -268,10 +268,10 @@ def prepare(settings: Settings) -> Plan:
     return plan
 
 
-def _label(row: Row) -> str | None:
+def _labels(row: Row) -> tuple[str, ...]:
     if "repairs" not in row:
-        return None
-    return f"{len(row['repairs'])} repairs" if row["origin"] == "augmented" else ORIGINAL
+        return ()
+    return (f"{len(row['repairs'])} repairs" if row["origin"] == "augmented" else ORIGINAL,)
 
 
 STAGE = Stage(
@@ -286,5 +286,5 @@ STAGE = Stage(
     facts=overlays_used,
     select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),
     identify=lambda record: str(record["execution_id"]),
-    label=_label,
+    labels=_labels,
 )

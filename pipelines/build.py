@@ -60,7 +60,7 @@ class Funnel:
 
     @property
     def fuzzy(self) -> int:
-        """Programs with a step that was corrected or shortened."""
+        """Steps that were corrected or shortened."""
         return self.stages["validate"].tally["fuzzy"] if "validate" in self.stages else 0
 
     __repr__ = brief

@@ -206,4 +206,4 @@ class LedgerRow(TypedDict):
     partial_rejects: Annotated[Long, "parts refused of records that went on"]
     rows: Annotated[Long, "rows written"]
     codes: Annotated[list[CodeRow], "why records were refused, commonest first"]
-    fuzzy: Annotated[Long, "programs with a step that was read as a typo, or of which words were left out"]
+    fuzzy: Annotated[Long, "steps that were read as a typo, or of which words were left out"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import errno
 import importlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, islice
@@ -78,7 +78,7 @@ class Stage:
         identify: the id of a record.
         columns: columns of the input to read; None for all.
         batch: the number of records whose rows are converted to Arrow together.
-        label: a label by which rows are counted, or None.
+        labels: the labels under which a row is counted, once for each.
         finish: writes the tables that need all partitions, before the manifest.
         facts: further entries of the manifest.
         time_factor: multiplies the time limit of a record.
@@ -104,7 +104,7 @@ class Stage:
     identify: Callable[[Any], str] = lambda record: str(record["program_id"])
     columns: tuple[str, ...] | None = None
     batch: Callable[[Partition], int] = lambda partition: BATCH
-    label: Callable[[Any], str | None] = lambda row: None
+    labels: Callable[[Any], Sequence[str]] = lambda row: ()
     finish: Callable[[Job, Counts], None] | None = None
     facts: Callable[[Job], dict[str, Any]] = lambda job: {}
     time_factor: int = 1
@@ -306,7 +306,7 @@ class _Sink:
         if not outputs:
             raise AssertionError("this record gave neither rows nor a reject")
         faults = [fault for reject in rejects for fault in reject.rows()]
-        labels = [label for _, row in rows if (label := self.stage.label(row)) is not None]
+        labels = [label for _, row in rows for label in self.stage.labels(row)]
         return _Outcome(rows, len(rejects), faults, rejects[0].code if rejects else "", labels)
 
     def _refused(self, error: Exception) -> _Outcome:
