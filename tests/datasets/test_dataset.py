@@ -264,7 +264,7 @@ def test_what_replaces_an_open_dataset_is_looked_at_as_well(made, tmp_path, mani
     folder = shutil.copytree(made.out / "publish", tmp_path / "copy")
     dataset = Dataset.open(folder)
     assert dataset.rows("SELECT 1")[1] == [(1,)]
-    newer = (folder / "manifest.json").read_text().replace('"format": 2', '"format": 99')
+    newer = (folder / "manifest.json").read_text().replace('"format": 3', '"format": 99')
     (folder / "other.json").write_text(manifest or newer)
     (folder / "other.json").replace(folder / "manifest.json")
     with pytest.raises(HearthError, match=message):
@@ -275,7 +275,7 @@ def test_no_dataset_and_a_newer_one(made, tmp_path):
     with pytest.raises(HearthError, match="no dataset here"):
         hearth.load(tmp_path)
     folder = shutil.copytree(made.out / "publish", tmp_path / "newer")
-    text = (folder / "manifest.json").read_text().replace('"format": 2', '"format": 99')
+    text = (folder / "manifest.json").read_text().replace('"format": 3', '"format": 99')
     (folder / "manifest.json").write_text(text)
     with pytest.raises(HearthError, match="format 99"):
         hearth.load(folder)

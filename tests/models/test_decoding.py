@@ -45,7 +45,7 @@ def test_random_scores_write_programs_that_parse_and_run(environments, actions, 
     assert len(programs) == 200
     for world, steps in zip(environments, programs, strict=True):
         assert not steps or parsability(steps, knowledge).parsable
-        assert executability(steps, world).executable
+        assert not steps or executability(steps, world).executable
     if order != WHOLE:
         assert all(programs)
         assert len({step.action for steps in programs for step in steps}) > 15
