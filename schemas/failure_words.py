@@ -179,6 +179,7 @@ WHY: Mapping[Code, Words] = {
     Code.NOT_UNDERSTOOD: "this could not be read as a step",
     Code.AMBIGUOUS: "this can be read in several ways",
     Code.FUZZY_MATCH: "this was read as something similar",
+    Code.NO_STEP: "this line was left out: it is not numbered as the steps are",
     # Objects of an action
     Code.NOT_AFFORDED: "[{action}] does not work with the {0}: its object must be {expected}",
     Code.NOT_SIMULATED: "[{action}] can be written, but the simulator does not execute it",
@@ -254,6 +255,7 @@ WHY: Mapping[Code, Words] = {
     Code.NO_SESSION: "there is no session",
     Code.TOO_FAST: "this came too soon after the last",
     Code.OUT_OF_ORDER: "this came out of order",
+    Code.FINISHED: "the person ended it",
 }
 """Why something failed, in words, for every code."""
 
