@@ -66,7 +66,8 @@ def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) 
     message = str(error).split("\n\n", 1)[0]
     if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
         return unreadable(error, folder)
-    if found := _UNKNOWN.search(message.split("\n", 1)[0].rstrip("!")):
+    unbound = type(error).__name__ in ("BinderException", "CatalogException")
+    if unbound and (found := _UNKNOWN.search(message.split("\n", 1)[0].rstrip("!"))):
         return _unknown(found["column"] or found["name"], (found["kind"] or "column").split()[-1].lower(), names)
     return HearthError.of(Code.SYNTAX, message)
 
