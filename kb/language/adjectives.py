@@ -35,8 +35,8 @@ _FOUND = re.compile(rf"(?<= )(?:very |really |quite )?({_ADJECTIVES}|{_ROOMS}),?
 def without_adjective(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     """Yield a clause without one of its adjectives, and the adjective.
 
-    An adjective that makes another noun of the one behind it stays: a `hot dog` is no dog, a `white board` no board,
-    because they are words when they are run together, or names of classes.
+    An adjective that makes another noun of the next one stays: a `hot dog` is not a dog, nor a `white board` a board,
+    because they are words when run together, or names of classes.
     """
     for found in _FOUND.finditer(text):
         adjective, noun = found[1], found[2]

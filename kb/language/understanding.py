@@ -147,7 +147,7 @@ def _without_typos(knowledge: Knowledge, text: str) -> Understood:
 
 
 def _related(knowledge: Knowledge, text: str, near: Candidate) -> bool:
-    """Return whether a sentence has the verb of a step or one of its things; a step with other words is no hint."""
+    """Return whether a sentence has the verb of a step or one of its things; a step with other words is not a hint."""
     said = (near.action.template, *near.action.words)
     verbs = {words.lower().partition(" ")[0] for words in said}
     first = text.partition(" ")[0]
