@@ -12,8 +12,8 @@ from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
-from hearth.kb.language.unmarked_lines import clauses, is_order
 from hearth.kb.language.understanding import Candidate
+from hearth.kb.language.unmarked_lines import clauses, is_order
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -132,7 +132,7 @@ class _StepParser:
             self._note(line, raw, number)
 
     def _note(self, line: PlanLine, raw: str, number: int) -> None:
-        """Count a line that is no step, unless it is a heading, or what a chat says around a plan."""
+        """Count a line that explains, unless it is a heading, or what a chat says around a plan."""
         if not is_said_around(line.text) and not line.text.endswith(":"):
             self._notes.append((line.text, raw, number))
 
