@@ -71,7 +71,8 @@ def lines_of_program(text: str) -> list[ProgramLine]:
 
 
 PLAIN = re.compile(
-    r"(?![^\n]*[<|])(?!\s*+[#*+>-]++\W*+\d)[^\n]*(?:\n(?:[Ss]tep )?+\d{1,4}[.:)] ++[A-Za-z][a-z][A-Za-z ,.'-]*+(?<!\bcharacter))++\n*+"
+    r"(?![^\n]*[<|])(?!\s*+[#*+>-]++\W*+\d)[^\n]*"
+    r"(?:\n(?:[Ss]tep )?+\d{1,4}[.:)] ++[A-Za-z][a-z][A-Za-z ,.'-]*+(?<!\bcharacter))++\n*+"
 )
 """A line above numbered steps of plain words, as most plans are: no form has to be tried."""
 
