@@ -7,8 +7,8 @@ STEP = re.compile(r"\s*[\[<(|]")
 """How a line begins that is, or tries to be, a step."""
 
 TITLE = re.compile(
-    r"\s*(?:(?:task|title|activity|goal|plan|your task is to)(?:\s*[#№]?\d{1,6})?\s*:"
-    r"|task\s*[#№]?\d{1,6}\s*[.)–—-])\s*",
+    r"\s*(?:(?:task|title|activity|goal|plan|your task is to)(?:\s+name)?(?:\s*[#№]?\d{1,6})?\s*[:=](?!=)"
+    r"|task\s+[–—-]\s|(?:task|plan)\s*[#№]?\d{1,6}\s*$|task\s*[#№]?\d{1,6}\s*[.)–—-])\s*",
     re.IGNORECASE,
 )
 """The optional beginning of a title's line: `Task:`, `Task 12:`, `Task 12 -`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from hearth.kb.language.plan_lines import plan_line, unexplained
-from hearth.kb.language.program_lines import Kind, ProgramLine, is_plan, lines_of_program
+from hearth.kb.language.program_lines import Kind, ProgramLine, is_plan, is_unmarked, lines_of_program
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
@@ -50,8 +50,10 @@ def read(source: Source, reader: Reader = parse_steps) -> Lines:
     if isinstance(source, Program):
         return source.steps
     if isinstance(source, str):
-        if is_plan(source.split("\n")):
-            return tuple(_read_plan(lines_of_program(source), reader))
+        lines = source.split("\n")
+        if is_plan(lines):
+            found = lines_of_program(source)
+            return tuple(_read_plan(_begun(found, reader) if is_unmarked(lines) else found, reader))
         return tuple(_read_lines(_body(source, reader), reader))
     return tuple(_read_lines(source, reader))
 
@@ -72,6 +74,13 @@ def _body(text: str, reader: Reader) -> list[str]:
     if written is not None:
         return lines[written:]
     first = next((n for n, line in enumerate(lines) if not isinstance(reader(line), Diagnostic)), 0)
+    return lines[first:]
+
+
+def _begun(lines: Sequence[ProgramLine], reader: Reader) -> Sequence[ProgramLine]:
+    """Return the lines from the first that reads as a step; all where none does, as nothing marks the steps."""
+    steps = (n for n, (_, line, kind) in enumerate(lines) if kind != Kind.TEXT)
+    first = next((n for n in steps if not isinstance(reader(lines[n].line.text), Diagnostic)), 0)
     return lines[first:]
 
 

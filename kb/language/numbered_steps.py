@@ -1,5 +1,6 @@
 """Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
+import re
 from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
@@ -9,7 +10,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import PlanLine, header_of, unexplained
+from hearth.kb.language.plan_lines import LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import (
     REMEMBERED,
@@ -21,6 +22,7 @@ from hearth.kb.language.sentences import (
     said_by,
 )
 from hearth.kb.language.understanding import Candidate
+from hearth.kb.language.unmarked_lines import is_order
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -55,7 +57,11 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuz
     lines = lines_of_program(text)
     for row, line, kind in lines:
         parser.take(line, kind, raw[row], before + row + 1)
-    top = header_of([line for _, line, _ in lines])
+    if parser.is_description(sum(line.prose for _, line, _ in lines)):
+        parser = _StepParser(known, place, fuzzy)
+        top = header_of(list(map(plan_line, raw)))
+    else:
+        top = header_of([line for _, line, _ in lines])
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
@@ -65,13 +71,20 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuz
 
 
 def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
-    """The faults; one that names the language where most lines are not understood, as they are not English."""
+    """The faults; those of lines name the language where most are not understood, as they are not English."""
     lines = [fault for fault in faults if fault.code == Code.NOT_UNDERSTOOD]
     if len(lines) <= understood or not (language := foreign_language([fault.found for fault in lines])):
         return faults
     message = f"the plan is in {language}; only English is read"
-    others = [fault for fault in faults if fault.code != Code.NOT_UNDERSTOOD]
-    return [replace(lines[0], message=message, suggestion="translate it into English"), *others]
+    return [
+        replace(fault, message=message, suggestion="translate it into English") if fault in lines else fault
+        for fault in faults
+    ]
+
+
+_ORDINAL = re.compile(
+    r"(?:first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth|last)(?:ly)?\s*,\s+", re.IGNORECASE
+)
 
 
 class _StepParser:
@@ -98,18 +111,41 @@ class _StepParser:
             self.faults += [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, self._said)
         elif line.number is not None and self._is_open:
             self._take_item(line, raw, number)
-        elif kind == Kind.DETAIL and not self._detail(line.text, number):
+        elif kind == Kind.DETAIL and not self._detail(line.text, number) and not self._lacks(line, raw, number):
             self._is_open = self._is_open and line.indent > 0
-            self._notes += [(line.text, raw, number)] if line.indent or line.number is not None else []
+            self._note(line, raw, number)
         elif kind == Kind.TEXT and line.text:
             self._is_open = self._is_open and line.indent > 0
+            if (self.steps or self.faults) and not META.match(line.text):
+                self._note(line, raw, number)
+
+    def is_description(self, prose: int) -> bool:
+        """Return whether the sentences of a text are its description: less than two thirds of them are steps."""
+        return prose > 0 and 3 * len(self.faults) > prose
+
+    def _lacks(self, line: PlanLine, raw: str, number: int) -> bool:
+        """Add the fault of an item below a step that asks for something, as a step does; return whether it does."""
+        if line.number is None or not is_order(line.text):
+            return False
+        self.faults += self._read(line, raw, number)
+        return True
 
     def _take_item(self, line: PlanLine, raw: str, number: int) -> None:
         found = self._read(line, raw, number)
         if not found and not self._is_heading:
             self._is_heading = True
-            self.faults.pop()
-        self.faults += found if self._is_heading else []
+            fault = self.faults.pop()
+            if not fault.source.lstrip().startswith("#"):
+                self._note(PlanLine(fault.found), fault.source, fault.line)
+        if self._is_heading or is_order(line.text):
+            self.faults += found
+        elif found:
+            self._note(line, raw, number)
+
+    def _note(self, line: PlanLine, raw: str, number: int) -> None:
+        """Count a line that explains, unless it is a heading, or what a chat says around a plan."""
+        if not is_said_around(line.text) and not line.text.endswith(":"):
+            self._notes.append((line.text, raw, number))
 
     def explained(self) -> list[Diagnostic]:
         """Return a warning that counts the lines that explain steps and are none, if there are any."""
@@ -133,7 +169,7 @@ class _StepParser:
         """Add the steps of a line; the faults of one that is not understood."""
         if line.bracketed:
             return self._written(line.text, raw, number)
-        words, said = line.text, self._said
+        words, said = _ORDINAL.sub("", line.text, count=1), self._said
         asked = asked_steps(self.known, words.removesuffix(":"), said, Fuzzy.OFF)
         if not asked and self.fuzzy is not Fuzzy.OFF:
             shorter = unexplained(words)
@@ -177,7 +213,8 @@ class _StepParser:
 
     def _written(self, text: str, raw: str, number: int) -> list[Diagnostic]:
         """Add the steps of a line in the syntax of programs."""
-        found = parse_ticks(text)
+        loose = LOOSE.fullmatch(text)
+        found = parse_ticks(f"[{loose[1]}] <{loose[2].rstrip('.')}>" if loose else text)
         faults: tuple[Diagnostic, ...] = (found,) if isinstance(found, Diagnostic) else ()
         if not isinstance(found, Diagnostic):
             written = Program(steps=found, lines=(1,) * len(found))

@@ -2,21 +2,57 @@
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.schemas.blocks import TITLE, is_sentence
 
-_NUMBER = r"(?:step\s*\d{1,4}\s*[.:)\]–-]?|[(\[]?\d{1,4}\s*[.:)\]])(?=\s|\*)"
+_COUNTED = (
+    ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"],
+    ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"],
+)
+_ONE, _FIRST = ("|".join(words) for words in _COUNTED)
+_COUNTS = {word: number for words in _COUNTED for number, word in enumerate(words, 1)}
+_NUMBER = (
+    rf"(?:(?:step|schritt|paso|étape)\s*#?\s*\d{{1,4}}\s*[.:)\]–—=-]?|[(\[]?\d{{1,4}}\s*[.:)\]]|#\d{{1,3}}[.:)]?"
+    rf"|\d{{1,3}}\s+[–—-])(?=\s|\*)|step\s*\d{{1,4}}\s*[=:]|\d{{1,3}}[.)](?=[a-z])"
+    rf"|step\s+(?:{_ONE})\s*[.:)–—-]|(?:step\s+)(?:{_FIRST})(?:ly)?\s*[,:](?=\s)"
+)
 _ITEM = r"\(?(?:[a-z]|[ivx]{2,5})[.)](?=\s)|\d{1,3}(?:\.\d{1,3})+[.:)]?(?=\s)"
 """Letters, roman numerals and `1.2`: the items of a list without a number that counts its steps."""
 
-_NUMBERED = re.compile(rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})|{_ITEM})\s+(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE)
+_NUMBERED = re.compile(
+    rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})\s*|(?:{_ITEM})\s+)(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE
+)
 _PLAIN = re.compile(r"([ \t]*)(?:[Ss]tep )?(\d{1,4})[.:)] +([A-Za-z][A-Za-z0-9 ,.;()'-]*)")
 """A numbered step of plain words, of which nothing has to be undone."""
+
+_MARKER = re.compile(
+    r"(?:[\u2190-\u21ff\u2500-\u2604\u2606-\u2617\u2705\u2713-\u2718\u2794-\u27bf\u2b00-\u2bff"
+    r"\U0001f446-\U0001f449\U0001f518\U0001f532-\U0001f53d\U0001f7e0-\U0001f7ff·◦‣⁃∙▪]\ufe0f?\s*)+(?=\S)"
+    r"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|(?:[01]?\d|2[0-3])[:.][0-5]\d(?:\s*[ap]m)?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])",
+    re.IGNORECASE,
+)
+"""What stands before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
+
+_HTML = re.compile(r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
+_TAGS = re.compile(r"</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
+_LATEX = re.compile(r"\s*\\(?:(?:sub)*section|title|paragraph)\*?\{([^{}]*)\}\s*|\s*\\(?:begin|end)\{\w+\*?\}.*")
+_BOLD = re.compile(r"\s*(?:\*\*|__)(?!\s)([^*_:]+)(?:\*\*|__)\s*:?\s*")
+_ASIDE = re.compile(
+    r"\W*(?:(?:some |a few |helpful |extra |safety )?(?:notes?|tips?|hints?|ingredients?|materials?|tools?|equipment"
+    r"|warnings?|summary|explanations?|safety|requirements?|supplies|variations?|what you need|you will need|reasoning"
+    r"|assumptions?|preconditions?|remarks?|comments?|instructions|steps|plan|actions?|objects?|goal))\b\W*",
+    re.IGNORECASE,
+)
+"""Headings inside a plan, which are no title."""
 
 _SYMBOLS = re.compile(r"(?:[^\w\s\[\]<>(){}|*+•'\"’“‘…–-])+\s*")
 _KEYCAP = str.maketrans({"\ufe0f": "", "\u20e3": "."})
 _BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
+LOOSE = re.compile(r"\s*\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s+([A-Za-z][\w .'-]*?)\s*")
+"""A step that lacks the marks of its object, `[grab] milk`."""
+
 _DIGITS = re.compile(r"\d+")
 _CHECKBOX = re.compile(r"\[[ xX]\]\s+")
 
@@ -41,8 +77,10 @@ CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
-_EMPHASIS = re.compile(r"\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
-_ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are))\b", re.IGNORECASE)
+_EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
+_ANSWER = re.compile(
+    r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE
+)
 _ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s+(\S.*)", re.IGNORECASE)
 _USUAL = re.compile(
     r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
@@ -62,6 +100,7 @@ class PlanLine(NamedTuple):
         indent: characters before it.
         heading: whether Markdown marks it as a heading, or `Task:` does.
         numbered: whether the line has a number, which may be 0.
+        prose: whether it is a sentence of several on a line, which nothing marks as a step.
     """
 
     text: str
@@ -69,6 +108,7 @@ class PlanLine(NamedTuple):
     indent: int = 0
     heading: bool = False
     numbered: bool = False
+    prose: bool = False
 
     @property
     def bracketed(self) -> bool:
@@ -78,6 +118,19 @@ class PlanLine(NamedTuple):
 
 def plan_line(raw: str) -> PlanLine:
     """Read a line; one of layout alone, or a heading such as `Steps:`, is empty."""
+    return _short_line(raw) if len(raw) <= _SHORT else _line(raw)
+
+
+_SHORT = 200
+"""Characters of a line that is remembered: a file is read several times, and plans say the same again and again."""
+
+
+@lru_cache(maxsize=16_384)
+def _short_line(raw: str) -> PlanLine:
+    return _line(raw)
+
+
+def _line(raw: str) -> PlanLine:
     plain = _PLAIN.fullmatch(raw)
     if plain:  # as most lines are: without what Markdown could mean
         return PlanLine(" ".join(plain[3].split()), int(plain[2]), len(plain[1]), numbered=True)
@@ -85,16 +138,35 @@ def plan_line(raw: str) -> PlanLine:
         return PlanLine("")
     quote = _QUOTE.match(raw)
     line = raw[quote.end() :] if quote else raw
+    if line.lstrip().startswith(("<", "\\")):
+        line = _unmarked_up(line)
     indent = len(line) - len(line.lstrip())
     marked = _HEADING.match(line)
     text = " ".join(_EMPHASIS.sub("", line[marked.end() :].rstrip("# ") if marked else line).split())
-    symbols = _SYMBOLS.match(text := text.translate(_KEYCAP))
-    text = text[symbols.end() :] if symbols else text
+    text = text.translate(_KEYCAP)
+    marker = _MARKER.match(text) if not marked else None
+    text = text[marker.end() :] if marker else text
     step = _NUMBERED.match(text)
+    symbols = _SYMBOLS.match(text) if not step else None
+    text = text[symbols.end() :] if symbols else text
+    step = step or _NUMBERED.match(text)
+    if step and TITLE.match(text[step.end() :]) and not step["number"]:
+        return PlanLine(text[step.end() :], None, indent, True)
+    if marker and not step:
+        return PlanLine(_CHECKBOX.sub("", text, count=1), 0, indent)
     if step:
-        words = _CHECKBOX.sub("", text[step.end() :], count=1)
+        words = _unquoted(_CHECKBOX.sub("", text[step.end() :], count=1))
         digits = _DIGITS.search(step["number"] or "")
-        return PlanLine(words, int(digits[0]) if digits else 0, indent, marked is not None, digits is not None)
+        number = (
+            int(digits[0])
+            if digits
+            else _COUNTS.get((step["number"] or "").lower().strip(" .,:step").removesuffix("ly"), 0)
+        )
+        is_numbered = step["number"] is not None
+        return PlanLine(words, number, indent, marked is not None, is_numbered)
+    box = _CHECKBOX.match(text)
+    if box:
+        return PlanLine(text[box.end() :], 0, indent)
     if _USUAL.fullmatch(text):
         return PlanLine("")
     inline = _INLINE.search(text)
@@ -103,8 +175,32 @@ def plan_line(raw: str) -> PlanLine:
         return PlanLine(first[2:].lstrip(), int(first[0]), indent, numbered=True)
     if not marked and not _BRACKETED.match(text) and CHAIN.search(text):
         return PlanLine(TITLE.sub("", text, count=1), 0, indent)
-    heading = marked is not None or TITLE.match(text) is not None
+    is_bold = _BOLD.fullmatch(line) is not None and _ASIDE.fullmatch(text) is None and not is_sentence(text)
+    heading = marked is not None or TITLE.match(text) is not None or is_bold
     return PlanLine(text, 0 if _BRACKETED.match(text) else None, indent, heading)
+
+
+def _unquoted(words: str) -> str:
+    """Return a step without the quotation marks around it."""
+    whole = words.rstrip(".,;")
+    is_quoted = whole[:1] in _OPENING and whole[-1:] in _CLOSING and len(whole) > 2
+    return whole[1:-1].strip() if is_quoted and not any(mark in whole[1:-1] for mark in '"“”') else words
+
+
+_OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
+
+
+def _unmarked_up(line: str) -> str:
+    """Return a line of LaTeX or HTML as Markdown; `<char0> [Walk] ...` is neither."""
+    latex = _LATEX.fullmatch(line)
+    if latex:
+        return f"# {latex[1]}" if latex[1] else ""
+    if not _HTML.match(line):
+        return line
+    text = _TAGS.sub("", line).strip()
+    if re.match(r"\s*<(?:h[1-6]|title)\b", line, re.IGNORECASE):
+        return f"# {text}"
+    return f"- {text}" if text and re.search(r"<li\b", line, re.IGNORECASE) else text
 
 
 def unexplained(words: str) -> str:
@@ -123,7 +219,7 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     """Return title and description: the lines before the first step.
 
     The title is the line after `Task:`, else the first heading, else the first line that is not a sentence, else the
-    first; lines before it belong to no description. `Here is my plan:` is not a title.
+    first; the others are the description. `Here is my plan:` is neither.
     """
     is_ordered = ordered(lines)
     first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
@@ -142,15 +238,39 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
         return Header("", "\n".join(line.text for line in found))
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
-    return Header(title, "\n".join(line.text for line in found[at + 1 :]))
+    above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
+    return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
+
+
+def is_aside(text: str) -> bool:
+    """Return whether a heading stands inside a plan, as `Tips:`, and names none."""
+    return _ASIDE.fullmatch(text) is not None
+
+
+_OF_BOLD = 7
+"""The level of a title in bold, below those of headings."""
 
 
 def level_of(raw: str) -> int:
     """Return the level of a heading: 1 for `# Title`, 2 for `## Title`; 1 for `Task:`, wherever it stands."""
+    if _BOLD.fullmatch(raw):
+        return _OF_BOLD
     marked = _HEADING.match(raw)
     if not marked or TITLE.match(raw[marked.end() :]):
         return 1
     return raw[: marked.end()].count("#")
+
+
+_AROUND = re.compile(
+    r"(?:i hope|hope|enjoy|let me know|feel free|would you|do you|is there|good luck|that['’]s (?:it|all)|and that"
+    r"|you(?:['’]re| are| have| now)|now you|note that|please note|thanks?|thank you|the (?:plan|task) is|done)\b",
+    re.IGNORECASE,
+)
+
+
+def is_said_around(text: str) -> bool:
+    """Return whether a line is what a chat says around a plan, as `I hope this helps!`, or a heading inside it."""
+    return _AROUND.match(text) is not None or _ANSWER.match(text) is not None or is_aside(text)
 
 
 def is_answer(line: PlanLine) -> bool:
@@ -171,7 +291,9 @@ def is_step(line: PlanLine, is_ordered: bool) -> bool:
 def is_plan(lines: Sequence[str]) -> bool:
     """Whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
     found = list(map(plan_line, lines))
-    if any(line.number == 0 and _BRACKETED.match(raw.strip()) for line, raw in zip(found, lines, strict=True)):
-        return any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
+    pairs = zip(found, lines, strict=True)
+    written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and _BRACKETED.match(raw.strip())]
+    if written:
+        return all(map(LOOSE.fullmatch, written)) or any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
     steps = sum(line.number is not None for line in found)
     return steps > 1 or (steps == 1 and TITLE.match(lines[0]) is not None)

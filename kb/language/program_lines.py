@@ -1,22 +1,35 @@
 """The lines of a program: one function that `check`, `run`, `build` and `score` all read a text with."""
 
+import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
 from hearth.kb.language.forms import form_of
+from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
+from hearth.kb.language.unmarked_lines import (
+    are_steps,
+    chained,
+    chained_strongly,
+    is_like_step,
+    is_order,
+    is_title,
+    sentences,
+)
 from hearth.schemas.blocks import is_sentence
 
-_JOINT = re.compile(rf"{CHAIN.pattern}|;\s+")
+_JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
 _END = re.compile(
     r"(?:\[?(?:all )?(?:done(?: task)?|end(?: of (?:plan|task))?|finished|task (?:is )?(?:complete|done)d?)\]?)\W*",
     re.I,
 )
 """Words that end a plan and are no step."""
+
+_MAY_END = re.compile(r"done|end|finish|complete", re.IGNORECASE)
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
 _SEVERAL = re.compile(r"[>→⟶➔➡;]|\d[.):\]]")
@@ -29,7 +42,7 @@ class Kind(StrEnum):
     """What a line of a program is.
 
     A detail is a line that may explain the step above: an item below a step, or a line without a number. It is a step
-    if it reads exactly as one, else a note. A missing step is a line between numbered ones that is no sentence.
+    if it reads exactly as one, else a note. A missing step is a line between numbered ones that is not a sentence.
     """
 
     TEXT = "text"
@@ -48,23 +61,198 @@ class ProgramLine(NamedTuple):
 
 def lines_of_program(text: str) -> list[ProgramLine]:
     """Return the lines of a program's text in order; each step of a line of several is one."""
+    if PLAIN.fullmatch(text) and not form_of([text.partition("\n")[0]]):
+        return list(_plain_lines(text))
     raw = _without_thoughts(text.split("\n"))
     form = form_of(raw)
     if form:
         return [ProgramLine(*each, _kind(each.line)) for each in form.lines(raw) if not _ends(each)]
-    return list(_kinds([Placed(row, plan_line(line)) for row, line in enumerate(raw)]))
+    return list(_kinds(_marked(_read(raw))))
+
+
+PLAIN = re.compile(
+    r"(?![^\n]*[<|])(?!\s*+[#*+>-]++\W*+\d)[^\n]*"
+    r"(?:\n(?:[Ss]tep )?+\d{1,4}[.:)] ++[A-Za-z][a-z][A-Za-z ,.'-]*+(?<!\bcharacter))++\n*+"
+)
+"""A line above numbered steps of plain words, as most plans are: no form has to be tried."""
+
+
+def _plain_lines(text: str) -> Iterator[ProgramLine]:
+    """Yield the lines of a plain plan."""
+    several = _SEVERAL.search(text.partition("\n")[2]) is not None or " then " in text
+    may_end = _MAY_END.search(text) is not None
+    for row, raw in enumerate(text.split("\n")):
+        line = plan_line(raw)
+        if line.number is None:
+            yield ProgramLine(row, line, Kind.TEXT)
+            continue
+        for part in _parts(line) if several or not row else [line]:
+            if not (may_end and _END.fullmatch(part.text)):
+                yield ProgramLine(row, part, Kind.STEP)
 
 
 def header(text: str) -> Header:
     """Return title and description of a program's text."""
+    top = text.partition("\n")[0]
+    if PLAIN.fullmatch(text) and not form_of([top]):
+        line = plan_line(top)
+        return header_of([line]) if line.number is None else Header("", "")
     raw = _without_thoughts(text.split("\n"))
     form = form_of(raw)
-    return header_of([line for _, line in form.lines(raw)] if form else list(map(plan_line, raw)))
+    placed = form.lines(raw) if form else _marked(_read(raw))
+    return header_of([line for _, line in placed])
 
 
 def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan in any form but that of program text."""
-    return any(map(_THOUGHT.match, lines)) or form_of(lines) is not None or is_list(lines) or _is_joined(lines)
+    return (
+        any(map(_THOUGHT.match, lines))
+        or form_of(lines) is not None
+        or is_list(lines)
+        or _is_joined(lines)
+        or is_unmarked(lines)
+    )
+
+
+def is_unmarked(lines: Sequence[str]) -> bool:
+    """Return whether a text's first lines hold a plan of plain lines, which nothing marks as steps."""
+    if any(_is_numbered(line) for line in lines[:_FIRST]):
+        return False
+    read = _read(lines)
+    if any(line.number is not None for _, line in read):
+        return False
+    return any(any(line.number is not None for _, line in _marked(part)) for part in _sections(read))
+
+
+def _read(raw: Sequence[str]) -> list[Placed]:
+    lines = list(map(plan_line, raw))
+    lines = list(titled(lines, titles_of(raw, lines)))
+    return [Placed(row, line) for row, line in enumerate(lines)]
+
+
+class Titles(StrEnum):
+    """Marks of steps that stand before titles in a text: `# 1. Find the remote`, or bullets above bullets."""
+
+    NONE = "none"
+    HEADINGS = "headings"
+    BULLETS = "bullets"
+
+
+def titled(lines: Iterable[PlanLine], titles: Titles) -> Iterator[PlanLine]:
+    """Yield the lines, those that are titles without their marks."""
+    for line in lines:
+        is_bullet = line.number is not None and not line.numbered and not line.indent
+        is_title = line.heading if titles == Titles.HEADINGS else titles == Titles.BULLETS and is_bullet
+        yield line._replace(number=None, numbered=False, heading=True) if is_title else line
+
+
+def titles_of(raw: Sequence[str], lines: Sequence[PlanLine]) -> Titles:
+    """Return which marks stand before titles in a text, by its first lines."""
+    if lines and lines[0].numbered and not lines[0].heading:
+        return Titles.NONE
+    if any(line.heading and line.numbered for line in lines) and titles_are_numbered(raw, lines):
+        return Titles.HEADINGS
+    return Titles.BULLETS if _are_bullets(lines) else Titles.NONE
+
+
+def _are_bullets(lines: Sequence[PlanLine]) -> bool:
+    """Return whether two steps at least stand below each bullet, and everything is a bullet."""
+    texts = [line for line in lines if line.text]
+    if not texts or texts[0].indent or any(line.number is None or line.bracketed for line in texts):
+        return False
+    if any(line.numbered and not line.indent for line in texts):
+        return False
+    tops = [n for n, line in enumerate(texts) if not line.indent]
+    return all(
+        sum(is_order(line.text) for line in texts[start + 1 : end]) > 1
+        for start, end in itertools.pairwise([*tops, len(texts)])
+    )
+
+
+_OF_STEP = re.compile(r"[\s#*]*step\b", re.IGNORECASE)
+
+
+def titles_are_numbered(raw: Sequence[str], lines: Sequence[PlanLine]) -> bool:
+    """Return whether headings with numbers are titles, as steps stand below most of them."""
+    at = [n for n, line in enumerate(lines) if line.heading and line.numbered and not _OF_STEP.match(raw[n])]
+    sections = [lines[start + 1 : end] for start, end in itertools.pairwise([*at, len(lines)])]
+    filled = [section for section in sections if any(line.text for line in section)]
+    return len(filled) > 0 and 2 * sum(map(_has_steps, filled)) > len(filled)
+
+
+def _has_steps(section: Sequence[PlanLine]) -> bool:
+    steps = [line for line in section if line.number is not None and not line.heading]
+    if any(line.numbered for line in steps) or sum(is_like_step(line.text) for line in steps) > 1:
+        return True
+    texts = [line.text for line in section if line.text and not line.heading]
+    return not steps and (any(map(chained, texts)) or are_steps(texts))
+
+
+_FIRST = 4
+_NUMBERED = re.compile(r"(?:step )?\d{1,4}[.:)] ", re.IGNORECASE)
+
+
+def _is_numbered(raw: str) -> bool:
+    return _NUMBERED.match(raw) is not None
+
+
+def _sections(placed: list[Placed]) -> Iterator[list[Placed]]:
+    """Part lines before each heading."""
+    part: list[Placed] = []
+    for each in placed:
+        if each.line.heading and part:
+            yield part
+            part = []
+        part.append(each)
+    if part:
+        yield part
+
+
+def _marked(placed: list[Placed]) -> list[Placed]:
+    """Mark the plain lines that are steps, where no line of the text has a mark."""
+    if any(line.number is not None for _, line in placed):
+        return placed
+    plain = [n for n, (_, line) in enumerate(placed) if line.text and _is_plain(line)]
+    named = next((n for n, (_, line) in enumerate(placed) if line.heading and not _is_plain(line)), -1)
+    is_titled, plain = named >= 0, [n for n in plain if n > named]
+    if plain and not is_titled:
+        top, texts = plain[0], [placed[n].line.text for n in plain]
+        is_apart = top + 1 < len(placed) and not placed[top + 1].line.text
+        is_titled = is_title(texts[0], texts[1:], is_apart)
+        plain = plain[1:] if is_titled else plain
+    texts = [_after_label(placed[n].line.text) for n in plain]
+    if not are_steps(texts) and not (is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])):
+        return placed
+    steps = {n for n, text in zip(plain, texts, strict=True) if is_like_step(text) or chained(text)}
+    return [part for n, each in enumerate(placed) for part in (_steps_on(each) if n in steps else [each])]
+
+
+def _is_plain(line: PlanLine) -> bool:
+    """Return whether a line without a mark may be a step: titles may not, but `Plan: walk to sofa` may be."""
+    return not META.match(line.text) and (not line.heading or _LABEL.match(line.text) is not None)
+
+
+_LABEL = re.compile(
+    r"(?:plan|steps|answer|actions?|action sequence|sequence|procedure|instructions|method|solution|program)\s*[:=]\s*",
+    re.IGNORECASE,
+)
+"""What stands before the steps of a line, `Plan: walk to sofa; sit on sofa`."""
+
+
+def _after_label(text: str) -> str:
+    return _LABEL.sub("", text, count=1)
+
+
+def _is_order(text: str, placed: Placed) -> bool:
+    """Return whether the one line below a title is a step, and not its description."""
+    return text != placed.line.text or (is_like_step(text) and not is_sentence(text))
+
+
+def _steps_on(placed: Placed) -> list[Placed]:
+    """Return a line as steps: the sentences of prose, else the whole line."""
+    text = _after_label(placed.line.text)
+    parts = sentences(text)
+    return [Placed(placed.row, PlanLine(part, 0, prose=len(parts) > 1)) for part in parts]
 
 
 def _is_joined(lines: Sequence[str]) -> bool:
@@ -126,20 +314,25 @@ def _between(line: PlanLine, steps_follow: bool) -> Kind:
     """Return the kind of a line without a number below the first step."""
     if not line.text or line.heading or META.match(line.text):
         return Kind.TEXT
-    is_missing = steps_follow and not line.indent and not is_sentence(line.text)
+    is_missing = steps_follow and not line.indent and (not is_sentence(line.text) or is_order(line.text))
     return Kind.MISSING if is_missing else Kind.DETAIL
 
 
 def _parts(line: PlanLine) -> Iterator[PlanLine]:
     """Part a line of several steps: `walk to kitchen 2. open fridge`, or `walk to kitchen -> open fridge`."""
-    if not _SEVERAL.search(line.text):
+    calls = calls_of(line.text) if line.text.endswith((")", ");", ").")) else []
+    if calls:
+        yield from (line._replace(text=call) for call in calls)
+        return
+    if not _SEVERAL.search(line.text) and " then " not in line.text:
         yield line
         return
     pieces = [line.text]
     if line.numbered:
         pieces = list(_numbered(line.text, line.number or 0))
     for piece in pieces:
-        for part in _JOINT.split(piece) if not piece.startswith("[") else CHAIN.split(piece):
+        parts = CHAIN.split(piece) if piece.startswith("[") else chained_strongly(piece) or _JOINT.split(piece)
+        for part in parts:
             if part.strip():
                 yield line._replace(text=part.strip())
 

@@ -6,11 +6,13 @@ from typing import Any
 
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
-from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, level_of, plan_line
-from hearth.kb.language.program_lines import header
+from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
+from hearth.kb.language.program_lines import Titles, header, is_unmarked, titled, titles_of
+from hearth.kb.language.unmarked_lines import are_steps, is_order
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.located import Text
+from hearth.pipelines.readers.unmarked_plans import unmarked_blocks
 from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow
@@ -78,7 +80,12 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
     first = list(itertools.islice(lines, _LOOKED_AT))
     form = form_of([line for _, line in first])
     rest = itertools.chain(first, lines)
-    return blocks(rest) if form is None else _blocks_of(form, rest)
+    if form:
+        return _blocks_of(form, rest)
+    looked_at = [line for _, line in first]
+    if is_unmarked(looked_at):
+        return unmarked_blocks(rest)
+    return blocks(rest, titles=titles_of(looked_at, list(map(plan_line, looked_at))))
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
@@ -102,7 +109,9 @@ def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_0
         yield first, block
 
 
-def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+def blocks(
+    lines: Iterator[tuple[int, str]], most: int = 1_000_000, *, titles: Titles = Titles.NONE
+) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs: (number of the first line, lines), cut after `most` characters.
 
     A program begins where the numbers begin again, or with a line below the steps that is not one of them; not if the
@@ -112,10 +121,16 @@ def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[
     block = _Block()
     for number, raw in lines:
         line = plan_line(raw)
-        if line.number is not None and block.ends_before(line):
-            rest = block.split()
-            yield block.first, block.lines
-            block = rest
+        line = next(titled([line], titles)) if titles != Titles.NONE else line
+        if line.number is not None:
+            if block.ends_before(line):
+                rest = block.split()
+                yield block.first, block.lines
+                block = rest
+            if block.begins_again():
+                rest = block.split()
+                yield block.first, block.lines
+                block = rest
         elif line.number is None and block.is_without_steps(raw, line):
             if block.has_steps:
                 rest = block.split()
@@ -143,6 +158,7 @@ class _Block:
         self._bulleted, self._by_headings = True, False
         self._level = self._number = 0
         self._texts: list[PlanLine] = []
+        self._has_heading_below = self._is_titled = False
 
     @property
     def first(self) -> int:
@@ -157,12 +173,15 @@ class _Block:
             is_nested = self._by_headings and not line.heading
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
-            self._level, self._texts = 0, []
-        elif line.text and self._last and not self._below and (line.heading or not line.indent):
+            self._level, self._texts, self._has_heading_below = 0, [], False
+        elif line.text and self._last and not self._below and self._may_be_below(line):
             self._below = len(self.lines)
             is_apart = bool(self.lines) and not self.lines[-1].strip()
             is_remark = is_sentence(line.text) or META.match(line.text) is not None
             self.has_title_below = line.heading or (is_apart and not is_remark)
+        if line.heading and line.number is None and self._last and not is_aside(line.text):
+            self._has_heading_below = True
+        self._is_titled = self._is_titled or line.heading
         if line.number is None and line.text:
             self._level = self._level or (level_of(raw) if line.heading else 0)
             self._texts.append(line)
@@ -171,6 +190,13 @@ class _Block:
             self.lines.append(raw)
             self.numbers.append(number)
             self._size += len(raw) + 1
+
+    def _may_be_below(self, line: PlanLine) -> bool:
+        """Return whether a line stands below the steps, and is none that only lacks its mark."""
+        is_apart = bool(self.lines) and not self.lines[-1].strip()
+        if line.heading or is_apart:
+            return True
+        return not line.indent and not ((self._is_titled or line.text.endswith(".")) and is_order(line.text))
 
     @property
     def has_steps(self) -> bool:
@@ -184,23 +210,41 @@ class _Block:
         if RULE.match(raw):
             is_apart = bool(self.lines) and not self.lines[-1].strip()
             return not self._last and is_apart and len(self._texts) > 1 and not is_answer(self._texts[0])
-        return line.heading and self._level > 0 and level_of(raw) <= self._level
+        if not line.heading or not self._level or is_aside(line.text):
+            return False
+        return level_of(raw) <= self._level or are_steps([each.text for each in self._texts if not each.heading])
 
     def ends_before(self, step: PlanLine) -> bool:
         """Whether a step belongs to the next program."""
         if self._by_headings and not step.heading and not self._below:
             return False
+        if self._has_heading_below and (not step.number or step.number <= self._number):
+            return True
         if step.number:
             return step.number <= 1 and (self._last > 1 or self._below > 0)
         if step.numbered and self._number > 0:
             return True
         return self._below > 0 and (self._bulleted or step.bracketed)
 
+    def begins_again(self) -> bool:
+        """Return whether the text above a first step holds a title with a description, and below it another title."""
+        if self._last or len(self._texts) < 3:
+            return False
+        at = max(n for n, raw in enumerate(self.lines) if raw.strip())
+        first, *middle, last = self._texts
+        is_apart = not self.lines[at - 1].strip()
+        names = [line for line in (first, last) if not is_sentence(line.text) and not META.match(line.text)]
+        if len(names) < 2 or not is_apart or last.heading or is_aside(last.text) or is_answer(first):
+            return False
+        self._below = at if all(is_sentence(line.text) for line in middle) else 0
+        return self._below > 0
+
     def split(self) -> "_Block":
         """Cut off the lines below the steps, which begin the next program."""
         rest, at = _Block(), self._below or len(self.lines)
         rest.lines, rest.numbers = self.lines[at:], self.numbers[at:]
         self.lines, self.numbers = self.lines[:at], self.numbers[:at]
+        rest._is_titled = any(plan_line(raw).heading for raw in rest.lines)
         rest._size = sum(map(len, rest.lines))
-        rest._level, rest._texts = self._level, self._texts
+        rest._level, rest._texts = self._level, self._texts if self._last else self._texts[-1:]
         return rest

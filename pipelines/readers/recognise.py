@@ -156,7 +156,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return _json(path, place, [line for line in whole if line.strip()])
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
-    if (suffix in _TABLES and first) or spreadsheets.names_it(line[:10_000]):
+    if (suffix in _TABLES and first) or (line.lstrip()[:1] != "|" and spreadsheets.names_it(line[:10_000])):
         return Recognised(path, place, spreadsheets.NAME)
     if suffix in _JSON and first:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)

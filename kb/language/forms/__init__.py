@@ -3,14 +3,16 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.code import CODE
+from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commands import COMMANDS
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
-from hearth.kb.language.forms.pddl import PDDL
+from hearth.kb.language.forms.pairs import PAIRS
+from hearth.kb.language.forms.pddl_plans import PDDL
 from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
+from hearth.kb.language.forms.titled_lines import TITLED_LINES
 
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
@@ -19,11 +21,17 @@ FORMS: dict[str, Form] = {
     "ALFWorld": COMMANDS,
     "PDDL": PDDL,
     "code": CODE,
+    "titled lines": TITLED_LINES,
     "Markdown table": MARKDOWN_TABLE,
+    "pairs": PAIRS,
 }
 """Forms by name, in the order in which they are tried."""
 
-_HINT = re.compile(r"[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|.*\bcharacter\b", re.IGNORECASE).match
+_HINT = re.compile(
+    r"\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]"
+    r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
+    re.IGNORECASE,
+).match
 """Whether a line has what some line of each form has: most plans have none, and are not tried."""
 
 

@@ -9,7 +9,7 @@ from hearth.kb.language.plan_lines import plan_line
 
 _ACT = re.compile(r"\s*(?:>\s*)?\**(?:act|action)\s*\d*\s*:\**\s*(.*)", re.IGNORECASE)
 _OTHER = re.compile(r"\s*(?:>\s*)?\**(?:thought|think|obs|observation|reason(?:ing)?|reward)\s*\d*\s*:", re.IGNORECASE)
-_NO_ACT = re.compile(r"(?:finish|think|look|inventory|stop|done)\b.*", re.IGNORECASE)
+_NO_ACT = re.compile(r"(?:(?:finish|think|stop)\b.*|look(?: around)?|(?:check )?inventory|done)\W*", re.IGNORECASE)
 
 
 def _fits(lines: Sequence[str]) -> bool:

@@ -12,7 +12,7 @@ _LEFT_OUT = re.compile(
     r"\s*(?:(?:assert|else|if|elif|for|while|try|except|import|return|pass|class|with)\b|from\b.*\bimport\b|print\(|\"{3}|'{3})"
 )
 _MADE_TRUE = re.compile(r"\s*else\s*:(?!\s*find\b)\s*(\S.*)")
-"""What ProgPrompt does where a state lacks, `else: open('fridge')`; that a thing is found again is no step."""
+"""What ProgPrompt does where a state lacks, `else: open('fridge')`; finding a thing again is left out."""
 
 _COMMENT = re.compile(r"\s*(?:#|//|`{3}|~{3}|$)")
 _LONGEST = 500
@@ -40,20 +40,34 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
             words = made_true[1] if made_true else raw
             call = _CALL.match(words) if len(raw) <= _LONGEST else None
             is_step = made_true is not None or not _LEFT_OUT.match(raw)
-            found.append(step(row, _called(call) if call else words) if is_step else note(row, raw))
+            several = calls_of(words.strip()) if is_step and call else []
+            if len(several) > 1:
+                found += [step(row, each) for each in several]
+                continue
+            found.append(step(row, called(call[1]) if call else words) if is_step else note(row, raw))
     return found
 
 
-def _called(call: re.Match[str]) -> str:
+_CALLS = re.compile(r"[A-Za-z_]\w*\([^()]*\)(?:\s*[,;]\s*[A-Za-z_]\w*\([^()]*\))*[.;]?")
+_ONE = re.compile(r"\w+\([^()]*\)")
+
+
+def calls_of(text: str) -> list[str]:
+    """Return the steps of a line that is calls alone, `walk(kitchen), grab(milk)`; none where it is not."""
+    return list(map(called, _ONE.findall(text))) if _CALLS.fullmatch(text) else []
+
+
+def called(call: str) -> str:
     """Return the step of a call; its arguments are texts or names, and nothing is run."""
     try:
-        parsed = ast.parse(call[1], mode="eval").body
+        parsed = ast.parse(call, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return call[1]
+        return call
     if not isinstance(parsed, ast.Call):
-        return call[1]
+        return call
+    name = parsed.func.attr if isinstance(parsed.func, ast.Attribute) else getattr(parsed.func, "id", "")
     arguments = [_name(each) for each in (*parsed.args, *(keyword.value for keyword in parsed.keywords))]
-    return written(call[2], [each for each in arguments if each]) if None not in arguments else call[1]
+    return written(name, [each for each in arguments if each]) if name and None not in arguments else call
 
 
 def _name(argument: ast.expr) -> str | None:

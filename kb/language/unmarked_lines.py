@@ -1,0 +1,117 @@
+"""Plain lines without numbers or bullets: which of them ask for a step, and which is the title."""
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+
+from hearth.kb.language.lexicon import is_noun, is_verb
+from hearth.schemas.blocks import is_sentence
+
+_SUBJECT = r"(?:i|you|he|she|we|they|the (?:robot|person|agent|character|man|woman|child|user))"
+_NO_MANNER = (
+    "only|early|family|reply|apply|supply|fly|assembly|usually|normally|generally|typically|basically|actually|really"
+    "|probably|rarely|commonly|sadly|unfortunately"
+)
+"""Words in -ly that do not say how a step is done."""
+
+_LEAD = re.compile(
+    rf"(?:(?:please|(?:first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth)(?:ly)?(?= ?,)"
+    rf"|first|then|next|now|finally|lastly|afterwards?|meanwhile|and|also|just|kindly|after (?:that|this)"
+    rf"|at last|(?:could|would|can|will) you|i['’]d like you to|let['’]s|do not forget to"
+    rf"|{_SUBJECT}(?: (?:should|must|can|will|(?:need|have|has|needs)(?: to)?|['’]ll|then|now|first|also))*"
+    rf"|(?!{_NO_MANNER})[a-z]{{3,}}ly)\b[\s,:]*)+",
+    re.IGNORECASE,
+)
+_WORD = re.compile(r"[A-Za-z][A-Za-z'’-]*")
+_NO_ACT = frozenset((
+    "be", "is", "are", "was", "were", "been", "can", "could", "may", "might", "must", "shall", "should", "will",
+    "would", "need", "needs", "make", "sure", "note", "remember", "ensure", "mind", "beware", "try", "keep", "hope",
+    "let", "thank", "sorry", "like", "enjoy", "it", "this", "that", "these", "those", "there", "here", "no", "not",
+    "we",
+))  # fmt: skip
+"""Beginnings of what explains, as `Make sure`, `Note`, `It is`, though some are verbs."""
+
+_STRONG = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡|>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?then\s+", re.IGNORECASE)
+"""What joins steps of a line and nothing else."""
+
+_WEAK = re.compile(r"\s*,\s*(?:and\s+)?(?:finally\s+)?|\s+and\s+(?:finally\s+)?", re.IGNORECASE)
+_SENTENCES = re.compile(r"(?<=[a-z)][.!])\s+(?=[A-Z])")
+_WHOLE = 2 / 3
+
+
+def is_order(text: str) -> bool:
+    """Return whether words below a step ask for one more, and do not say how it is done."""
+    return _PLAIN.fullmatch(text) is not None and is_like_step(text) and not _HOW.match(text)
+
+
+_PLAIN = re.compile(r"[\w,.'’-]+(?: [\w,.'’-]+){0,8}")
+_HOW = re.compile(
+    r"(?:use|using|set|check|repeat|continue|allow|leave|avoid|wait|hold|choose|consider|look for)\b", re.IGNORECASE
+)
+
+
+@lru_cache(maxsize=65_536)
+def is_like_step(text: str) -> bool:
+    """Return whether words begin as a step does, with a verb that somebody does or is asked to do."""
+    lead = _LEAD.match(text)
+    word = _WORD.match(text, lead.end() if lead and lead.end() < len(text) else 0)
+    if not word:
+        return False
+    first, second = word[0].lower(), text[word.end() :].split(maxsplit=1)[:1]
+    if first == "make" and second != ["sure"]:
+        return True
+    return first not in _NO_ACT and is_verb(first)
+
+
+def chained(text: str) -> list[str]:
+    """Return the steps of a line that joins several; none where it does not."""
+    strong = chained_strongly(text)
+    if strong:
+        return strong
+    weak = [part for part in _WEAK.split(text) if part.strip()]
+    is_chain = len(weak) > 2 and all(" " in part.strip() for part in weak[:-1]) and _are_steps(weak)
+    return weak if is_chain else []
+
+
+def chained_strongly(text: str) -> list[str]:
+    """Return the steps that `->`, `;` or `then` join; none where nothing does, or not steps."""
+    parts = [part for part in _STRONG.split(text) if part.strip()]
+    return parts if len(parts) > 1 and _are_steps(parts) else []
+
+
+def sentences(text: str) -> list[str]:
+    """Return the sentences of a line."""
+    return _SENTENCES.split(text)
+
+
+def are_steps(texts: Sequence[str]) -> bool:
+    """Return whether lines without marks are steps: two of three at least begin as one does, or join several."""
+    like = sum(is_like_step(text) or bool(chained(text)) for text in texts)
+    joined = any(
+        len(sentences(text)) > 1 or len(parts := chained(text)) > 2 or (parts and text[-1] != ".") for text in texts
+    )
+    return like >= _WHOLE * len(texts) and (like > 1 or (like == 1 and joined))
+
+
+def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
+    """Return whether the first of some plain lines is their title, and no step.
+
+    Args:
+        text: the line.
+        below: the lines below it, which are steps.
+        is_apart: whether a blank line stands below it.
+    """
+    if not below or chained(text) or len(text) > 80:
+        return False
+    if len(below) == 1 and is_like_step(text):
+        return len(sentences(below[0])) > 1 or bool(chained(below[0]))
+    if is_apart or not is_like_step(text) or (" " not in text and is_noun(text.lower())):
+        return True
+    ends = sum(line.endswith((".", "!")) for line in below)
+    if ends >= _WHOLE * len(below):
+        return not is_sentence(text)
+    return len(below) > 1 and text[:1].isupper() and all(line[:1].islower() for line in below)
+
+
+def _are_steps(parts: Sequence[str]) -> bool:
+    return sum(map(is_like_step, parts)) >= _WHOLE * len(parts)
