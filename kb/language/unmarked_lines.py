@@ -79,6 +79,13 @@ def chained_strongly(text: str) -> list[str]:
     return parts if len(parts) > 1 and _are_steps(parts) else []
 
 
+def clauses(text: str) -> list[str]:
+    """Return the parts of a line at all that may join steps, where each begins as a step does; else none."""
+    parts = [part for piece in sentences(text) for strong in _STRONG.split(piece) for part in _WEAK.split(strong)]
+    parts = [part.strip() for part in parts if part.strip()]
+    return parts if len(parts) > 1 and all(map(is_like_step, parts)) else []
+
+
 def sentences(text: str) -> list[str]:
     """Return the sentences of a line."""
     return _SENTENCES.split(text)
