@@ -8,8 +8,8 @@ from typing import NamedTuple
 from hearth.schemas.blocks import TITLE, is_sentence
 
 _COUNTED = (
-    "one two three four five six seven eight nine ten eleven twelve".split(),
-    "first second third fourth fifth sixth seventh eighth ninth tenth".split(),
+    ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"],
+    ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"],
 )
 _ONE, _FIRST = ("|".join(words) for words in _COUNTED)
 _COUNTS = {word: number for words in _COUNTED for number, word in enumerate(words, 1)}
@@ -21,7 +21,9 @@ _NUMBER = (
 _ITEM = r"\(?(?:[a-z]|[ivx]{2,5})[.)](?=\s)|\d{1,3}(?:\.\d{1,3})+[.:)]?(?=\s)"
 """Letters, roman numerals and `1.2`: the items of a list without a number that counts its steps."""
 
-_NUMBERED = re.compile(rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})\s*|(?:{_ITEM})\s+)(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE)
+_NUMBERED = re.compile(
+    rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})\s*|(?:{_ITEM})\s+)(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE
+)
 _PLAIN = re.compile(r"([ \t]*)(?:[Ss]tep )?(\d{1,4})[.:)] +([A-Za-z][A-Za-z0-9 ,.;()'-]*)")
 """A numbered step of plain words, of which nothing has to be undone."""
 
@@ -76,7 +78,9 @@ CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
 _EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
-_ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE)
+_ANSWER = re.compile(
+    r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE
+)
 _ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s+(\S.*)", re.IGNORECASE)
 _USUAL = re.compile(
     r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
@@ -153,7 +157,11 @@ def _line(raw: str) -> PlanLine:
     if step:
         words = _unquoted(_CHECKBOX.sub("", text[step.end() :], count=1))
         digits = _DIGITS.search(step["number"] or "")
-        number = int(digits[0]) if digits else _COUNTS.get((step["number"] or "").lower().strip(" .,:step").removesuffix("ly"), 0)
+        number = (
+            int(digits[0])
+            if digits
+            else _COUNTS.get((step["number"] or "").lower().strip(" .,:step").removesuffix("ly"), 0)
+        )
         is_numbered = step["number"] is not None
         return PlanLine(words, number, indent, marked is not None, is_numbered)
     box = _CHECKBOX.match(text)
@@ -176,7 +184,7 @@ def _unquoted(words: str) -> str:
     """Return a step without the quotation marks around it."""
     whole = words.rstrip(".,;")
     is_quoted = whole[:1] in _OPENING and whole[-1:] in _CLOSING and len(whole) > 2
-    return whole[1:-1].strip() if is_quoted and not any(mark in whole[1:-1] for mark in "\"“”") else words
+    return whole[1:-1].strip() if is_quoted and not any(mark in whole[1:-1] for mark in '"“”') else words
 
 
 _OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
@@ -235,7 +243,7 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
 
 
 def is_aside(text: str) -> bool:
-    """Return whether a heading stands inside a plan, as `Tips:`, and is no title."""
+    """Return whether a heading stands inside a plan, as `Tips:`, and names none."""
     return _ASIDE.fullmatch(text) is not None
 
 

@@ -7,11 +7,19 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from hearth.kb.language.forms import form_of
-from hearth.kb.language.forms.code_plans import calls_of
+from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
-from hearth.kb.language.unmarked_lines import are_steps, chained, chained_strongly, is_like_step, is_order, is_title, sentences
+from hearth.kb.language.unmarked_lines import (
+    are_steps,
+    chained,
+    chained_strongly,
+    is_like_step,
+    is_order,
+    is_title,
+    sentences,
+)
 from hearth.schemas.blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
@@ -34,7 +42,7 @@ class Kind(StrEnum):
     """What a line of a program is.
 
     A detail is a line that may explain the step above: an item below a step, or a line without a number. It is a step
-    if it reads exactly as one, else a note. A missing step is a line between numbered ones that is no sentence.
+    if it reads exactly as one, else a note. A missing step is a line between numbered ones that is not a sentence.
     """
 
     TEXT = "text"
@@ -63,7 +71,8 @@ def lines_of_program(text: str) -> list[ProgramLine]:
 
 
 PLAIN = re.compile(
-    r"(?![^\n]*[<|])[^\n]*(?:\n(?:[Ss]tep )?+\d{1,4}[.:)] ++[A-Za-z][a-z][A-Za-z ,.'-]*+(?<!\bcharacter))++\n*+"
+    r"(?![^\n]*[<|])(?!\s*+[#*+>-]++\W*+\d)[^\n]*"
+    r"(?:\n(?:[Ss]tep )?+\d{1,4}[.:)] ++[A-Za-z][a-z][A-Za-z ,.'-]*+(?<!\bcharacter))++\n*+"
 )
 """A line above numbered steps of plain words, as most plans are: no form has to be tried."""
 
@@ -96,7 +105,13 @@ def header(text: str) -> Header:
 
 def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan in any form but that of program text."""
-    return any(map(_THOUGHT.match, lines)) or form_of(lines) is not None or is_list(lines) or _is_joined(lines) or is_unmarked(lines)
+    return (
+        any(map(_THOUGHT.match, lines))
+        or form_of(lines) is not None
+        or is_list(lines)
+        or _is_joined(lines)
+        or is_unmarked(lines)
+    )
 
 
 def is_unmarked(lines: Sequence[str]) -> bool:
@@ -213,7 +228,7 @@ def _marked(placed: list[Placed]) -> list[Placed]:
 
 
 def _is_plain(line: PlanLine) -> bool:
-    """Return whether a line without a mark may be a step: it is no title, but `Plan: walk to sofa` may be."""
+    """Return whether a line without a mark may be a step: titles may not, but `Plan: walk to sofa` may be."""
     return not META.match(line.text) and (not line.heading or _LABEL.match(line.text) is not None)
 
 

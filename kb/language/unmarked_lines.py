@@ -15,17 +15,20 @@ _NO_MANNER = (
 """Words in -ly that do not say how a step is done."""
 
 _LEAD = re.compile(
-    rf"(?:(?:please|(?:first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth)(?:ly)?(?= ?,)|first|then|next|now|finally|lastly|afterwards?|meanwhile|and|also|just|kindly|after (?:that|this)"
+    rf"(?:(?:please|(?:first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth)(?:ly)?(?= ?,)"
+    rf"|first|then|next|now|finally|lastly|afterwards?|meanwhile|and|also|just|kindly|after (?:that|this)"
     rf"|at last|(?:could|would|can|will) you|i['’]d like you to|let['’]s|do not forget to"
     rf"|{_SUBJECT}(?: (?:should|must|can|will|(?:need|have|has|needs)(?: to)?|['’]ll|then|now|first|also))*"
     rf"|(?!{_NO_MANNER})[a-z]{{3,}}ly)\b[\s,:]*)+",
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[A-Za-z][A-Za-z'’-]*")
-_NO_ACT = frozenset(
-    "be is are was were been can could may might must shall should will would need needs make sure note remember ensure "
-    "mind beware try keep hope let thank sorry like enjoy it this that these those there here no not we".split()
-)
+_NO_ACT = frozenset((
+    "be", "is", "are", "was", "were", "been", "can", "could", "may", "might", "must", "shall", "should", "will",
+    "would", "need", "needs", "make", "sure", "note", "remember", "ensure", "mind", "beware", "try", "keep", "hope",
+    "let", "thank", "sorry", "like", "enjoy", "it", "this", "that", "these", "those", "there", "here", "no", "not",
+    "we",
+))  # fmt: skip
 """Beginnings of what explains, as `Make sure`, `Note`, `It is`, though some are verbs."""
 
 _STRONG = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡|>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?then\s+", re.IGNORECASE)
@@ -42,7 +45,9 @@ def is_order(text: str) -> bool:
 
 
 _PLAIN = re.compile(r"[\w,.'’-]+(?: [\w,.'’-]+){0,8}")
-_HOW = re.compile(r"(?:use|using|set|check|repeat|continue|allow|leave|avoid|wait|hold|choose|consider|look for)\b", re.IGNORECASE)
+_HOW = re.compile(
+    r"(?:use|using|set|check|repeat|continue|allow|leave|avoid|wait|hold|choose|consider|look for)\b", re.IGNORECASE
+)
 
 
 @lru_cache(maxsize=65_536)
@@ -89,7 +94,9 @@ def sentences(text: str) -> list[str]:
 def are_steps(texts: Sequence[str]) -> bool:
     """Return whether lines without marks are steps: two of three at least begin as one does, or join several."""
     like = sum(is_like_step(text) or bool(chained(text)) for text in texts)
-    joined = any(len(sentences(text)) > 1 or len(parts := chained(text)) > 2 or (parts and text[-1] != ".") for text in texts)
+    joined = any(
+        len(sentences(text)) > 1 or len(parts := chained(text)) > 2 or (parts and text[-1] != ".") for text in texts
+    )
     return like >= _WHOLE * len(texts) and (like > 1 or (like == 1 and joined))
 
 

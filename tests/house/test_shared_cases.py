@@ -68,7 +68,9 @@ def programs(file: Path, knowledge) -> tuple[list[list[str]], list[int], list[st
         for each in read_programs(file, knowledge, file.name):
             faults += [fault.line for fault in (each.diagnostics if isinstance(each, Reject) else each.faults)]
             if not isinstance(each, Reject):
-                steps.append([" ".join([step.action, *(ref.name for ref in step.objects)]) for step in each.program.steps])
+                steps.append(
+                    [" ".join([step.action, *(ref.name for ref in step.objects)]) for step in each.program.steps]
+                )
                 titles.append(each.program.title)
     except HearthError as error:
         faults += [fault.line for fault in error.diagnostics]

@@ -17,7 +17,8 @@ from hearth.storage.rejects import Reject
 
 PLANS = Path(__file__).parents[1] / "messy/plans.jsonl"
 OF_FORMS = re.compile(
-    r"\s*(?:(?:thought|think|obs\w*)\b|#|//|;|\||\[(?:scene|description)\]|(?:\[?step \d+\]?:? )?done\b|(?:\[step \d+\]) done)",
+    r"\s*(?:(?:thought|think|obs\w*)\b|#|//|;|\||\[(?:scene|description)\]"
+    r"|(?:\[?step \d+\]?:? )?done\b|(?:\[step \d+\]) done)",
     re.IGNORECASE,
 )
 """What forms read over: thoughts and what they answer, comments, layout of tables, the ends of plans."""
@@ -54,7 +55,14 @@ def is_known(raw: str, said: str, is_log: bool) -> bool:
     line = plan_line(raw)
     title = plain(TITLE.sub("", line.text.removeprefix("[Goal]"), count=1))
     is_group = line.heading and line.numbered
-    if is_group or not line.text or title in said or plain(line.text) in said or OF_FORMS.match(raw) or META.match(line.text):
+    if (
+        is_group
+        or not line.text
+        or title in said
+        or plain(line.text) in said
+        or OF_FORMS.match(raw)
+        or META.match(line.text)
+    ):
         return True
     return is_log or is_said_around(line.text) or line.text.endswith(":")
 
@@ -74,15 +82,31 @@ def test_no_line_of_a_messy_plan_is_lost(folder, knowledge):
     assert {name: lines for name, lines in found.items() if lines} == {}
 
 
-MARKS = ("", "1. ", "2) ", "Step 3: ", "- ", "* ", "   - ", "a. ", "☐ ", "👉 ", "First, ", "[x] ", "4 - ", "#5 ", "Step Six: ")
+MARKS = (
+    "",
+    "1. ",
+    "2) ",
+    "Step 3: ",
+    "- ",
+    "* ",
+    "   - ",
+    "a. ",
+    "☐ ",
+    "👉 ",
+    "First, ",
+    "[x] ",
+    "4 - ",
+    "#5 ",
+    "Step Six: ",
+)
 WORDS = (
     "Walk to the kitchen", "open the fridge", "Grab milk.", "Polish the moon.", "fly to Mars", "I sit on the sofa.",
     "walk to sofa -> sit on sofa", "grab book; read book", "open it and then close it", "[Walk] <sofa> (1)",
     "It hums, and it is cold.", "The robot grabs the mug",
 )  # fmt: skip
 TITLES = (
-    "Task: Watch TV", "## Make tea", "**Go to bed**", "Read a novel", "### 2. Wash hands", "---", "```", "Author: me", "",
-    "", "Title: Rest", "Rest: lie on bed, close eyes, sleep",
+    "Task: Watch TV", "## Make tea", "**Go to bed**", "Read a novel", "### 2. Wash hands", "---", "```", "Author: me",
+    "", "", "Title: Rest", "Rest: lie on bed, close eyes, sleep",
 )  # fmt: skip
 LINES = st.one_of(st.sampled_from(TITLES), st.builds("{}{}".format, st.sampled_from(MARKS), st.sampled_from(WORDS)))
 

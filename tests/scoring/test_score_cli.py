@@ -71,12 +71,12 @@ def test_lcs_reads_what_program_reads(score, tmp_path, text):
 
 
 def test_what_is_not_read_is_counted_or_refused(score, tmp_path):
-    row = {"id": "a", "predicted": "sit = robot.sit(sofa)", "reference": "[Sit] <sofa> (1)"}
+    row = {"id": "a", "predicted": "sit = robot.sit(1 + sofa)", "reference": "[Sit] <sofa> (1)"}
     (tmp_path / "rows.jsonl").write_text(json.dumps(row))
     assert "1 with lines that are not steps" in score("lcs", "rows.jsonl").stdout
     found = json.loads(score("lcs", "rows.jsonl", "--json").stdout)
     assert (found["unread"], found["scores"][0]["unread"], found["scores"][0]["step"]) == (1, 1, 0)
-    (tmp_path / "rows.jsonl").write_text(json.dumps(row | {"reference": "robot.sit(sofa)"}))
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row | {"reference": "robot.sit(1 + sofa)"}))
     for command in ("lcs", "program"):
         refused = score(command, "rows.jsonl")
         assert refused.exit_code == 1 and "`reference` of id `a` is text without a step" in refused.output

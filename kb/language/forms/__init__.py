@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.code_plans import CODE
+from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commands import COMMANDS
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
@@ -27,7 +27,11 @@ FORMS: dict[str, Form] = {
 }
 """Forms by name, in the order in which they are tried."""
 
-_HINT = re.compile(r"\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|.*\bcharacter\b|(?!\s*\d)\D+(?::|=| [-–—] ).*(?:[,;>→]|then)", re.IGNORECASE).match
+_HINT = re.compile(
+    r"\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]"
+    r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
+    re.IGNORECASE,
+).match
 """Whether a line has what some line of each form has: most plans have none, and are not tried."""
 
 

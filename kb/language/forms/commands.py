@@ -85,14 +85,14 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
     return read(lines, lambda raw: raw if raw.lstrip().startswith(">") or not is_log else "")
 
 
-def read(lines: Sequence[str], told: Callable[[str], str]) -> list[Placed]:
-    """Return the steps of the lines of which `told` gives words; lines above the first are title and description."""
+def read(lines: Sequence[str], words_of: Callable[[str], str]) -> list[Placed]:
+    """Return the steps of the lines of which `words_of` gives words; title and description stand above the first."""
     from hearth.kb.language.plan_lines import plan_line
 
     found: list[Placed] = []
     begun = False
     for row, raw in enumerate(lines):
-        words = _words(told(raw))
+        words = _words(words_of(raw))
         if words and (meant := command(words)):
             begun = True
             found.append(step(row, meant))

@@ -37,7 +37,7 @@ def step(row: int, text: str, indent: int = 0) -> Placed:
 
 
 def note(row: int, text: str) -> Placed:
-    """Return a line that is no step, and is counted as such."""
+    """Return a line that explains, and is counted as such."""
     return Placed(row, PlanLine(" ".join(text.split()), 0, 1))
 
 

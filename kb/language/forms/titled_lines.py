@@ -1,9 +1,9 @@
-"""A plan on each line, behind its title: `Rest: walk to couch -> lie on couch`, `get book = ["find book", "read book"]`."""
+"""A plan on each line, behind its title: `Rest: walk to couch -> lie on couch`, `get book = ["find book"]`."""
 
 import re
 from collections.abc import Iterator, Sequence
 
-from hearth.kb.language.forms.code_plans import calls_of
+from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Form, Placed, step, title
 from hearth.kb.language.plan_lines import META, plan_line
 from hearth.kb.language.unmarked_lines import chained, clauses, is_like_step
@@ -17,7 +17,9 @@ _ROW = re.compile(r"\s*\|(?:\s*\d+\s*\|)?(?P<title>[^|]{2,80})\|(?P<steps>[^|]+(
 _LAYOUT = re.compile(r"[\s|:-]*|\s*\|[^.]*\|\s*")
 _BREAK = re.compile(r"\s*<br\s*/?>\s*", re.IGNORECASE)
 _MARK = re.compile(r"(?:[(\[]?\d{1,2}[.):\]]|[-*•])\s+")
-_LABEL = re.compile(r"(?:task|title|activity|goal|plan|steps?|answer|actions?|note|tip|thought|act|obs\w*)\b", re.IGNORECASE)
+_LABEL = re.compile(
+    r"(?:task|title|activity|goal|plan|steps?|answer|actions?|note|tip|thought|act|obs\w*)\b", re.IGNORECASE
+)
 _LISTED = re.compile(r"""[\[(]\s*(["'].*["'])\s*,?\s*[\])]\s*[,;]?""")
 _QUOTED = re.compile(r"\"((?:[^\"\\]|\\.)*)\"|'((?:[^'\\]|\\.)*)'")
 _NUMBER = re.compile(r"(?:^|\s)[(\[]?\d{1,2}[.):\]]\s+")
@@ -25,7 +27,9 @@ _HALF = 0.5
 _LONGEST = 5_000
 
 
-_BEGINS = re.compile(r"(?!\s*\|\s*:?-)\s*(?:[-*+•–▪]\s+)?(?:\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**\s*[:=–—-]|\|(?=.*(?:<br|;|->|→|\d[.)]\s)))")
+_BEGINS = re.compile(
+    r"(?!\s*\|\s*:?-)\s*(?:[-*+•–▪]\s+)?(?:\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**\s*[:=–—-]|\|(?=.*(?:<br|;|->|→|\d[.)]\s)))"
+)
 
 
 def parts_of(text: str) -> list[str]:
