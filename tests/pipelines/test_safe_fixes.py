@@ -14,7 +14,7 @@ HEAD = "Watch TV\nOn the sofa.\n\n\n"
     [
         ("[Wlak] <television> (1)", "[Walk] <television> (1)"),
         ("[Walk] <televison> (1)", "[Walk] <television> (1)"),
-        ("  [Walk]  <television>", "  [Walk]  <television> (1)"),
+        ("  [Walk]  <television>", "  [Walk]  <television>"),  # of instance 1, as thesis eq. 4.2 writes it
         ("[Walk] <television> 2", "[Walk] <television> (2)"),
         ("[Special] <flush the toilet>", "[Touch] <toilet> (1)"),
         ("[Walk] <tv> (1)\n[SwitchOn] <tv> (1)\n[SwitchOn] <tv> (1)", "[Walk] <tv> (1)\n[SwitchOn] <tv> (1)"),
