@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import typer
 
 from hearth.commands import inputs, output, score_output
+from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.scoring.predictions import Pair
@@ -26,6 +27,7 @@ def lcs(
     *,
     references: Path | None = None,
     instances: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
@@ -41,17 +43,15 @@ def lcs(
       echo '{"id": "tv", "predicted": ["[Walk] <sofa> (1)"], "reference": ["[Sit] <sofa> (1)"]}' > mine.jsonl
       python cli.py score lcs mine.jsonl
     """
-    from functools import partial
-
     from hearth.scoring.bootstrap import intervals
-    from hearth.scoring.dataset_scores import read_line
     from hearth.scoring.evaluate import METRICS, Scored, lcs_of
     from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.line_reader import LineReader
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
 
     rejects = FirstFaults()
-    pairs = read_pairs(file, references, partial(read_line, inputs.read_knowledge(None)), rejects=rejects)
+    pairs = read_pairs(file, references, LineReader(inputs.read_knowledge(None), fuzzy), rejects=rejects)
     scored = [Scored(pair, *both) for pair, both in zip(pairs, lcs_of(pairs, instances), strict=True)]
     shown = {name.removeprefix("lcs_"): metric for name, metric in METRICS.items() if name.startswith("lcs_")}
     columns = {name: [metric(each) for each in scored] for name, metric in shown.items()}
@@ -60,7 +60,7 @@ def lcs(
     signatures = [lcs_signature("+".join(LEVELS), instances), lcs_signature("step+object", instances=True)]
     counts = {"count": len(pairs), **{name: sum(_note(pair) == name for pair in pairs) for name in NOTES}}
     if as_json:
-        named = [{"id": pair.id, **row, "missing": pair.predicted is None, "unread": _unread(pair)}
+        named = [{"id": pair.id, **row, "missing": pair.predicted is None, "unread": _unread(pair), "fuzzy": pair.fuzzy}
                  for pair, row in zip(pairs, rows, strict=True)]  # fmt: skip
         output.emit({"signature": signatures[0], "signature_instances": signatures[1], **counts,
                      **score_output.rejects_json(rejects), "mean": means, "scores": named})  # fmt: skip
@@ -102,6 +102,7 @@ def program(
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     seed: int = 0,
     by: str | None = None,
     as_json: bool = False,
@@ -130,7 +131,7 @@ def program(
 
     how = Options(CHOICES[rules], match, scope, instances, seed)
     known, rejects = inputs.read_knowledge(None), FirstFaults()
-    pairs = read_predictions(file, references, known, rejects)
+    pairs = read_predictions(file, references, known, rejects, fuzzy)
     if homes and str(homes) == ALL:
         pairs, homes, by = in_homes(pairs, names()), None, by or environments.HOME
     scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes, home), how, rejects)
@@ -150,6 +151,7 @@ def dataset(
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     seed: int = 0,
     by: str | None = None,
     failures: bool = False,
@@ -186,7 +188,17 @@ def dataset(
     with bar("shares scored") as seen:
         opened = Dataset.open(folder, failures)
         scored = score_dataset(
-            opened, file, split, asked, how, workers, seen, only_given=only_given, originals=originals, rejects=rejects
+            opened,
+            file,
+            split,
+            asked,
+            how,
+            workers,
+            seen,
+            only_given=only_given,
+            originals=originals,
+            fuzzy=fuzzy,
+            rejects=rejects,
         )
     score_output.show(scored, how, by, rejects, as_json)
     score_output.warn_missing(scored)
