@@ -98,7 +98,7 @@ def program(
     graph: Path | None = None,
     home: str = "",
     homes: Path | None = None,
-    rules: Literal["default", "replay", "evolving_graph"] = "default",
+    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
@@ -115,7 +115,8 @@ def program(
     to FILE's folder), else --home or --graph; with `--homes all`, each of our homes. A goal is else what the reference
     achieves; conditions that hold at the start do not count (`goal_whole` counts them). Steps may be natural language.
     Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
-    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph).
+    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph); `auto`
+    takes the last for a --graph in which no two things are CLOSE, as `run` does, and ours otherwise.
 
     \b
     Examples:
@@ -129,8 +130,9 @@ def program(
     from hearth.scoring.first_faults import FirstFaults
     from hearth.simulation.rules import CHOICES
 
-    how = Options(CHOICES[rules], match, scope, instances, seed)
-    known, rejects = inputs.read_knowledge(None), FirstFaults()
+    known, rejects = inputs.read_knowledge(None, "", graph), FirstFaults()
+    auto = inputs.read_rules(rules, inputs.read_home("", graph, None, known)) if graph else CHOICES["default"]
+    how = Options(auto if rules == "auto" else CHOICES[rules], match, scope, instances, seed)
     pairs = read_predictions(file, references, known, rejects, fuzzy)
     if homes and str(homes) == ALL:
         pairs, homes, by = in_homes(pairs, names()), None, by or environments.HOME

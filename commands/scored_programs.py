@@ -35,9 +35,9 @@ def read_predictions(
     Raises:
         HearthError: nothing in the file can be scored.
     """
-    if references or has_predictions(file):
-        return read_pairs(file, references, LineReader(known, fuzzy), rejects=rejects, alone=references is None)
     with placed(file) as path:
+        if references or has_predictions(path):
+            return read_pairs(path, references, LineReader(known, fuzzy), rejects=rejects, alone=references is None)
         pairs = list(_programs(path, known, inputs.name_of(file), rejects, fuzzy))
     if not pairs:
         raise _nothing(file, rejects)
