@@ -25,6 +25,7 @@ from hearth.pipelines.readers import (
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
+from hearth.pipelines.readers.relaxed_json import uncommented
 from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -55,6 +56,9 @@ _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 
 _NUMBER = re.compile(r"\s*\[\d{1,4}\]\s+[^\s,\]}]")
 """The number of a step in brackets, `[1] Walk to fridge`."""
+
+_COMMENT_LINE = re.compile(r"\s*(?://.*|/\*(?:(?!\*/).)*\*/\s*)$")
+"""A line of JSON that is a comment."""
 
 _MARKUP = re.compile(
     r"\s*(?:(?P<HTML><!doctype html|<html\b)|(?P<SVG><svg\b)|(?P<XML><\?xml\b)|(?P<RTF>\{\\rtf))", re.IGNORECASE
@@ -162,17 +166,19 @@ def _text(path: Place, place: str) -> Recognised:
 
 
 def _by_first_lines(path: Place, place: str) -> Recognised:
-    whole = [line for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
-    first = [line[:_LONGEST] for line in whole if line.strip()]
+    suffix = _suffix(path)
+    whole = [line for line, _ in itertools.islice(lines(path), _LOOKED_AT) if line.strip()]
+    if suffix in _JSON:
+        whole = list(itertools.dropwhile(_COMMENT_LINE.match, whole))
+    first = [line[:_LONGEST] for line in whole]
     line = first[0] if first else ""
+    line = uncommented(line) if suffix in _JSON else line
     if markup := _MARKUP.match(line):
         return _refused(path, place, f"{markup.lastgroup}, in which no plans are read: save it as plain text or CSV")
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
     if looks_like_json(line) and not _NUMBER.match(line):
-        return _json(path, place, [line for line in whole if line.strip()])
-    suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
-    suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
+        return _json(path, place, whole)
     if (suffix in _TABLES and first) or (line.lstrip()[:1] != "|" and spreadsheets.names_it(line[:10_000])):
         return Recognised(path, place, spreadsheets.NAME)
     if suffix in _JSON and first:
@@ -186,6 +192,12 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     if suffix not in _TEXT | _JSON | _TABLES and not any(plan_line(line).bracketed for line in first):
         return _refused(path, place, "a text without a step")
     return Recognised(path, place, text.NAME)
+
+
+def _suffix(path: Place) -> str:
+    """The ending of a file's name, without that of a packed file."""
+    suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
+    return next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
 
 
 def _json(path: Place, place: str, first: list[str]) -> Recognised:

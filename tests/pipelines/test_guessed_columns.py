@@ -195,7 +195,20 @@ def test_an_unknown_action_among_known_ones_is_a_fault_and_no_title(write, key):
     assert "tickle" not in programs[0][0]
 
 
-@pytest.mark.parametrize(("text", "line"), [('[\n{"title": "A", "steps": ["Sleep"]},\n{"title": "B",}\n]', 3),
+def test_comments_in_json_keep_the_places_of_steps(write):
+    text = '// "notes"\n{ // of\n"title": "A", /* the\n first */ "steps": ["Sleep", "tickle lamp",], // all\n}\n'
+    for given in (text, text.replace("{", "[{", 1).replace("\n}", "\n}]")):
+        programs, faults = read(write("a.json", given))
+        assert programs == [("A", [(4, "[Sleep]")])] and faults == [("NOT_UNDERSTOOD", 4)]
+
+
+def test_pairs_of_an_action_and_its_object_are_steps_also_beside_one_that_is_not_known(write):
+    value = {"title": "A", "llm_output": [["WALK", "lamp"], ["REBOOT", "lamp"], ["SWITCHON", "lamp"]]}
+    programs, faults = read(write("a.json", json.dumps(value, indent=1)))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES] and faults == [("NOT_UNDERSTOOD", 9)]
+
+
+@pytest.mark.parametrize(("text", "line"), [('[\n{"title": "A", "steps": ["Sleep"]},\n{"title": "B",,}\n]', 3),
                                             ('{"title": "A", "steps": ["Sleep"]}\n{"title": NaN}\n', 2)])  # fmt: skip
 def test_a_record_that_is_no_json_is_one_fault_at_its_place(write, text, line):
     programs, faults = read(write("a.json", text))
