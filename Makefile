@@ -15,6 +15,8 @@ JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
 PYTHON ?= python3
 
 READY  := .venv/.ready
+# It names the folder that it was made in. In a copy of the folder, or after a move, it is made again.
+MOVED  := $(shell [ ! -s .venv/.ready ] || [ "$$(cat .venv/.ready)" = "$$(pwd -P)" ] || echo elsewhere)
 PY     := .venv/bin/python
 HEARTH := $(PY) cli.py
 STAGES := ingest validate sample augment render publish
@@ -36,6 +38,7 @@ KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
 .PHONY: all models film-models film-tables tables full mini frames demos challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
+.PHONY: elsewhere
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -69,7 +72,7 @@ mini frames demos:
 
 setup: $(READY)  ## make .venv with the locked versions (with uv if installed, else pip)
 
-$(READY): requirements.lock pyproject.toml setup.sh
+$(READY): requirements.lock pyproject.toml setup.sh $(MOVED)
 	@PYTHON=$(PYTHON) ./setup.sh
 
 $(STAGES): %: $(OUT)/%/manifest.json  ## bring one stage and those before it up to date

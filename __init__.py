@@ -13,6 +13,8 @@ from hearth.schemas.explained import explained
 from hearth.version import VERSION
 
 if TYPE_CHECKING:
+    from duckdb import DuckDBPyConnection
+
     from hearth.datasets.dataset import Dataset
     from hearth.kb.knowledge import Knowledge
     from hearth.schemas.program import Program
@@ -26,16 +28,22 @@ __version__ = VERSION
 def _modules() -> dict[str, str]:
     """The module of each entry point."""
     import re
+
+    return {name: module for module, name in re.findall(r"^from (\S+) import (\w+) as \2$", _stub(), re.MULTILINE)}
+
+
+def _stub() -> str:
     from pathlib import Path
 
-    names = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
-    return {name: module for module, name in re.findall(r"^from (\S+) import (\w+) as \2$", names, re.MULTILINE)}
+    return Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
 
 
 def __getattr__(name: str) -> Any:
     """An entry point, imported when it is first used."""
     from importlib import import_module
 
+    if name == "__all__":
+        return _public()
     if name == "Env":
         value = _env()
     elif name in _modules():
@@ -47,6 +55,26 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module `hearth` has no attribute `{name}`")
     globals()[name] = value
     return value
+
+
+def __dir__() -> list[str]:
+    """The entry points, and what every module has: notebooks complete them."""
+    ours = (name for name in globals() if name.startswith("__"))
+    return sorted({*ours, *_public(), *_rooms()})
+
+
+def _public() -> list[str]:
+    """The entry points, sorted: `__all__`, made when it is asked for."""
+    import re
+
+    return sorted({*_modules(), *re.findall(r"^def (\w+)", _stub(), re.MULTILINE)})
+
+
+def _rooms() -> set[str]:
+    """The subpackages that are imported, which are attributes, too."""
+    import sys
+
+    return {name.split(".")[1] for name in sys.modules if name.startswith(f"{__name__}.")}
 
 
 def _env() -> type[Env]:
@@ -92,6 +120,32 @@ def load(path: str, failures: bool = False) -> Dataset:
     from hearth.datasets.dataset import Dataset
 
     return Dataset.open(path, failures)
+
+
+@explained
+def attach(connection: DuckDBPyConnection, path: str, name: str) -> None:
+    """Give a DuckDB connection of yours a dataset's tables, views and macros, as those of a database `name`.
+
+    `ATTACH` of `catalog.duckdb` alone does not find the folder that the file lies in.
+
+    Args:
+        connection: as `duckdb.connect()` makes it.
+        path: a dataset, or the folder of a build; it must stay where it is.
+        name: of the database, as `ATTACH ... AS name` has it.
+
+    Raises:
+        HearthError: the folder is not a dataset; BAD_ARGUMENT, where the connection has that name already.
+
+    Examples:
+        >>> import duckdb
+        >>> connection = duckdb.connect()
+        >>> hearth.attach(connection, folder, "h")
+        >>> connection.sql("SELECT title FROM h.originals JOIN h.steps USING (program_id) LIMIT 1").fetchall()
+        [('Fetch milk',)]
+    """
+    from hearth.datasets.dataset import Dataset
+
+    Dataset.open(path).attach_to(connection, name)
 
 
 @explained

@@ -1,3 +1,5 @@
+from duckdb import DuckDBPyConnection
+
 from hearth.datasets.dataset import Dataset as Dataset
 from hearth.datasets.execution_graphs import ExecutionGraphs as ExecutionGraphs
 from hearth.datasets.export.formats import export as export
@@ -36,6 +38,7 @@ from hearth.simulation.world.world import World as World
 
 __version__: str
 
+def attach(connection: DuckDBPyConnection, path: str, name: str) -> None: ...
 def load(path: str, failures: bool = False) -> Dataset: ...
 def knowledge(overlay: str | None = None) -> Knowledge: ...
 def home(name: str, knowledge: Knowledge | None = None) -> Home: ...

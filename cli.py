@@ -33,6 +33,7 @@ if __name__ == "__main__":
 import typer
 from typer.core import TyperGroup
 
+from hearth.commands.plain_help import make_plain
 from hearth.commands.program_name import program_name, show_name
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -125,6 +126,7 @@ def load(name: str) -> Any:
         single.command(name)(target)
         command = typer.main.get_command(single)
     show_name(command)
+    make_plain(command)
     return command
 
 

@@ -32,6 +32,11 @@ apt_install() {
 make_venv() {
     local python version
     python=$(find_python)
+    # The commands of .venv name its folder, and run the code of that folder wherever .venv is copied or moved to.
+    if [ -s .venv/.ready ] && [ "$(cat .venv/.ready)" != "$(pwd -P)" ]; then
+        say "Making .venv anew: it was set up in $(cat .venv/.ready)"
+        rm -rf .venv
+    fi
     if [ -x .venv/bin/python ] && .venv/bin/python -c '' 2>/dev/null; then return; fi
     rm -rf .venv
     if command -v uv >/dev/null && uv venv -q --seed --python "$(command -v "$python")" .venv; then return; fi
@@ -80,4 +85,4 @@ say "Setting up .venv (once; half a minute with uv, a minute or two with pip)"
 make_venv
 install_packages
 install_libraries
-touch .venv/.ready
+pwd -P >.venv/.ready

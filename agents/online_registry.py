@@ -46,7 +46,9 @@ def _nopa(about: str, settings: Settings) -> OnlineKind:
 
 ONLINE: dict[str, OnlineKind] = {
     "expected_time": OnlineKind(ExpectedTime, "saves the most expected ticks, over the exact posterior"),
-    "watchful": OnlineKind(Watchful, "the same for who sees its own room only: goes to watch where that saves time"),
+    "watchful": OnlineKind(
+        Watchful, "as above, but it sees its own room only, and goes to watch where that saves time"
+    ),
     "watchful_stays": OnlineKind(
         lambda goals: Watchful(goals, Watching(seeks=False)), "the same, watches who is in view anyway"
     ),

@@ -4,12 +4,7 @@ import csv
 import io
 from collections.abc import Iterable
 
-_RUNS = ("=", "+", "-", "@", "\t", "\r")
-
-
-def safe_cell(text: str) -> str:
-    """The text, with an apostrophe in front if a spreadsheet would read it as a formula."""
-    return f"'{text}" if text.startswith((*_RUNS, "'")) else text
+from hearth.storage.csv_files import safe_cell
 
 
 def original_cell(text: str) -> str:

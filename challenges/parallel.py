@@ -15,7 +15,7 @@ from hearth.challenges.action_codes import Number
 from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
 from hearth.challenges.play import MOST_TICKS
 from hearth.challenges.seen_arrays import Arrays
-from hearth.challenges.session import Opening, Session, Setting
+from hearth.challenges.session import MOST_SEED, Opening, Session, Setting
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from pettingzoo import AECEnv, ParallelEnv
 else:
     ParallelEnv = library("pettingzoo").ParallelEnv
-
-MOST_SEED = 2**63 - 1
 
 
 class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]

@@ -68,6 +68,10 @@ def opening(home: Home, goal: Goal | str, agents: int = 2, strides: tuple[float,
     return begin
 
 
+MOST_SEED = 2**63 - 1
+"""Seeds of episodes are below it."""
+
+
 @dataclass(frozen=True)
 class Setting:
     """How episodes are played.

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from hearth.agents.protocol import Agent
 from hearth.challenges.action_codes import Number
-from hearth.challenges.parallel import MOST_SEED
 from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
 from hearth.challenges.seen_arrays import Arrays
-from hearth.challenges.session import Session, Setting
+from hearth.challenges.session import MOST_SEED, Session, Setting
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
@@ -73,6 +72,7 @@ class HomeEnv(Env[Arrays, Number]):
         self.observation_space: Space[Any] = self.session.observation_space()
         self.action_space = self.session.action_space()
         self._pictures = Pictures(render_mode, camera)
+        self._begun = False
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Arrays, dict[str, Any]]:
         """Begin an episode.
@@ -84,6 +84,7 @@ class HomeEnv(Env[Arrays, Number]):
         super().reset(seed=seed)
         chosen = int(self.np_random.integers(MOST_SEED))
         self.session.begin(chosen)
+        self._begun = True
         told = self.session.setting.told
         for number, partner in self.partners.items():
             view, _ = self.session.seen(number)
@@ -95,8 +96,11 @@ class HomeEnv(Env[Arrays, Number]):
         """One tick: the learner's action, and what its partners choose.
 
         Raises:
-            HearthError: BAD_ARGUMENT, where the action is not in its space. The episode is as before.
+            HearthError: OUT_OF_ORDER before the first `reset`; BAD_ARGUMENT, where the action is not in its space. The
+                episode is as before.
         """
+        if not self._begun:
+            raise HearthError.of(Code.OUT_OF_ORDER, "`step` came before the first `reset`", suggestion="call `reset()`")
         session = self.session
         chosen: dict[int, Step | Failure | None] = {self.learner: session.read(self.learner, action)}
         for number, partner in self.partners.items():

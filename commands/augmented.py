@@ -57,6 +57,9 @@ def augmented(
     print("\nPrograms by length")
     output.table(("steps", "originals", "augmented"), [(name, before[name], after[name]) for name in before])
     for name, conditions in found["conditions"].items():
+        if not conditions:
+            print(f"\nNo condition of the start names a {name.replace('_', ' ')}.")
+            continue
         print(f"\nConditions of the start that name a {name.replace('_', ' ')}: before and after augmenting")
         for condition, shares in conditions.items():
             for label, share in shares.items():

@@ -262,13 +262,11 @@ def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _print(found: Funnel, out: Path, *, whole: bool) -> None:
-    from hearth.pipelines.engine.stages import RECORDS
-
     rows = [
         (
             name,
             *(counts.records_in, counts.through, counts.rejected, counts.partial, counts.rows.total()),
-            RECORDS[name],
+            found.records[name],
             _reasons(counts.codes),
         )
         for name, counts in found.stages.items()
@@ -279,7 +277,7 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
     for place, columns in found.columns.items():
         print(output.shown(shown(place, columns)))
     if fuzzy := found.fuzzy:
-        print(f"Read with words corrected or left out: {output.counted(fuzzy, 'program')}; `--strict` refuses them.")
+        print(f"Read with words corrected or left out: {output.counted(fuzzy, 'step')}; `--strict` refuses them.")
     for line in found.unread:
         print(output.shown(f"Not read: {line}"))
     head = ("records in", "passed", "rejected", "parts rejected", "rows out", "records are", "reasons")

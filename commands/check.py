@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hearth.commands import inputs, output
+from hearth.commands import grouped_faults, inputs, output
+from hearth.commands.grouped_faults import in_order
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.pipelines.checks.checked_text import Checked, check_text, warnings_of
 from hearth.schemas.decoding import decode
@@ -31,6 +32,7 @@ def check(
     fuzzy: Fuzzy = Fuzzy.TYPOS,
     strict: bool = False,
     kb: Path | None = None,
+    summary: bool = False,
     as_json: bool = False,
 ) -> None:
     """Check programs and underline the faults.
@@ -38,7 +40,8 @@ def check(
     All faults of all files are reported: lines that are not steps, instances that are not numbers, unknown actions and
     objects, a wrong number of objects, objects that do not afford the action or are given twice, plans that are not
     understood. A file may hold several programs, in any form that `build` reads. The status is 1 if there is a fault.
-    --fix corrects program text. With --lint: states set twice, actions that no simulation runs, objects used without a
+    Equal faults are printed once, with their other places; --summary counts faults by kind. --fix corrects program
+    text. With --lint: states set twice, actions that no simulation runs, objects used without a
     walk to them, programs without an effect.
 
     \b
@@ -54,7 +57,7 @@ def check(
     if as_json:
         output.emit({"files": [_json(each) for each in checked], "faults": faults})
     else:
-        _print(checked, faults)
+        _print(checked, faults, summary=summary)
     output.status(faults, strict=True)
 
 
@@ -146,16 +149,22 @@ def _strictly(checked: Checked) -> Checked:
 
 
 def _json(checked: Checked) -> dict[str, Any]:
-    found = {name: getattr(checked, name) for name in ("file", "programs", "steps", "faults")}
-    found["fuzzy"] = sum(each.code == Code.FUZZY_MATCH for each in (*checked.faults, *checked.warnings))
-    return found | {name: value for name in ("warnings", "diff") if (value := getattr(checked, name))}
+    found = {name: getattr(checked, name) for name in ("file", "programs", "steps")}
+    faults, warnings = in_order(checked.faults), in_order(checked.warnings)
+    fuzzy = sum(each.code == Code.FUZZY_MATCH for each in (*faults, *warnings))
+    more = {"warnings": warnings, "diff": checked.diff}
+    return {**found, "faults": faults, "fuzzy": fuzzy, **{name: value for name, value in more.items() if value}}
 
 
-def _print(checked: list[Checked], faults: int) -> None:
+def _print(checked: list[Checked], faults: int, *, summary: bool) -> None:
     for each in checked:
         sys.stdout.write(each.diff)
-        output.report(each.faults, sys.stdout)
-        output.report(each.warnings, sys.stdout, kind="warning")
+    kinds = [(kind, [fault for each in checked for fault in in_order(getattr(each, f"{name}s"))])
+             for kind, name in (("error", "fault"), ("warning", "warning"))]  # fmt: skip
+    if summary:
+        grouped_faults.summary(kinds)
+    for kind, found in () if summary else kinds:
+        grouped_faults.report(found, sys.stdout, kind)
     programs, steps = sum(each.programs for each in checked), sum(each.steps for each in checked)
     result = output.counted(faults, "fault") if faults else "no faults"
     warnings = sum(len(each.warnings) for each in checked)

@@ -25,7 +25,7 @@ def diff(first: Path, second: Path, rows: int = 5, strict: bool = False, as_json
     if as_json:
         output.emit([_json(each) for each in found])
     elif not found:
-        print("the same rows in every table")
+        print("no differences")
     else:
         columns = ["table", f"only in {first}", f"only in {second}", "changed"]
         output.table(columns, [[each.table, *each.counts] for each in found])

@@ -80,6 +80,15 @@ def _installed(name: str) -> bool:
     return True
 
 
+def folder() -> Finding:
+    """The folder whose code runs: in a copy of a checkout, `.venv` runs that of the original."""
+    runs, called = Path(__file__).resolve().parents[1], Path(sys.argv[0]).absolute()
+    at = called.parents[2] if called.parts[-3:-1] == (".venv", "bin") else called.parent
+    if (at / "commands/doctor.py").is_file() and at.resolve() != runs:
+        return Finding("folder", BROKEN, f"runs the code of {runs}, not of {at}", f"run `make setup` in {at}")
+    return Finding("folder", OK, str(runs))
+
+
 def missing_libraries() -> list[str]:
     """The Debian packages of open3d's libraries that are missing on this machine."""
     return [package for library, package in LIBRARIES.items() if not _loads(library)]
@@ -211,7 +220,7 @@ def uv() -> Finding:
 
 
 CHECKS: tuple[Callable[[], Finding], ...] = (
-    python, packages, rays, codecs, browser, web, fonts, disk, cores, real_data, uv,
+    python, folder, packages, rays, codecs, browser, web, fonts, disk, cores, real_data, uv,
 )  # fmt: skip
 """All checks, in the order of the table."""
 

@@ -19,8 +19,9 @@ def export(
     """Write a published dataset in another form.
 
     Forms: release (the original layout, which `ingest` reads back), nl (natural-language steps, pairs for instruction
-    tuning, examples of planning papers), jsonl (every table), code (Python functions), networkx (node-link JSON) and
-    graphml (graphs before and after), rdf (Turtle), pddl (a domain, and a problem for each execution).
+    tuning, examples of planning papers), jsonl and csv (every table), code (Python functions, which run), networkx
+    (node-link JSON) and graphml (graphs before and after), rdf (Turtle), pddl (a domain, and a problem for each
+    execution), coco (pictures, with the mask and the box of every thing in them).
 
     \b
     Example:
@@ -32,7 +33,7 @@ def export(
     from hearth.datasets.export.formats import export as exported
 
     if not form:
-        raise typer.BadParameter(f"which form? One of {', '.join(FORMATS)}", param_hint="--format")
+        raise typer.BadParameter(f"choose a form: {', '.join(FORMATS)}", param_hint="--format")
     number = exported(Dataset.open(dataset, failures), form, out, Wanted(tuple(program or ()), limit))
     text = f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}"
     output.say(text, {"format": form, "out": out, "count": number}, as_json)

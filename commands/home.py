@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import typer
 
 from hearth.commands import output
+from hearth.commands.grouped_faults import alike, report
 from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
         document = {"home": home, "faults": faults, "by_code": _codes(faults), "unusable": useless}
         output.emit(document if made is None else {**document, "met": met(made), "unmet": made.unmet})
     else:
-        output.report(faults)
+        report(faults, key=alike)
         for sentence in useless:
             output.note(sentence)
         if made is not None:

@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from math import isnan
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -124,14 +125,14 @@ def _rich_table(columns: Sequence[str], rows: list[list[str]], numeric: list[boo
 
 
 def _text(cell: Any) -> str:
-    if cell is None:
+    if cell is None or (isinstance(cell, float) and isnan(cell)):
         return ""
     if isinstance(cell, bool):
         return "yes" if cell else "no"
     if isinstance(cell, int):
         return f"{cell:,}"
     if isinstance(cell, float):
-        return f"{cell:,.3f}"
+        return "" if isnan(cell) else f"{cell:,.3f}"  # not a number: there was nothing to compare
     return shown(str(cell))
 
 

@@ -1,10 +1,12 @@
 """What reading a damaged dataset raises, as ours."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hearth.schemas.diagnostics import HearthError
+from hearth.kb.spelling import key_of, near_names
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
 
@@ -46,9 +48,32 @@ def unreadable(error: Exception, place: Path | str) -> HearthError:
     return HearthError.of(Code.DAMAGED_FILE, message, file=str(place), suggestion=remedy)
 
 
-def refused_question(error: Exception, folder: Path) -> HearthError:
-    """What is said of a question that DuckDB did not answer: it, or a table of the folder, is at fault."""
+_UNKNOWN = re.compile(
+    r"(?i:column) (?:named )?\"?(?P<column>[^\"\s]+)\"?(?: not found|$)"
+    r"|(?P<kind>Table|View|[\w ]*Function|Table) with name \"?(?P<name>[^\"\s]+)\"? does not exist"
+)
+"""How DuckDB says that there is no column, table or function of a name."""
+
+
+def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) -> HearthError:
+    """What is said of a question that DuckDB did not answer: it, or a table of the folder, is at fault.
+
+    Args:
+        error: what DuckDB raised.
+        folder: of the dataset.
+        names: of all columns, tables and views, which may have been meant by an unknown one.
+    """
     message = str(error).split("\n\n", 1)[0]
     if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
         return unreadable(error, folder)
+    unbound = type(error).__name__ in ("BinderException", "CatalogException")
+    if unbound and (found := _UNKNOWN.search(message.split("\n", 1)[0].rstrip("!"))):
+        return _unknown(found["column"] or found["name"], (found["kind"] or "column").split()[-1].lower(), names)
     return HearthError.of(Code.SYNTAX, message)
+
+
+def _unknown(name: str, kind: str, names: Iterable[str]) -> HearthError:
+    near = near_names(name, {key_of(each): each for each in names})
+    meant = f"did you mean {' or '.join(f'`{each}`' for each in near)}?" if near else ""
+    remedy = meant or "`DESCRIBE programs` prints the columns of a table, `SHOW TABLES` the tables"
+    return HearthError(Diagnostic(Code.BAD_ARGUMENT, f"there is no {kind} `{name}`", found=name, suggestion=remedy))

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.damage import reading, refused_question, using
 from hearth.datasets.file_ranges import reading_between
-from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
+from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, define_as, describe, without_zones
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.program_entries import Entry, Run
 from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
 from hearth.datasets.stored_homes import StoredHome
+from hearth.schemas.brief import cut
 from hearth.schemas.explained import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.published_rows import StoredRunRow
@@ -27,8 +28,7 @@ if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
 
 
-OWN = """NOT EXISTS (SELECT 1 FROM perturbations x
-    WHERE x.environment_id = e.environment_id AND x.parent_id = e.program_id)"""
+OWN = "NOT is_perturbed(e.environment_id, e.program_id)"
 """The condition in SQL on rows `e` of `executions` for those that are not of originals in perturbed environments."""
 
 
@@ -126,12 +126,19 @@ class Dataset:
         for name in ("_attached", "_described", "stored_home", "knowledge", "vocabulary_ids"):
             self.__dict__.pop(name, None)
 
+    def attach_to(self, connection: Any, name: str) -> None:
+        """Give another connection the views and macros, as those of a database `name`: see `hearth.attach`."""
+        with reading(self.folder):
+            absent = absent_tables(self.folder, self.manifest)
+            define_as(connection, name, self.folder, absent, self.manifest["format"])
+
     @explained
     def sql(self, query: str, **parameters: Any) -> Any:
         """A query as a DuckDB relation; `$name` in it is the parameter of that name.
 
         Raises:
-            HearthError: SYNTAX, with DuckDB's own words, or when the query would change something.
+            HearthError: SYNTAX, with DuckDB's own words, or when the query would change something; BAD_ARGUMENT, where
+                it names a column, table or function that there is not.
 
         Examples:
             >>> query = "SELECT action FROM steps WHERE program_id = $id ORDER BY number"
@@ -146,7 +153,7 @@ class Dataset:
                 _ = self._described
             return self.connection.sql(query, params=parameters or None)
         except duckdb.Error as error:
-            raise refused_question(error, self.folder) from error
+            raise refused_question(error, self.folder, self._names()) from error
 
     @explained
     def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
@@ -159,17 +166,43 @@ class Dataset:
                 found = relation if limit is None or self._explains(query) else relation.limit(limit)
                 return list(relation.columns), without_zones(found).fetchall()
             except duckdb.Error as error:
-                raise refused_question(error, self.folder) from error
+                raise refused_question(error, self.folder, self._names()) from error
 
         return steady(self.folder, ask)
+
+    @explained
+    def batches(self, query: str, size: int, **parameters: Any) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
+        """Column names of a query and its rows, of which `size` are read at a time; errors as of `sql`."""
+        import duckdb
+
+        relation = without_zones(self.sql(query, **parameters))
+
+        def rows() -> Iterator[tuple[Any, ...]]:
+            try:
+                for batch in relation.to_arrow_reader(size):
+                    yield from zip(*(column.to_pylist() for column in batch.columns), strict=True)
+            except duckdb.Error as error:
+                raise refused_question(error, self.folder, self._names()) from error
+
+        return list(relation.columns), rows()
+
+    def _names(self) -> list[str]:
+        """Every name of a column, table or view, for questions that name none."""
+        query = "SELECT column_name FROM duckdb_columns() UNION SELECT view_name FROM duckdb_views()"
+        query += " UNION SELECT function_name FROM duckdb_functions() WHERE NOT internal"
+        return [name for (name,) in self.connection.execute(query).fetchall()]
 
     def _explains(self, query: str) -> bool:
         return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
 
     def __getattr__(self, name: str) -> Any:
-        if name not in (*TABLES, "steps", "ticks"):
-            raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, steps and ticks")
+        if name not in (*TABLES, *VIEWS):
+            raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, and views {', '.join(VIEWS)}")
         return steady(self.folder, lambda: self.connection.table(name))
+
+    def __dir__(self) -> list[str]:
+        """Attributes with the tables and views, so that notebooks complete them."""
+        return sorted({*super().__dir__(), *TABLES, *VIEWS})
 
     def __len__(self) -> int:
         return int(self.read("SELECT count(*) AS number FROM programs")[0]["number"])
@@ -186,7 +219,7 @@ class Dataset:
         """A program with its runs, repairs and sketches; ids of the embedded corpus may be those of another version.
 
         Raises:
-            KeyError: the id is unknown.
+            KeyError: the id is unknown; it names those that are like it.
         """
         return steady(self.folder, lambda: self._entry(program_id))
 
@@ -194,7 +227,7 @@ class Dataset:
         query = "SELECT * FROM programs WHERE program_id = $id"
         found = next(filter(None, (self._rows(query, name) for name in names_of(program_id))), None)
         if found is None:
-            raise KeyError(program_id)
+            raise KeyError(self._unknown(program_id))
         program_id = found[0]["program_id"]
         query = f"SELECT * FROM executions WHERE program_id = $id AND {self.included} ORDER BY execution_id"
         rows = self._rows(query, program_id)
@@ -205,6 +238,12 @@ class Dataset:
             wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
             runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         return Entry(found[0], tuple(map(self.run_of, runs)), tuple(repairs), tuple(sketches))
+
+    def _unknown(self, program_id: str) -> str:
+        """What is said of an id that no program has: which have ids like it, or where ids are found."""
+        query = "SELECT program_id FROM programs ORDER BY jaro_winkler_similarity(program_id, $id) DESC, 1 LIMIT 3"
+        near = ", ".join(f"`{row['program_id']}`" for row in self._rows(query, str(program_id)))
+        return f"no program `{cut(str(program_id), 80)}` among {len(self):,}; the nearest ids are {near or 'none'}"
 
     @property
     def included(self) -> str:

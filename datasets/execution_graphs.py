@@ -11,6 +11,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.codecs import Bindings, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.tensors import GraphSample, Tensors, to_tensors
+from hearth.schemas.brief import brief
 from hearth.schemas.explained import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
@@ -34,6 +35,9 @@ class GraphPair(NamedTuple):
     bound: Bindings
     start: EnvironmentGraph
     final: EnvironmentGraph
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 class ExecutionGraphs(Sequence[GraphPair]):
@@ -63,6 +67,9 @@ class ExecutionGraphs(Sequence[GraphPair]):
 
     def __getstate__(self) -> dict[str, Any]:
         return {**vars(self), "_opened": None}
+
+    def __repr__(self) -> str:
+        return f"ExecutionGraphs({str(self.folder)!r}, {len(self.ids):,} executions)"
 
     def __len__(self) -> int:
         return len(self.ids)

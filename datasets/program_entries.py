@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.damage import reading
 from hearth.datasets.stored_homes import StoredHome
+from hearth.schemas.brief import cut
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.literals import RENAMED
@@ -37,6 +38,10 @@ class Entry:
     runs: tuple[Run, ...]
     repairs: tuple[RepairedRow, ...]
     sketches: tuple[SketchRow, ...] = ()
+
+    def __repr__(self) -> str:
+        name, title = (cut(repr(self.row[key]), 60) for key in ("program_id", "title"))
+        return f"Entry({name}, {title}, {len(self.row['steps'])} steps, {len(self.runs)} runs)"
 
     @property
     def program(self) -> Program:
@@ -70,6 +75,10 @@ class Run:
     row: StoredRunRow
     homes: Callable[[str], StoredHome] = field(repr=False)
     folder: Path = field(repr=False)
+
+    def __repr__(self) -> str:
+        ended = "runs" if self.row["executable"] else "fails"
+        return f"Run({cut(repr(self.row['execution_id']), 120)}, {ended}, {len(self.row['ticks'])} ticks)"
 
     @property
     def home(self) -> str:

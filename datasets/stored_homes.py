@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from hearth.schemas.brief import brief
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.graph import EnvironmentGraph
 
@@ -14,6 +15,9 @@ class StoredHome(NamedTuple):
 
     graph: EnvironmentGraph
     working: WorkingGraph
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @classmethod
     def read(cls, rows: Callable[[str, str], list[Any]], name: str) -> StoredHome:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hearth.datasets.format.codecs import Bindings
+from hearth.schemas.brief import brief
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import PROPERTY_ID, RELATION_ID, ROOM_CATEGORY, STATE_ID
@@ -24,6 +25,9 @@ class GraphSample(NamedTuple):
     program: Program
     graph: EnvironmentGraph
     bound: Bindings
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 class Tensors(NamedTuple):
@@ -53,6 +57,9 @@ class Tensors(NamedTuple):
     actions: np.ndarray
     objects: np.ndarray
     lengths: np.ndarray
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def to_tensors(samples: Iterable[GraphSample], vocabulary: Iterable[tuple[str, str, int]]) -> Tensors:

@@ -14,6 +14,7 @@ from hearth.datasets.dataset_knowledge import other_base
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify_folder import AGAIN, manifest_faults, other_files, unknown
+from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES
@@ -56,6 +57,8 @@ class Verdict:
     faults: tuple[Diagnostic, ...]
     note: str = ""
     unknown: tuple[Diagnostic, ...] = ()
+
+    __repr__ = brief
 
 
 def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:

@@ -11,6 +11,7 @@ from itertools import product
 from operator import and_, or_
 
 from hearth.grounding.node_ids import by_number, classes_of
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
@@ -30,6 +31,8 @@ class Binding:
 
     nodes: dict[Key, int]
     tried: int
+
+    __repr__ = brief
 
     def apply(self, program: Program) -> Program:
         """The program bound; what has a node keeps it."""

@@ -25,6 +25,7 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
+from hearth.schemas.brief import brief
 from hearth.schemas.literals import Literal
 from hearth.schemas.tokens import Tokens
 
@@ -60,6 +61,8 @@ class Not:
 
     part: Formula
 
+    __repr__ = brief
+
     def __str__(self) -> str:
         return f"not {_grouped(self.part)}"
 
@@ -70,6 +73,8 @@ class And:
 
     parts: tuple[Formula, ...]
 
+    __repr__ = brief
+
     def __str__(self) -> str:
         return " & ".join(_grouped(part) for part in self.parts)
 
@@ -79,6 +84,8 @@ class Or:
     """Holds when a part holds."""
 
     parts: tuple[Formula, ...]
+
+    __repr__ = brief
 
     def __str__(self) -> str:
         return " | ".join(_grouped(part) if isinstance(part, Or | Some | Count) else str(part) for part in self.parts)
@@ -91,6 +98,8 @@ class Some:
     variable: str
     part: Formula
 
+    __repr__ = brief
+
     def __str__(self) -> str:
         return f"some {self.variable}: {self.part}"
 
@@ -102,6 +111,8 @@ class Count:
     variable: str
     part: Formula
     limit: Term
+
+    __repr__ = brief
 
     def __str__(self) -> str:
         return f"count {self.variable}: {self.part} < {self.limit}"
@@ -119,6 +130,8 @@ class Effect:
     literal: Literal[Term]
     condition: Formula = TRUE
     variables: tuple[str, ...] = ()
+
+    __repr__ = brief
 
     def __str__(self) -> str:
         text = str(self.literal) if self.condition == TRUE else f"{self.condition} -> {self.literal}"

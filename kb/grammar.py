@@ -104,7 +104,7 @@ class _Checker:
         for position, ref in enumerate(step.objects[: action.arity]):
             if self._class_name(ref.name) and not self.knowledge.affords(step.action, position, ref.name):
                 message = f"[{step.action}] can't be done to `{ref.name}`"
-                remedy = f"it takes {action.grammar[position]}"
+                remedy = f"its object must be {action.grammar[position]}"
                 yield self._fault(Code.NOT_AFFORDED, message, line, remedy, self._object(ref, line))
 
     def _arity(self, action: Action, step: Step, line: int) -> Iterator[Diagnostic]:

@@ -9,6 +9,7 @@ from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.groups import groups, relation_of, state_of, tool_of
 from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
 from hearth.kb.spelling import key_of, near_names
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import STATES
@@ -59,6 +60,8 @@ class Knowledge:
     _placements: Mapping[str, tuple[Placement, ...]] = field(repr=False)
     _held: Mapping[str, tuple[Placement, ...]] = field(repr=False)
     _limits: Mapping[str, Mapping[str, int]] = field(repr=False)
+
+    __repr__ = brief
 
     @cached_property
     def class_ids(self) -> Mapping[str, int]:

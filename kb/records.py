@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from hearth.kb.formula import Effect, Formula
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code
 
 
@@ -30,6 +31,8 @@ class Requirement:
     no_rooms: bool = False
     also: frozenset[str] = frozenset()
     never: frozenset[str] = frozenset()
+
+    __repr__ = brief
 
     def accepts(self, properties: frozenset[str], class_name: str, is_room: bool = False) -> bool:
         """Whether a thing of that class with those properties may be the argument."""
@@ -63,6 +66,9 @@ class Condition(NamedTuple):
     formula: Formula
     code: Code
     option: str = ""
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +104,8 @@ class Action:
     aliases: tuple[str, ...] = ()
     groups: frozenset[str] = frozenset()
     source: str = ""
+
+    __repr__ = brief
 
     @property
     def arity(self) -> int:
@@ -137,6 +145,8 @@ class ObjectClass:
     synonyms: tuple[str, ...] = ()
     source: str = ""
 
+    __repr__ = brief
+
 
 class Placement(NamedTuple):
     """Where a thing may be: `object` ON, IN or NEARBY `destination`, in `room` or anywhere ('').
@@ -150,6 +160,9 @@ class Placement(NamedTuple):
     room: str
     weight: int
     evidence: str
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def edge(self) -> str:
@@ -168,6 +181,9 @@ class Association(NamedTuple):
     other: str
     weight: int
     evidence: str
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 EDGES = {"ON": "ON", "IN": "INSIDE", "NEARBY": "CLOSE"}
@@ -196,6 +212,8 @@ class StateGroup:
     needs: frozenset[str] = frozenset()
     given_by: frozenset[str] = frozenset()
 
+    __repr__ = brief
+
 
 class Kind(NamedTuple):
     """A kind above the classes: `appliance`, a kind of `device`; the topmost has no parent."""
@@ -203,6 +221,9 @@ class Kind(NamedTuple):
     name: str
     parent: str
     gloss: str
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,3 +245,5 @@ class Repair:
     when: str = ""
     say: str = ""
     source: str = ""
+
+    __repr__ = brief

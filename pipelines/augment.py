@@ -18,7 +18,7 @@ from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.stage import Output, Plan, Stage
+from hearth.pipelines.engine.stage import NOTE, Job, Output, Partition, Plan, Stage, rows_of
 from hearth.repair.causes import cause
 from hearth.repair.loop import successes
 from hearth.repair.sketch import ENVIRONMENTS, Keep, inherited, sketch
@@ -54,7 +54,7 @@ class Context:
         self.in_default_state = cache(self.homes.in_catalog)
         self.seed = settings.seed
         self.options = Options(settings.variants, settings.tries, settings.strength)
-        self.each = float(plan.get("each", settings.variants))
+        self.each = _each(settings, plan)
         self.sketched = ""
         self.keep: Keep = ()
 
@@ -68,9 +68,26 @@ class Context:
 
     def options_for(self, record_id: str) -> Options:
         """How an execution is augmented; a fractional number of pairs is rounded up or down at random."""
-        whole = int(self.each)
-        more = rng(self.seed, "augment", record_id).random() < self.each - whole
-        return replace(self.options, count=whole + more)
+        return replace(self.options, count=_pairs(self.each, self.seed, record_id))
+
+
+def _pairs(each: float, seed: int, record_id: str) -> int:
+    """Return how many environments an execution gets."""
+    whole = int(each)
+    return whole + (rng(seed, "augment", record_id).random() < each - whole)
+
+
+def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
+    """The executions that get environments, and the first one of each program, which gives its sketch."""
+    each, last = _each(job.settings, job.plan), None
+    for row in rows_of(job, partition):
+        if row["program_id"] != last or _pairs(each, job.settings.seed, row["execution_id"]):
+            yield row
+        last = row["program_id"]
+
+
+def _each(settings: Settings, plan: Plan) -> float:
+    return float(plan.get("each", settings.variants))
 
 
 def process(record: CaseRow, context: Context) -> Iterator[Output]:
@@ -88,8 +105,8 @@ def process(record: CaseRow, context: Context) -> Iterator[Output]:
     sketched = [*_sketched(record, program, original, context)]
     yield from sketched
     yield from _outputs(record, found, context)
-    if not found.pairs and (options.count or not sketched):
-        yield _nothing_to_perturb(record, options.count)
+    if not found.pairs and options.count:
+        yield _nothing_to_perturb(record)
 
 
 def _sketched(
@@ -117,9 +134,8 @@ def _sketch(program_id: str, origin: str, program: Program, keep: Keep) -> Sketc
     return {"program_id": program_id, "origin": origin, "keep": list(keep), "steps": steps}
 
 
-def _nothing_to_perturb(record: CaseRow, wanted: int) -> Reject:
-    expected = "a precondition that can be perturbed" if wanted else "a build that asks for variants"
-    failure = Failure(Code.UNPERTURBED, expected=expected, actual="none")
+def _nothing_to_perturb(record: CaseRow) -> Reject:
+    failure = Failure(Code.UNPERTURBED, expected="a precondition that can be perturbed", actual="none")
     return Reject.failed(failure, record["place"], where=f"in {record['home']}")
 
 
@@ -247,13 +263,15 @@ def prepare(settings: Settings) -> Plan:
     if settings.target and manifest is not None:
         each = settings.target * strength(settings.strength).allowance / max(1, manifest.counts.tally["executable"])
         plan["each"] = round(min(each, settings.variants), 4)
+    if not _each(settings, plan):
+        plan[NOTE] = "no variants were requested: one of each program, for its sketch"
     return plan
 
 
-def _label(row: Row) -> str | None:
+def _labels(row: Row) -> tuple[str, ...]:
     if "repairs" not in row:
-        return None
-    return f"{len(row['repairs'])} repairs" if row["origin"] == "augmented" else ORIGINAL
+        return ()
+    return (f"{len(row['repairs'])} repairs" if row["origin"] == "augmented" else ORIGINAL,)
 
 
 STAGE = Stage(
@@ -264,8 +282,9 @@ STAGE = Stage(
     settings=("seed", "strength", "variants", "target", "tries"),
     open=lambda job: Context(job.settings, job.plan),
     prepare=prepare,
+    records=records,
     facts=overlays_used,
     select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),
     identify=lambda record: str(record["execution_id"]),
-    label=_label,
+    labels=_labels,
 )

@@ -8,15 +8,17 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engine.build_homes import Homes, known_homes
 from hearth.pipelines.engine.engines import engine as make_engine
 from hearth.pipelines.engine.estimates import forecast
 from hearth.pipelines.engine.overlays import kept_overlays, overlays
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.stages import STAGES, stage
+from hearth.pipelines.engine.stages import STAGES, record_of, stage
 from hearth.pipelines.engine.tiers import tiered
 from hearth.pipelines.render import no_pictures
+from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
@@ -42,6 +44,7 @@ class Funnel:
 
     Attributes:
         stages: counts by stage, in order, of the stages that have run.
+        records: what a record of each of them is, and what was left out.
         fresh: stages that were not up to date.
         dataset: the folder of the published dataset; None before it is published.
         columns: the columns of each table that was read, by field.
@@ -49,6 +52,7 @@ class Funnel:
     """
 
     stages: dict[str, Counts]
+    records: dict[str, str]
     fresh: tuple[str, ...]
     dataset: Path | None
     columns: dict[str, dict[str, str]]
@@ -56,13 +60,16 @@ class Funnel:
 
     @property
     def fuzzy(self) -> int:
-        """Programs with a step that was corrected or shortened."""
+        """Steps that were corrected or shortened."""
         return self.stages["validate"].tally["fuzzy"] if "validate" in self.stages else 0
+
+    __repr__ = brief
 
     def to_json(self) -> dict[str, Any]:
         """Plain values."""
         return {
             "stages": {name: counts.to_json() for name, counts in self.stages.items()},
+            "records": self.records,
             "fresh": list(self.fresh),
             "dataset": str(self.dataset) if self.dataset else None,
             "columns": self.columns,
@@ -122,6 +129,7 @@ def build(
         if only:
             settings = kept_overlays(settings, only)
         overlays(settings)  # their faults are reported before the sources are read
+        known_homes(settings)
         with locked(Path(folder)), make_engine(engine, workers, scheduler) as pool:
             for name in [only] if only else list(STAGES):
                 if name == "render" and progress and (settings.pictures or settings.videos):
@@ -133,6 +141,8 @@ def build(
                         progress.note(expected)
                 if result.fresh:
                     fresh.append(name)
+                if name == "ingest":
+                    Homes(settings).names()
                 if name == "ingest" or not only:
                     _check_left(name, settings)
         return funnel(settings, tuple(fresh))
@@ -148,10 +158,11 @@ def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
     """The counts in the manifests of a build."""
     manifests = {name: read_manifest(settings.folder(name)) for name in STAGES}
     counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
+    records = {name: record_of(name, manifest.content["plan"]) for name, manifest in manifests.items() if manifest}
     published = manifests["publish"]
     ingested = manifests["ingest"]
     columns = ingested.content.get("columns", {}) if ingested else {}
-    return Funnel(counts, fresh, published.folder if published else None, columns, tuple(_unread(ingested)))
+    return Funnel(counts, records, fresh, published.folder if published else None, columns, tuple(_unread(ingested)))
 
 
 def _unread(ingested: Manifest | None) -> Iterator[str]:

@@ -283,5 +283,5 @@ STAGE = Stage(
     finish=write_scenes,
     facts=lambda job: {"columns": job.context.columns},
     batch=lambda partition: max(BATCH, (partition.size or 0) // 16),
-    label=lambda row: row["kind"],
+    labels=lambda row: (row["kind"],),
 )

@@ -18,16 +18,14 @@ from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.split_assignment import programs_of
-from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
-from hearth.schemas.failures import Code
-from hearth.schemas.libraries import lacking, remedy
+from hearth.pipelines.engine.stage import NOTE, Job, Partition, Plan, Stage
+from hearth.schemas.libraries import lacking
 from hearth.schemas.row_types import PinholeRow, TrackRow
 from hearth.schemas.stage_rows import CaseRow, ClippedRow, DemonstratedRow, FilmedRow, RenderedRow
 from hearth.schemas.tables import CLIPPED, DEMONSTRATED, FILMED, RENDERED
 from hearth.storage.files import value_digest, write_bytes
 from hearth.storage.manifest import read_manifest
 from hearth.storage.partitions import READ_BATCH, read_rows
-from hearth.storage.rejects import Reject
 
 if TYPE_CHECKING:
     from hearth.rendering.cameras.camera import Camera
@@ -65,12 +63,8 @@ Made = RenderedRow | FilmedRow | ClippedRow | DemonstratedRow
 """A row of any of the stage's tables."""
 
 
-def process(case: CaseRow, context: Context) -> Iterator[tuple[str, Made] | Reject]:
-    """One row for each picture of a case, its film, its clips and its demonstration, if any; a reject if libraries for
-    pictures lack."""
-    if context.job.plan["lacking"]:
-        yield Reject.of(Code.NOT_RENDERED, no_pictures(context.job.plan["lacking"]), suggestion=remedy("pictures"))
-        return
+def process(case: CaseRow, context: Context) -> Iterator[tuple[str, Made]]:
+    """One row for each picture of a case, its film, its clips and its demonstration, if any."""
     from hearth.rendering.film.png import encode
     from hearth.rendering.film.snapshots import snapshots
 
@@ -245,6 +239,16 @@ def _pose(camera: Camera) -> list[float]:
 
 
 def prepare(settings: Settings) -> Plan:
+    """Choose the executions; none if libraries for pictures are not installed, which is not a fault of the data."""
+    chosen, absent = _chosen(settings), lacking("pictures")
+    if absent:
+        left = f"{len(chosen['executions']):,} left out: {', '.join(absent)} not installed"
+        noted = {NOTE: left} if chosen["executions"] else {}
+        chosen = {**{name: type(value)() for name, value in chosen.items()}, **noted}
+    return {**overlays(settings), **chosen, "lacking": absent}
+
+
+def _chosen(settings: Settings) -> Plan:
     """Choose the executions: the first ones of different programs, in homes of the catalog."""
     homes = Homes(settings)
     wanted = max(settings.pictures, settings.videos)
@@ -267,8 +271,7 @@ def prepare(settings: Settings) -> Plan:
     executions = dict(sorted([*found.values(), *((name, files[name]) for name in clips)]))
     executions |= {name: files[name] for name in above if name not in executions}
     chosen = {"executions": executions, "pictures": sorted(dict(found.values())), "films": films, "clips": clips}
-    chosen |= {"demonstrations": above}
-    return {**overlays(settings), **chosen, "lacking": lacking("pictures")}
+    return chosen | {"demonstrations": above}
 
 
 def no_pictures(libraries: list[str]) -> str:

@@ -212,6 +212,6 @@ STAGE = Stage(
     prepare=prepare,
     facts=overlays_used,
     begin=begin,
-    label=lambda row: "executable" if row["executable"] else "not executable",
+    labels=lambda row: ("executable" if row["executable"] else "not executable",),
     share=64,
 )

@@ -28,7 +28,7 @@ from hearth.simulation.world.world import World
 from hearth.storage.rejects import Reject
 
 FUZZY = "fuzzy"
-"""The label of programs with a step that was corrected or shortened."""
+"""The label of a step that was corrected or shortened; a row is counted once for each."""
 
 Check = Callable[[str, int, str, Knowledge], tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]]
 """`checked`, or `checked_natural_language`."""
@@ -164,7 +164,7 @@ STAGE = Stage(
     open=lambda job: Reading(knowledge(job.settings), Fuzzy(job.settings.fuzzy), job.settings.strict),
     prepare=knowledge_laid_over,
     begin=keep_knowledge,
-    label=lambda row: FUZZY if any(each["code"] == Code.FUZZY_MATCH for each in row["warnings"]) else None,
+    labels=lambda row: [FUZZY for each in row["warnings"] if each["code"] == Code.FUZZY_MATCH],
     facts=knowledge_used,
     # Descriptions without a program go on to `publish` as they are.
     select=lambda record, plan: bool(record["kind"] == "program"),

@@ -10,6 +10,7 @@ from hearth.repair import trim
 from hearth.repair.circumstances import Lost, lost
 from hearth.repair.handlers.common import Edit, Handler, RepairContext
 from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
+from hearth.schemas.brief import brief
 from hearth.schemas.failure_words import step_number
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
@@ -44,6 +45,8 @@ class Attempt:
     after: tuple[Step, ...]
     missed: Postconditions = ()
 
+    __repr__ = brief
+
     @property
     def cause(self) -> tuple[Code, str, tuple[int, ...], Postconditions]:
         """The failure repaired, whenever it occurs: equal for two attempts at one cause."""
@@ -67,6 +70,8 @@ class Repaired:
     attempts: tuple[Attempt, ...]
     sources: tuple[int, ...]
     failure: Failure | None = None
+
+    __repr__ = brief
 
 
 def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[bool, ...]:

@@ -12,6 +12,7 @@ from hearth.repair.circumstances import circumstances
 from hearth.repair.loop import TRIES, Attempt, repair
 from hearth.repair.perturb import Case, Perturbation, Perturbed, distinct
 from hearth.repair.strengths import MILD, Strength, strength
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
@@ -70,6 +71,8 @@ class Pair:
     attempts: tuple[Attempt, ...]
     failure: Failure | None = None
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True, slots=True)
 class Augmented:
@@ -84,6 +87,8 @@ class Augmented:
     execution: Execution
     goal: Postconditions
     pairs: tuple[Pair, ...]
+
+    __repr__ = brief
 
 
 def augment(

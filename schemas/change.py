@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
+from hearth.schemas.brief import brief
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import STATE_ID
 
@@ -37,6 +38,8 @@ class Change:
     cleared_states: tuple[State, ...] = ()
     added_nodes: tuple[Node, ...] = ()
     removed_nodes: tuple[int, ...] = ()
+
+    __repr__ = brief
 
     def __bool__(self) -> bool:
         edges, states = self.added or self.removed, self.set_states or self.cleared_states
@@ -73,6 +76,9 @@ class Parts(NamedTuple):
     edges: Set[Edge]
     states: Set[State]
     nodes: Mapping[int, Node] = _NO_NODES
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:

@@ -44,6 +44,11 @@ def why(failure: Failure) -> str:
     return special.format(*_names(failure), action=failure.action, expected=failure.expected, actual=failure.actual)
 
 
+def meaning(code: Code) -> str:
+    """Return what a code says of any thing: `the thing is inside the container, which is closed`."""
+    return MEANINGS.get(code) or why(Failure(code, action="Action", names=("thing", "other thing")))
+
+
 def listed(names: Sequence[str]) -> str:
     """Return some names in words: `the cup, the plate and 2 more things`."""
     shown = [f"the {spoken(name)}" for name in names[:MOST_NAMED]]
@@ -143,14 +148,16 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
     (Code.CONFLICT, "one instruction an agent and tick"): "one character is to do two things at the same time",
     (Code.NOT_SIMULATED, "a character at a place"): "the home does not say where the character stands",
     (Code.UNBOUND, "a step"): "the program has no step",
+    (Code.DUPLICATE, "a program of its own"): "{actual}",
+    (Code.UNPERTURBED, "a program of its own"): "{actual}",
+    (Code.UNPERTURBED, "a precondition that can be perturbed"): "it has no precondition that can be perturbed",
 }
 """Words of a failure whose code alone does not tell it from others, by what was expected."""
 
 WHY: Mapping[Code, Words] = {
     # Reading
     Code.EMPTY: "there is nothing in it",
-    Code.NO_STEP: "a line explains a step and is none",
-    Code.FINISHED: "the episode has ended",
+    Code.NO_STEP: "the line explains a step and is not a step itself",
     Code.NOT_TEXT: "it is not text",
     Code.LINE_TOO_LONG: "a line is too long",
     Code.BAD_ARCHIVE: "the archive cannot be opened",
@@ -172,6 +179,7 @@ WHY: Mapping[Code, Words] = {
     Code.NOT_UNDERSTOOD: "this could not be read as a step",
     Code.AMBIGUOUS: "this can be read in several ways",
     Code.FUZZY_MATCH: "this was read as something similar",
+    Code.NO_STEP: "this line was left out: it is not numbered as the steps are",
     # Objects of an action
     Code.NOT_AFFORDED: "[{action}] does not work with the {0}: its object must be {expected}",
     Code.NOT_SIMULATED: "[{action}] can be written, but the simulator does not execute it",
@@ -241,13 +249,30 @@ WHY: Mapping[Code, Words] = {
     Code.NOT_SEEN: "the character does not see the {0}",
     Code.NOT_ALLOWED: "[{action}] is not allowed here",
     Code.DISCONNECTED: "the agent is gone",
+    Code.FINISHED: "the player has finished the task",
     Code.AGENT_FAILED: _facts("the agent failed"),
     # People and their browsers
     Code.NO_SESSION: "there is no session",
     Code.TOO_FAST: "this came too soon after the last",
     Code.OUT_OF_ORDER: "this came out of order",
+    Code.FINISHED: "the person ended it",
 }
 """Why something failed, in words, for every code."""
+
+MEANINGS: Mapping[Code, str] = {
+    Code.WRONG_ARITY: "the action takes another number of objects",
+    Code.UNKNOWN_ACTION: "there is no action of that name",
+    Code.UNKNOWN_OBJECT: "there is no object class of that name",
+    Code.NOT_AFFORDED: "the action does not work with an object of this kind",
+    Code.NOT_SIMULATED: "the action can be written, but the simulator does not execute it",
+    Code.NOT_ALLOWED: "the action is not allowed here",
+    Code.UNKNOWN_AGENT: "the home has no character of that number",
+    Code.UNBOUND: "the home has no such thing, or none that the program can use",
+    Code.NO_FREE_HAND: "both hands are full",
+    Code.OCCUPIED: "there is no room left on the seat",
+    Code.NO_PLACE: "there is no place for the thing",
+}
+"""Words for a code alone, where those of a failure need its facts."""
 
 REMEDIES: Mapping[Code, str] = {
     Code.UNBOUND: "use another object or home, or `--sample` to add it",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from hearth.schemas.brief import brief
 from hearth.schemas.literals import Literal, Name
 
 
@@ -21,6 +22,8 @@ class Joined:
     join: str
     goals: tuple[Goal, ...]
     variable: str = ""
+
+    __repr__ = brief
 
     def __str__(self) -> str:
         if self.variable:
@@ -39,6 +42,8 @@ class Goal:
 
     counts: tuple[tuple[Literal[Name], int], ...] = ()
     parts: tuple[Joined, ...] = ()
+
+    __repr__ = brief
 
     @classmethod
     def of(cls, *wanted: Literal[Name] | tuple[Literal[Name], int]) -> Goal:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
+from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
@@ -38,6 +39,9 @@ class EdgeColumns(NamedTuple):
     relations: Any
     targets: Any
 
+    def __repr__(self) -> str:
+        return brief(self)
+
     def rows(self) -> Iterator[Edge]:
         """The edges, as plain tuples, which equal `Edge` and are made faster."""
         names = map(RELATIONS.__getitem__, self.relations.tolist())
@@ -68,6 +72,8 @@ class Node:
     box: Box | None = None
     yaw: float | None = None
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True, slots=True)
 class EnvironmentGraph:
@@ -76,6 +82,8 @@ class EnvironmentGraph:
     nodes: tuple[Node, ...] = ()
     edges: tuple[Edge, ...] = ()
     extra: tuple[tuple[str, Any], ...] = ()
+
+    __repr__ = brief
 
     def node(self, node_id: int) -> Node:
         """The node of that id.

@@ -26,8 +26,8 @@ EXTRAS = {
 }
 """The modules of each extra of pyproject.toml."""
 
-SET_UP = ("agents", "pictures", "web")
-"""The extras that `make setup` installs."""
+MADE = {"agents": "make setup", "pictures": "make setup", "web": "make setup", "models": "make .venv/.models"}
+"""What installs some extras in a checkout; pip of `.venv` installs the others."""
 
 
 def library(module: str) -> Any:
@@ -51,8 +51,8 @@ def remedy(extra: str) -> str:
     """How to install an extra where Hearth is."""
     if not CHECKOUT.is_file():
         return f"run `pip install '{DISTRIBUTION}[{extra}]'`"
-    command = f"`pip install '.[{extra}]'` in Hearth's folder, as `.venv/bin/python -m pip` after `make setup`"
-    return f"run `make setup`, or {command}" if extra in SET_UP else f"run {command}"
+    command = MADE.get(extra, f".venv/bin/python -m pip install '.[{extra}]'")
+    return f"run `{command}` in a checkout, else `pip install '.[{extra}]'` in Hearth's folder"
 
 
 def lacking(extra: str) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Generic, NamedTuple, TypeVar
 
+from hearth.schemas.brief import brief
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 
 Key = tuple[str, int]
@@ -74,6 +75,9 @@ class Literal(NamedTuple, Generic[T_co]):
     name: str
     terms: tuple[T_co, ...] = ()
     negated: bool = False
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @classmethod
     def of(cls, name: str, *terms: T) -> Literal[T]:

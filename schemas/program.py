@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
+from hearth.schemas.brief import brief
+
 MOST_OBJECTS = 2
 """Objects that an action takes at most."""
 
@@ -63,6 +65,8 @@ class Program:
     description: str = ""
     steps: tuple[Step, ...] = ()
     lines: tuple[int, ...] = field(default=(), compare=False)
+
+    __repr__ = brief
 
     def line(self, number: int) -> int:
         """The file line of step `number` (from 0), or 0 when unknown."""

@@ -136,7 +136,7 @@ class _Tried(TypedDict):
     environment_id: Annotated[str | None, "the perturbed environment"]
     parent_id: Annotated[str | None, "the program whose preconditions were perturbed"]
     home: Annotated[str, "the home"]
-    outcome: Annotated[str, "REPAIRED, or why no program came of repairing: DUPLICATE, NO_HANDLER, LOOP, ..."]
+    outcome: Annotated[str, "REPAIRED, or the code of the failure by which repairing gave no program, such as LOOP"]
 
 
 class RepairedRow(_Tried, RepairRow):
@@ -155,7 +155,9 @@ class SplitRow(TypedDict):
     ]
     execution_id: Annotated[str, "the execution"]
     program_id: Annotated[str, "its program"]
-    part: Annotated[str | None, "train, validation, test...; null where the split has no place for it"]
+    part: Annotated[
+        str | None, "train, validation, test or another part of this split; null where the split has no place for it"
+    ]
 
 
 class FrameRow(RenderedRow):
@@ -196,7 +198,7 @@ class LedgerRow(TypedDict):
     """What became of a stage's records: `records_in = records_through + records_rejected`."""
 
     stage: Annotated[str, "the stage"]
-    record: Annotated[str, "what its records are; the rows of other kinds go on as they are"]
+    record: Annotated[str, "what its records are, and what was left out; the rows of other kinds go on as they are"]
     order: Annotated[int, "place in the pipeline, from 0"]
     records_in: Annotated[Long, "records read"]
     records_through: Annotated[Long, "records that gave at least one row"]
@@ -204,4 +206,4 @@ class LedgerRow(TypedDict):
     partial_rejects: Annotated[Long, "parts refused of records that went on"]
     rows: Annotated[Long, "rows written"]
     codes: Annotated[list[CodeRow], "why records were refused, commonest first"]
-    fuzzy: Annotated[Long, "programs with a step that was read as a typo, or of which words were left out"]
+    fuzzy: Annotated[Long, "steps that were read as a typo, or of which words were left out"]

@@ -54,9 +54,9 @@ class NodeRow(TypedDict):
 
     id: Annotated[int, "number of the node, unique in its graph"]
     class_name: Annotated[str, "class of the object, as in `vocabulary`"]
-    category: Annotated[str, "kind of object: Rooms, Furniture, Props, ..."]
-    properties: Annotated[list[str], "what may be done with it: CAN_OPEN, GRABBABLE, ..."]
-    states: Annotated[list[str], "states that it is in: OPEN, OFF, CLEAN, ..."]
+    category: Annotated[str, "kind of object, such as Rooms, Furniture or Props"]
+    properties: Annotated[list[str], "what may be done with it, such as CAN_OPEN or GRABBABLE"]
+    states: Annotated[list[str], "states that it is in, such as OPEN, OFF or CLEAN"]
     prefab: Annotated[str | None, "the model that draws it; null without one"]
     box: Annotated[BoxRow | None, "where it is; null where the home has no geometry"]
     yaw: Annotated[float | None, "the way it faces, degrees about the vertical; null where unknown"]
@@ -196,7 +196,11 @@ class PerturbationRow(TypedDict):
     """A change of the preconditions that an environment was made for."""
 
     perturbation_id: Annotated[str, "the environment and the perturbation's number, from 0"]
-    kind: Annotated[str, "container, door, dirty, ...: see `repair.perturb`"]
+    kind: Annotated[
+        str,
+        "what was changed: sitting, lying, at_reach, plugged, on, open, free, facing, holding, container, location, "
+        "full_hands, dirty, door, pet or seated",
+    ]
     dropped: Annotated[list[ConditionRow] | None, "preconditions that no longer hold; null before format 2"]
     added: Annotated[list[ConditionRow] | None, "conditions that hold instead; null before format 2"]
     attempts: Annotated[list[int] | None, "the repairs of its failures, by their `attempt`; null before format 2"]
@@ -220,7 +224,7 @@ class PinholeRow(TypedDict):
     """Intrinsics of a camera, pixels."""
 
     fx: Annotated[float, "focal length, horizontally"]
-    fy: Annotated[float, "focal length, vertically"]
+    fy: Annotated[float, "focal length, vertically; negative, for y points up and rows count downwards"]
     cx: Annotated[float, "principal point, from the left"]
     cy: Annotated[float, "principal point, from above"]
 
@@ -243,7 +247,7 @@ class TrackRow(TypedDict):
     tick: Annotated[int, "the tick that it shows"]
     camera: Annotated[str, "name of the camera"]
     intrinsics: Annotated[PinholeRow, "of the camera, pixels"]
-    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
+    pose: Annotated[list[float], "camera (x right, y up, z forward) to world (x east, y up, z north), 4x4 row by row"]
 
 
 class VariationRow(TypedDict):

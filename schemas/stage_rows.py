@@ -58,7 +58,9 @@ class PartRow(TypedDict):
     """The part of a program in a split of its source's own."""
 
     split: Annotated[str, "name of the split"]
-    part: Annotated[str | None, "train, validation, test...; null where the split has no place for it"]
+    part: Annotated[
+        str | None, "train, validation, test or another part of this split; null where the split has no place for it"
+    ]
 
 
 class IngestedRow(_Kind, NamedRow):
@@ -151,11 +153,11 @@ class RenderedRow(TypedDict):
     execution_id: Annotated[str, "the execution filmed"]
     tick: Annotated[int, "the number of ticks done before the picture"]
     camera: Annotated[str, "name of the camera"]
-    modality: Annotated[str, "rgb, ids, depth, ..."]
+    modality: Annotated[str, "rgb (colours) or instance_ids (the mask of instances)"]
     width: Annotated[int, "pixels"]
     height: Annotated[int, "pixels"]
     intrinsics: Annotated[PinholeRow, "pinhole camera, pixels"]
-    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
+    pose: Annotated[list[float], "camera (x right, y up, z forward) to world (x east, y up, z north), 4x4 row by row"]
     start_time: Annotated[float | None, "seconds from the start of the execution; null for pictures between ticks"]
     end_time: Annotated[float | None, "the same"]
     layout_made: Annotated[bool, "whether the home had no geometry, and was laid out by its relations"]
@@ -180,7 +182,7 @@ class FilmedRow(TypedDict):
         list[TrackRow],
         "camera of the pictures from this one on: intrinsics, and pose from camera to world, 4x4 row by row",
     ]
-    variation: Annotated[VariationRow, "what was drawn by chance: see `rendering.scene.variation`"]
+    variation: Annotated[VariationRow, "what was drawn by chance"]
     layout_made: Annotated[bool, "whether the home had no geometry, and was laid out by its relations"]
     file: Annotated[str, "the video, relative to the dataset"]
 
@@ -214,7 +216,7 @@ class DemonstratedRow(TypedDict):
     width: Annotated[int, "pixels"]
     height: Annotated[int, "pixels"]
     intrinsics: Annotated[PinholeRow, "pinhole camera, pixels"]
-    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
+    pose: Annotated[list[float], "camera (x right, y up, z forward) to world (x east, y up, z north), 4x4 row by row"]
     layout_made: Annotated[bool, "whether the home had no geometry, and was laid out by its relations"]
     file: Annotated[
         str,

@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
@@ -84,6 +85,8 @@ class Scored:
     goal: GoalScore | None = None
     comparable: bool | None = None
     placed: bool = False
+
+    __repr__ = brief
 
     @property
     def missing(self) -> bool:
@@ -188,6 +191,8 @@ class Summary:
     errors: Mapping[ErrorClass, int]
     codes: Mapping[Code, int]
     failed_at: Mapping[int, int]
+
+    __repr__ = brief
 
 
 def signatures(options: Options, own: int = 0) -> dict[str, str]:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
+from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
@@ -30,6 +31,8 @@ class Execution:
     worlds: tuple[World, ...]
     failure: Failure | None = None
     rules: Rules = DEFAULT
+
+    __repr__ = brief
 
     @property
     def executable(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, overload
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
@@ -44,6 +45,8 @@ class Tick:
     before: World
     world: World
 
+    __repr__ = brief
+
     @property
     def change(self) -> Change:
         """What is different from before it, poses aside."""
@@ -75,6 +78,9 @@ class Env:
         self._world: World | None = None
         self.ticks: list[Tick] = []
         self._last_actions: dict[int, LastAction] = {}
+
+    def __repr__(self) -> str:
+        return f"Env({'no episode' if self._world is None else self._world!r}, {len(self.ticks):,} ticks)"
 
     @property
     def world(self) -> World:

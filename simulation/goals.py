@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from operator import is_
 
+from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.explained import explained
@@ -39,6 +40,8 @@ class Watch:
     candidates: Candidates
     met: tuple[int, ...] = ()
 
+    __repr__ = brief
+
     @property
     def count(self) -> int:
         """How often it holds."""
@@ -64,6 +67,8 @@ class Progress:
     goal: Goal
     watches: tuple[Watch, ...]
     trace: Trace | None = None
+
+    __repr__ = brief
 
     @classmethod
     @explained

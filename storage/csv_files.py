@@ -2,8 +2,9 @@
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import IO
 
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -19,6 +20,26 @@ DELIMITERS = ",;\t|"
 def delimiter_of(line: str) -> str:
     """What separates the cells of a table, by its first line: the most frequent of `DELIMITERS`."""
     return max(DELIMITERS, key=line.count)
+
+
+_RUNS = ("=", "+", "-", "@", "\t", "\r")
+_UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\t\n\r"}
+
+
+def safe_cell(text: str) -> str:
+    """The text, with an apostrophe in front if a spreadsheet would read it as a formula."""
+    return f"'{text}" if text.startswith((*_RUNS, "'")) else text
+
+
+def writer_of(file: IO[str], delimiter: str = ",") -> Callable[[Iterable[object]], object]:
+    """Return a function that writes a row of cells as a line.
+
+    Spreadsheets read every cell as text (`safe_cell`); characters that would move a terminal's cursor are escaped.
+    """
+    writer = csv.writer(file, delimiter=delimiter, lineterminator="\n")
+    return lambda row: writer.writerow(
+        [safe_cell(cell.translate(_UNSEEN)) if isinstance(cell, str) else cell for cell in row]
+    )
 
 
 class CsvTable:

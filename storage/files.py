@@ -112,6 +112,10 @@ def files_digest(files: Iterable[Path], folder: Path) -> str:
     return digest.hexdigest()
 
 
+SERVED = ".server"
+"""Folder in which `serve` keeps its store, in the folder of what it collects."""
+
+
 def walk(folder: Path) -> Iterator[Path]:
     """The files under a folder in the order of their names, hidden ones and links that leave it left out."""
     return (path for path in _visible(folder) if path.is_file() and not _not_followed(path, folder))

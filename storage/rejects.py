@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 
 from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failure_words import REMEDIES, why
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.row_types import Row
 
@@ -45,8 +46,10 @@ class Reject:
     @classmethod
     def failed(cls, failure: Failure, file: str = "", line: int = 0, where: str = "") -> Reject:
         """A reject for a failure of the engine or of grounding; `where` names the home or environment."""
-        message = f"{failure.message()}, {where}" if where else failure.message()
-        return cls((Diagnostic(failure.code, message, file, line, found=" ".join(failure.names)),))
+        step = f"[{failure.action}] {', '.join(failure.names)}".rstrip() if failure.action else ""
+        message = ", ".join(filter(None, (": ".join(filter(None, (step, why(failure)))), where)))
+        remedy = REMEDIES.get(failure.code, "")
+        return cls((Diagnostic(failure.code, message, file, line, 0, 0, " ".join(failure.names), remedy),))
 
     @classmethod
     def caused(cls, error: BaseException, file: str = "") -> Reject:

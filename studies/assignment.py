@@ -9,9 +9,9 @@ row of a Latin square, so that conditions come first, second, ... equally often.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from math import lcm
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import isqrt, lcm
 from random import Random
 
 from hearth.schemas.rng import rng
@@ -104,6 +104,36 @@ def _ordered(
         yield from sorted(stretch[first : first + size], key=lambda each: order[each.condition])
 
 
+def balanced(study: Study, groups: int = 1) -> list[str]:
+    """Return the nearest values of `people` and of `repeats`, one changed at a time, with which all is balanced."""
+    numbers = sorted(range(1, study.trials + 1), key=lambda number: abs(number - study.people))
+    people = next(
+        _fitting((replace(study, people=number) for number in numbers[: min(TRIED, LOOKED // study.trials)]), groups),
+        None,
+    )
+    more = (
+        replace(study, repeats=study.repeats + number)
+        for number in range(1, 1 + min(TRIED, isqrt(LOOKED // study.trials)))
+    )
+    repeats = next(_fitting(more, groups), None)
+    found = (people and f"`people: {people.people}`", repeats and f"`repeats: {repeats.repeats}`")
+    return [each for each in found if each]
+
+
+def _fitting(studies: Iterable[Study], groups: int) -> Iterator[Study]:
+    """Give the studies that are balanced."""
+    for study in studies:
+        if study.people <= study.trials and not imbalances(study, assignment(study, groups)):
+            yield study
+
+
+TRIED = 60
+"""Values of a field that are tried for a study that is not balanced."""
+
+LOOKED = 300_000
+"""Trials that are looked at for that, about: with more repeats there are more of them."""
+
+
 def imbalances(study: Study, slots: Slots) -> list[str]:
     """What is not balanced in an assignment; empty where all is."""
     found = []
@@ -118,7 +148,8 @@ def imbalances(study: Study, slots: Slots) -> list[str]:
         under.update(each.condition for each in slot)
         fewest = min(under, key=lambda name: under[name])
         if under[fewest] < study.least:
-            found.append(f"place {number + 1} has {under[fewest]} trials under `{fewest}`, not {study.least}")
+            few = f"{under[fewest]} trial{'s' * (under[fewest] != 1)}"
+            found.append(f"place {number + 1} has {few} under `{fewest}`, where `at_least` is {study.least}")
         twice = [item for item, count in Counter(each.item for each in slot).items() if count > 1]
         if twice:
             found.append(f"place {number + 1} has task {twice[0] + 1} twice")

@@ -20,7 +20,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.numbers import number_of
 from hearth.schemas.yaml_fields import Faults, ReadValue, fields, one_of, reads
 from hearth.storage.input_files import read_input
-from hearth.studies.assignment import assignment, imbalances
+from hearth.studies.assignment import assignment, balanced, imbalances
 from hearth.studies.study import (
     AFTER,
     EPISODES,
@@ -278,9 +278,11 @@ def _check_balance(study: Study, tree: Any, faults: Faults) -> None:
         message = f"{study.trials:,} trials for {study.people:,} people"
         faults.add(Code.BAD_ARGUMENT, message, tree.at("people"), f"one each at least, {MOST_TRIALS:,} in all at most")
         return
-    for fault in imbalances(study, assignment(study, groups_of(study)))[:5]:
-        remedy = "change `people`, `repeats`, `tasks` or `at_least`"
-        faults.add(Code.CONTRADICTION, fault, tree.at("people"), remedy)
+    groups = groups_of(study)
+    if found := imbalances(study, assignment(study, groups)):
+        more = f", and {len(found) - 1:,} more places or tasks are not balanced" if len(found) > 1 else ""
+        remedy = " or ".join(balanced(study, groups)) or "change `people`, `repeats`, `tasks` or `at_least`"
+        faults.add(Code.CONTRADICTION, found[0] + more, tree.at("people"), f"write {remedy}")
 
 
 def _check_helpers(study: Study, entries: Sequence[Any], faults: Faults) -> None:

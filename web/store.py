@@ -18,6 +18,7 @@ from sqlalchemy.exc import DBAPIError
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.files import SERVED
 from hearth.web.web_tables import METADATA
 
 T = TypeVar("T")
@@ -116,7 +117,7 @@ def default_url(out: Path) -> str:
 
 def embedded(out: Path) -> Path:
     """The file of a folder's embedded store, which may not be there."""
-    return out / ".server" / "store.sqlite"
+    return out / SERVED / "store.sqlite"
 
 
 def private(out: Path) -> Path:
@@ -125,7 +126,7 @@ def private(out: Path) -> Path:
     Raises:
         HearthError: BAD_ARGUMENT: it is a link, which would lead the server's files elsewhere.
     """
-    folder = out / ".server"
+    folder = out / SERVED
     if folder.is_symlink():
         remedy = "remove the link, or name another folder with --out"
         raise HearthError.of(Code.BAD_ARGUMENT, "`.server` is a link", file=str(folder), suggestion=remedy)

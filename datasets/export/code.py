@@ -14,22 +14,44 @@ from hearth.schemas.published_rows import ProgramRow
 
 
 def code(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """One module, `programs.py`: a function per program, a call per step, objects as `'cup_1'`.
+    """Two modules. `programs.py` has a function per program, a call per step, objects as `'cup_1'`.
+
+    `actions.py`, which it imports, has a function per action that prints its call: others put their own in its place.
 
     Returns:
         Number of programs.
     """
-    used: set[str] = set()
+    calls = {call_name(name) for (name,) in dataset.rows("SELECT DISTINCT action FROM steps")[1]}
+    used = {*calls}  # a function of that name would hide the action, and call itself
     actions: set[str] = set()
     functions = []
     for row in programs(dataset, wanted):
         program = program_of(row)
         actions.update(call_name(step.action) for step in program.steps)
         functions.append("\n".join(_function(row, program, _unused(_identifier(row["title"]), used))))
-    names = ", ".join(sorted(actions))
-    head = f'"""Programs of a household dataset: one function each."""\n\nfrom actions import {names or "walk"}\n'
+    names = sorted(actions) or ["walk"]
+    head = f'"""Programs of a household dataset: one function each."""\n\nfrom actions import {", ".join(names)}\n'
     write(to / "programs.py", "\n\n".join((head, *functions)).encode() + b"\n")
+    write(to / "actions.py", "\n\n".join((_ACTIONS, *map(_action, names))).encode())
     return len(functions)
+
+
+_ACTIONS = '''"""The actions that programs.py calls. Each prints its call; put what a robot does in its place."""
+
+import builtins as PYTHON
+
+
+def SHOW(name, objects, how):
+    """Print a call as programs.py writes it."""
+    given = [PYTHON.repr(each) for each in objects]
+    given += [f"{key}={value!r}" for key, value in how.items()]
+    PYTHON.print(f"{name}({', '.join(given)})")
+'''
+"""The beginning of `actions.py`; no action has a name in capitals, so that none hides these."""
+
+
+def _action(name: str) -> str:
+    return f'def {name}(*objects, **how):\n    SHOW("{name}", objects, how)\n'
 
 
 def call_name(action: str) -> str:

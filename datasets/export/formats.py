@@ -6,9 +6,10 @@ from pathlib import Path
 from hearth.datasets.damage import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted
+from hearth.datasets.export.coco import coco
 from hearth.datasets.export.code import code
 from hearth.datasets.export.graphs import graphml, node_link
-from hearth.datasets.export.json_lines import jsonl
+from hearth.datasets.export.json_lines import csv, jsonl
 from hearth.datasets.export.natural_language import nl
 from hearth.datasets.export.problems import pddl
 from hearth.datasets.export.release_layout import release
@@ -20,15 +21,18 @@ FORMATS: dict[str, Callable[[Dataset, Path, Wanted], int]] = {
     "release": release,
     "nl": nl,
     "jsonl": jsonl,
+    "csv": csv,
     "code": code,
     "networkx": node_link,
     "graphml": graphml,
     "rdf": rdf,
     "pddl": pddl,
+    "coco": coco,
 }
 """Each writes a dataset, or some of its programs, into a folder and returns the number of written items."""
 
-COUNTED = {"release": "execution", "jsonl": "line", "networkx": "execution", "graphml": "execution", "pddl": "problem"}
+COUNTED = {"release": "execution", "jsonl": "line", "networkx": "execution", "graphml": "execution", "pddl": "problem",
+           "csv": "row", "coco": "picture"}  # fmt: skip
 """The items that a format counts, if not programs."""
 
 

@@ -1,11 +1,14 @@
-"""`jsonl`: every table as JSON Lines, with nested values."""
+"""`jsonl` and `csv`: every table as lines, with nested values."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import orjson
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, stream
+from hearth.datasets.written_answers import write_separated
 from hearth.schemas.tables import TABLES
 from hearth.storage.names import inside
 
@@ -26,14 +29,33 @@ def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     Returns:
         Number of lines in all files.
     """
-    chosen, asked = wanted.chosen()
     lines = 0
     to.mkdir(parents=True, exist_ok=True)
-    for table in TABLES:
-        where = _WHERE.get(table, "").format(chosen=chosen) if wanted.some else ""
-        query = f"SELECT * FROM {table}{where} ORDER BY ALL"
+    for table, query, asked in tables(wanted):
         with inside(to, f"{table}.jsonl").open("wb") as file:
-            for row in stream(dataset, query, asked if where else {}):
+            for row in stream(dataset, query, asked):
                 file.write(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
                 lines += 1
     return lines
+
+
+def csv(dataset: Dataset, to: Path, wanted: Wanted) -> int:
+    """The same as comma-separated values; nested values are JSON, and spreadsheets find only text, never formulas.
+
+    Returns:
+        Number of rows in all files.
+    """
+    rows = 0
+    to.mkdir(parents=True, exist_ok=True)
+    for table, query, asked in tables(wanted):
+        with inside(to, f"{table}.csv").open("w", encoding="utf-8", newline="") as file:
+            rows += write_separated(dataset, query, file, asked=asked)
+    return rows
+
+
+def tables(wanted: Wanted) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Every table with the query of its rows, all or those of the wanted programs, and its parameters."""
+    chosen, asked = wanted.chosen()
+    for table in TABLES:
+        where = _WHERE.get(table, "").format(chosen=chosen) if wanted.some else ""
+        yield table, f"SELECT * FROM {table}{where} ORDER BY ALL", asked if where else {}

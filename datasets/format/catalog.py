@@ -1,6 +1,7 @@
 """The catalog: views and macros over a dataset's files, as a DuckDB file and as SQL."""
 
 import errno
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cache
@@ -17,6 +18,9 @@ from hearth.storage.manifest import FORMAT
 
 CATALOG = "catalog.duckdb"
 SQL = "catalog.sql"
+
+VIEWS = ("steps", "ticks", "execution_kinds", "originals", "start_relations")
+"""Views that are not of one table's files."""
 
 
 _BESIDE = (
@@ -143,21 +147,74 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remem
     """
     import duckdb
 
-    from hearth.schemas.tables import TABLES
-
-    root = f"{folder.resolve()}/"
     connection = duckdb.connect()
     connection.execute(f"SET parquet_metadata_cache = {remembers}")
     connection.execute("SET enable_external_file_cache = false")  # the system keeps files in memory, once for all
-    text = statements(root)
+    define(connection, folder, absent, format)
+    return limited(connection, f"{folder.resolve()}/")
+
+
+def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: int = FORMAT, database: str = "") -> None:
+    """Define the dataset's views and macros in the database that a connection uses; `attach` has the arguments.
+
+    Args:
+        connection: which may be a stranger's.
+        folder: of the dataset.
+        absent: tables without files.
+        format: of the dataset.
+        database: its name, where macros are called from others: what they name is looked for where the caller is.
+    """
+    from hearth.schemas.tables import TABLES
+
+    text = statements(f"{folder.resolve()}/")
     for table in TABLES:
         here = reading(table, format)
         if table in absent and here == _reading(table):
             connection.from_arrow(TABLES[table].empty_table()).create(f"no_{table}")  # a table: cursors see it, too
             here = f"no_{table}"
         text = text.replace(_reading(table), here)
-    connection.execute(text)
-    return limited(connection, root)
+    connection.execute(_qualified(text, database) if database else text)
+
+
+def _qualified(text: str, database: str) -> str:
+    """The SQL of the catalog with its tables, views and macros as those of a database."""
+    from hearth.schemas.tables import TABLES
+
+    place = f"{identifier(database)}.main."
+    macros = "|".join(re.findall(r"^CREATE MACRO (\w+)\(", text, re.MULTILINE))
+    text = re.sub(rf"(?<!CREATE MACRO )\b({macros})\(", lambda found: place + found[0], text)
+    tables = "|".join((*TABLES, *VIEWS))
+    return re.sub(rf"\b(FROM|JOIN) ({tables})\b", lambda found: f"{found[1]} {place}{found[2]}", text)
+
+
+def define_as(connection: Any, name: str, folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> None:
+    """Define them in a new database of a stranger's connection, kept in memory; the connection goes on as it was.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, where it has a database of that name.
+    """
+    import duckdb
+
+    known = {each for (each,) in connection.execute("SELECT database_name FROM duckdb_databases()").fetchall()}
+    if name.lower() in {each.lower() for each in known} or not name:
+        remedy = "choose another name, or DETACH it first"
+        message = f"the connection has a database `{name}` already" if name else "a database needs a name"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
+    used = connection.execute("SELECT current_database(), current_schema()").fetchone()
+    connection.execute(f"ATTACH ':memory:' AS {identifier(name)}")
+    try:
+        connection.execute(f"USE {identifier(name)}")
+        define(connection, folder, absent, format, name)
+    except duckdb.Error:
+        connection.execute(f"USE {'.'.join(map(identifier, used))}")
+        connection.execute(f"DETACH {identifier(name)}")
+        raise
+    connection.execute(f"USE {'.'.join(map(identifier, used))}")
+
+
+def identifier(name: str) -> str:
+    """A name as SQL has it."""
+    return '"' + name.replace('"', '""') + '"'
 
 
 def limited(connection: Any, *roots: str) -> Any:

@@ -52,6 +52,40 @@ FROM (
     FROM executions
 );
 
+-- One predicate for "perturbed", for the views below and for whoever reads runs.
+CREATE MACRO is_perturbed(environment, program) AS EXISTS (
+    SELECT 1 FROM (SELECT environment_id AS its_environment, parent_id AS its_program FROM perturbations)
+    WHERE its_environment = environment AND its_program = program
+);
+
+CREATE VIEW execution_kinds AS
+SELECT
+    e.execution_id,
+    e.program_id,
+    e.environment_id,
+    e.home,
+    CASE
+        WHEN is_perturbed(e.environment_id, e.program_id) THEN 'perturbed'
+        WHEN p.parent_id IS NOT NULL THEN 'repaired'
+        ELSE 'original'
+    END AS kind,
+    e.executable
+FROM executions e LEFT JOIN programs p ON p.program_id = e.program_id;
+
+CREATE VIEW originals AS
+SELECT
+    e.execution_id,
+    p.program_id,
+    p.title,
+    p.activity_id,
+    p.origin,
+    e.environment_id,
+    e.home,
+    e.executable,
+    e.failure
+FROM executions e JOIN programs p ON p.program_id = e.program_id
+WHERE p.parent_id IS NULL AND NOT is_perturbed(e.environment_id, e.program_id);
+
 CREATE MACRO step_text(step) AS
     '[' || step.action || ']'
     || array_to_string(list_transform(step.objects, lambda o: ' <' || o.name || '> (' || o.instance || ')'), '')

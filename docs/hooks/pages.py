@@ -21,8 +21,8 @@ PACKAGES = (
 
 ENTRY_POINTS = {
     "A dataset": (
-        "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:Dataset.to_tensors", "hearth:ExecutionGraphs",
-        "hearth.datasets.program_entries:Run.graph", "hearth:verify", "hearth:export",
+        "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:attach", "hearth:Dataset.to_tensors",
+        "hearth:ExecutionGraphs", "hearth.datasets.program_entries:Run.graph", "hearth:verify", "hearth:export",
     ),
     "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
     "Homes": (
@@ -106,7 +106,7 @@ def commands() -> str:
     """The help of every command."""
     from hearth import cli
 
-    lines = ["# Commands", "", "`python cli.py COMMAND`, or `hearth COMMAND` once installed."]
+    lines = ["# Commands", "", "`hearth COMMAND`; in a checkout `.venv/bin/hearth` or `python cli.py`."]
     for section, entries in cli.COMMANDS.items():
         lines += ["", f"## {section}"]
         for name in entries:
@@ -260,23 +260,29 @@ def diagram() -> str:
 
 
 def failures() -> str:
-    """All failure codes and their repairs."""
-    from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
+    """All failure codes, what they mean, and what a person and the repairs do about them."""
+    from hearth.schemas.failure_words import REMEDIES, meaning
     from hearth.schemas.failures import Code
 
     lines = [
         "# Failures",
         "",
-        "All codes of failures and rejects.",
+        "All codes of failures, of rejects and of faults of files. Where a program fails, `augment` and `repair` try",
+        "the repair; a reject has its place, and often what to do, in its row.",
         "",
-        "| code | repair |",
-        "|---|---|",
+        "| code | meaning | what to do | repair |",
+        "|---|---|---|---|",
     ]
-    for code in Code:
-        handler = HANDLERS.get(code)
-        about = (handler.__doc__ or "").strip().splitlines()[0] if handler else UNREPAIRABLE.get(code, "")
-        lines.append(f"| `{code}` | {about} |")
+    lines += (f"| `{code}` | {meaning(code)} | {REMEDIES.get(code, '')} | {_repair(code)} |" for code in Code)
     return "\n".join(lines) + "\n"
+
+
+def _repair(code: Any) -> str:
+    from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
+
+    if handler := HANDLERS.get(code):
+        return str(handler.__doc__ or "").strip().splitlines()[0]
+    return f"none: {UNREPAIRABLE[code]}" if code in UNREPAIRABLE else ""
 
 
 def library() -> str:
@@ -305,11 +311,16 @@ def modules() -> dict[str, str]:
 
 COPIED = {
     "README.md": "index.md",
+    "data_raw/homes/README.md": "homes.md",
+    "kb/README.md": "knowledge.md",
     "CONTRIBUTING.md": "about/contributing.md",
     "CHANGELOG.md": "about/changes.md",
     "benchmarks/RESULTS.md": "about/speed.md",
 }
 """Documents of the checkout that are pages, too."""
+
+FOR_ALL = ("data_raw/homes/README.md", "kb/README.md")
+"""Those of them whose readers may have no checkout: `hearth` is the command that all have."""
 
 ELSEWHERE = {"docs/examples": "examples/own-corpus.md", "NOTICE": "about/notice.md", "LICENSE": "about/notice.md"}
 """What documents link to and the documentation has elsewhere."""
@@ -324,7 +335,8 @@ def copied(file: str) -> str:
         found = known.get(match[1], match[1].removeprefix("docs/"))
         return f"]({os.path.relpath(found, place)})"
 
-    return re.sub(r"\]\(((?:docs/|[A-Z]+)[^)#\s]*)\)", moved, (ROOT / file).read_text("utf-8"))
+    text = re.sub(r"\]\(((?:docs/|data_raw/|kb/|[A-Z]+)[^)#\s]*)\)", moved, (ROOT / file).read_text("utf-8"))
+    return text.replace("python cli.py", "hearth") if file in FOR_ALL else text
 
 
 def cost() -> str:

@@ -14,6 +14,7 @@ from hearth.grounding.preconditions.abduction import StartContext, conditions_fo
 from hearth.grounding.preconditions.checking import unmet, unmet_failure
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.infer import infer
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import CHARACTER, HANDS, Key
@@ -56,6 +57,8 @@ class Environment:
     states: tuple[tuple[int, tuple[str, ...]], ...]
     movable: tuple[Movable, ...] = ()
     left_out: tuple[int, ...] = ()
+
+    __repr__ = brief
 
     @property
     def added(self) -> tuple[Edge, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from hearth.schemas.brief import brief
 from hearth.schemas.literals import Key, Literal
 
 
@@ -64,6 +65,8 @@ class Preconditions:
     """The conditions of a program, each literal once, in the order in which they were found."""
 
     conditions: tuple[Condition, ...] = ()
+
+    __repr__ = brief
 
     def __iter__(self) -> Iterator[Condition]:
         return iter(self.conditions)

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb import grammar
@@ -11,9 +12,17 @@ from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
-from hearth.kb.language.sentences import REMEMBERED, Asked, Mentioned, asked_steps, nearest_steps, said_by
+from hearth.kb.language.sentences import (
+    REMEMBERED,
+    Asked,
+    Mentioned,
+    asked_in_part,
+    asked_steps,
+    nearest_steps,
+    said_by,
+)
 from hearth.kb.language.understanding import Candidate
-from hearth.kb.language.unmarked_lines import clauses, is_order
+from hearth.kb.language.unmarked_lines import is_order
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -31,10 +40,10 @@ class ParsedSteps(NamedTuple):
 def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy = Fuzzy.TYPOS) -> ParsedSteps:
     """Parse natural-language steps. They name no instances, so that every object is instance 1.
 
-    A line may ask for several things ("open the fridge and take the milk out"), where each of them is understood; `it`
-    is what the last step was about. Steps may also be written as in programs. An item below a step, or a line without
-    a number, is a step if it reads exactly as one; else it explains, and is counted in a warning. Below a step that is
-    not understood, as `1. In the kitchen:`, items are its steps.
+    A line may ask for several things ("open the fridge and take the milk out"); a clause that is not understood is a
+    fault at its column, and the others are steps. `it` is what the last step was about. Steps may also be written as in
+    programs. An item below a step, or a line without a number, is a step if it reads exactly as one; else it explains,
+    and is counted in a warning. Below a step that is not understood, as `1. In the kitchen:`, items are its steps.
 
     Args:
         text: title, description and steps, with or without Markdown.
@@ -92,8 +101,10 @@ class _StepParser:
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
         if kind == Kind.STEP:
+            before = len(self.steps)
             found = self._read(line, raw, number)
-            self._is_open, self._is_heading = bool(found) and not line.bracketed, False
+            is_unread = bool(found) and len(self.steps) == before
+            self._is_open, self._is_heading = is_unread and not line.bracketed, False
             self.faults += found
         elif kind == Kind.MISSING:
             self._is_open = False
@@ -165,14 +176,26 @@ class _StepParser:
             asked = self._asked(shorter, said) if shorter not in ("", words) else ()
             if not asked and not words.endswith(":"):
                 asked = asked_steps(self.known, words, said, self.fuzzy)
-        parts = [] if asked or words.endswith(":") else clauses(words)
-        if parts and any(asked_steps(self.known, part, said, Fuzzy.OFF) for part in parts):
-            return [fault for part in parts for fault in self._read(line._replace(text=part), raw, number)]
-        fault = [] if asked else self._nearest(words, raw, number, said)
         for each in asked:
-            self._add(each, number)
-            self.warnings += [self._fuzzy(each, raw, words, number)] if each.fuzzy else []
-        return fault
+            self._take_asked(each, raw, words, number)
+        return [] if asked else self._read_in_part(words, raw, number, said)
+
+    def _read_in_part(self, words: str, raw: str, number: int, said: tuple[Mentioned, ...]) -> list[Diagnostic]:
+        """Add the steps of the clauses of a line that are understood; a fault for each other, or for all of it."""
+        in_part = not words.endswith(":") and self.fuzzy is not Fuzzy.LOOSE
+        parts = asked_in_part(self.known, words, said, self.fuzzy) if in_part else ()
+        faults: list[Diagnostic] = []
+        for part in parts or (words,):
+            if isinstance(part, str):
+                faults += self._nearest(part, raw, number, self._said)
+            else:
+                self._take_asked(part, raw, words, number)
+        return faults
+
+    def _take_asked(self, asked: Asked, raw: str, words: str, number: int) -> None:
+        self._add(asked, number)
+        if asked.fuzzy:
+            self.warnings.append(self._fuzzy(asked, raw, words, number))
 
     def _asked(self, shorter: str, said: tuple[Mentioned, ...]) -> tuple[Asked, ...]:
         """The steps of a line before its explanation, which is left out."""
@@ -215,9 +238,7 @@ class _StepParser:
 
     def _add(self, asked: Asked, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        # Only the first thing is counted.
-        refs = tuple([ObjectRef(name, 1 if place else asked.instance) for place, name in enumerate(names)])
-        self.steps.append(Step(action, refs))
+        self.steps.append(_step(action, names, asked.instance))
         self.lines.append(number)
         self._said = ((action, names), *self._said[: REMEMBERED - 1])
 
@@ -229,15 +250,22 @@ class _StepParser:
 
     def _fault(self, near: tuple[Candidate, ...], ambiguous: bool, line: str, words: str, number: int) -> Diagnostic:
         code = Code.AMBIGUOUS if ambiguous else Code.NOT_UNDERSTOOD
-        message = "words that may mean several things" if ambiguous else "words that mean no step"
+        message = "words that may mean several things" if ambiguous else "could not read this line as a step"
         near_phrases = " or ".join(f"`{phrase(each)}` ({each.score:.2f})" for each in near)
         otherwise = "write one step a line, as in `Walk to kitchen`"
         remedy = f"did you mean {near_phrases}?" if near_phrases else otherwise
         return self._diagnostic(code, message, line, words, number, remedy)
 
     def _diagnostic(self, code: Code, message: str, line: str, words: str, number: int, remedy: str = "") -> Diagnostic:
-        column = max(line.find(words.split(maxsplit=1)[0]), 0) + 1
+        at = line.find(words)
+        column = max(at if at >= 0 else line.find(words.split(maxsplit=1)[0]), 0) + 1
         return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, line[:200])
+
+
+@lru_cache(maxsize=65_536)
+def _step(action: str, names: tuple[str, ...], instance: int) -> Step:
+    """A step whose first thing is counted."""
+    return Step(action, tuple(ObjectRef(name, 1 if place else instance) for place, name in enumerate(names)))
 
 
 def phrase(candidate: Candidate) -> str:

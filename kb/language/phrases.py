@@ -23,8 +23,8 @@ def parses(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """
     cleaned = " ".join(text.strip().rstrip(".!").lower().split())
     found: list[tuple[int, int, Parse]] = []
-    for rank, (pattern, action) in enumerate(_patterns(knowledge)):
-        match = pattern.fullmatch(cleaned)
+    for rank, template, action in _templates(knowledge).get(cleaned.partition(" ")[0], ()):
+        match = _pattern(template).fullmatch(cleaned)
         if match:
             names = tuple(_named(knowledge, name) for name in match.groups())
             unknown = sum(knowledge.object_class(name) is None for name in names)
@@ -39,8 +39,11 @@ def _named(knowledge: Knowledge, words: str) -> str:
 
 
 @lru_cache(maxsize=8)
-def _patterns(knowledge: Knowledge) -> tuple[tuple[re.Pattern[str], Action], ...]:
-    """A pattern for each paraphrase of each action, templates before other words, longer ones first."""
+def _templates(knowledge: Knowledge) -> dict[str, tuple[tuple[int, str, Action], ...]]:
+    """The paraphrases of all actions by their first words: rank, template, action.
+
+    Templates come before other words, longer ones first.
+    """
     templates: list[tuple[bool, int, str, Action]] = []
     for action in knowledge.actions.values():
         head, _, tail = action.template.lower().partition(" {0}")
@@ -48,10 +51,13 @@ def _patterns(knowledge: Knowledge) -> tuple[tuple[re.Pattern[str], Action], ...
         for words in action.words:
             joined = f"{words} {{0}}{tail}" if action.arity else words
             templates.append((words != head, -len(joined), joined, action))
-    templates.sort(key=lambda each: each[:3])
-    return tuple((_pattern(template), action) for _, _, template, action in templates)
+    found: dict[str, list[tuple[int, str, Action]]] = {}
+    for rank, (_, _, template, action) in enumerate(sorted(templates, key=lambda each: each[:3])):
+        found.setdefault(template.partition(" ")[0], []).append((rank, template, action))
+    return {first: tuple(alike) for first, alike in found.items()}
 
 
+@lru_cache(maxsize=1024)
 def _pattern(template: str) -> re.Pattern[str]:
     parts = re.split(r"\{\d\}", template)
     return re.compile("(?:the |a |an |some |my )?(.+?)".join(re.escape(part) for part in parts))

@@ -7,35 +7,71 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import verb_lemmas
 from hearth.kb.language.things import thing_of
 
-_GOING = "go|walk|move|head|come|step|navigate|proceed|return|travel"
-_USUAL: tuple[tuple[str, tuple[str, ...]], ...] = (
-    (rf"(?:{_GOING})(?: back| over| on| up| down)? (?:to|into|inside) (.+)", ("walk to {0}",)),
-    (r"(?:take|get|grab|remove|fetch|pull|pick|lift)(?: up| out)? (.+? (?:out of|out from|off of|off|from) .+)",
-     ("grab {0}",)),
-    (r"(?:pick|grab) (.+) up", ("grab {0}",)),
-    (r"(?:take|get|pull|bring) (?:out (.+)|(.+) out)", ("grab {0}",)),
-    (r"(?:turn|switch|shut) (.+) (on|off)", ("switch {1} {0}",)),
-    (r"plug (.+) in", ("plug in {0}",)),
-    (r"take (.+) off", ("take off {0}",)),
-    (r"put (.+) on", ("put on {0}",)),
-    (r"put (.+) (?:back|away)", ("put back {0}",)),
+_GOING = "go walk move head come step navigate proceed return travel"
+_PUTTING = "put place set lay stick leave"
+_CARRYING = "move bring carry transfer take return"
+_ITS_PLACE = (
+    r"(?:in|into|to|at|on)? ?"
+    r"(?:(?:its|their|the) (?:(?:usual|original|right|proper|own) )?(?:place|spot)|where (?:it|they) belongs?)"
+)
+_USUAL: tuple[tuple[str, str, str], ...] = (
+    (_GOING, r"(?:back |over |on |up |down |straight |right )?(?:to|into|inside) (.+)", "walk to {0}"),
+    ("head go make", r"(?:for|straight for) (.+)", "walk to {0}"),
+    ("make", r"(?:your|my|his|her|their|its|our|the) way (?:over |back )?(?:to|into) (.+)", "walk to {0}"),
+    ("take get grab remove fetch pull pick lift", r"(?:up |out )?(.+? (?:out of|out from|off of|off|from) .+)",
+     "grab {0}"),
+    ("pick grab", r"(.+) up", "grab {0}"),
+    ("pick choose", r"(?!up )(.+)", "grab {0}"),
+    ("pick choose", r"out (.+)", "grab {0}"),
+    ("get", r"(?:a )?hold of (.+)", "grab {0}"),
+    ("grab get fetch take", r"(?:yourself|myself|himself|herself|itself|themselves|ourselves) (.+)", "grab {0}"),
+    ("take get pull bring", r"(?:out (.+)|(.+) out)", "grab {0}"),
+    ("turn switch shut", r"(.+) (on|off)", "switch {1} {0}"),
+    ("plug", r"(.+) in(?:to the (?:wall|socket|outlet))?", "plug in {0}"),
+    ("take", r"(.+) off", "take off {0}"),
+    ("put", r"(.+) on", "put on {0}"),
+    ("put", r"(.+) (?:back|away)", "put back {0}"),
+    ("put return bring take", rf"(.+?)(?: back| away)? {_ITS_PLACE}", "put back {0}"),
     # Nothing is said about a place: the thing is let go of where one is.
-    (r"(?:put|set|lay|place) (?:down (.+)|(.+) down)", ("release {0}",)),
-    (r"(?:put|place|set|lay) (.+) (?:into|inside of|inside) (.+)", ("put {0} in {1}",)),
-    (r"(?:place|set|lay) (.+) in (.+)", ("put {0} in {1}",)),
-    (r"(?:put|place|set|lay) (.+) (?:onto|on top of) (.+)", ("put {0} on {1}",)),
-    (r"(?:put|set|lay) (.+) down (?:on|onto) (.+)", ("put {0} on {1}",)),
-    (r"(?:move|bring|carry|transfer|take) (.+?) (?:on|onto|on top of) (.+)", ("put {0} on {1}",)),
-    (r"(?:move|bring|carry|transfer|take) (.+?) (?:in|into|inside) (.+)", ("put {0} in {1}",)),
-    (r"fill(?: up)? (.+) with (.+)", ("pour {1} into {0}",)),
-    (r"pour (.+) (?:in|onto|on|over) (.+)", ("pour {0} into {1}",)),
-    (r"(?:take|have) a seat (?:on|in|at) (.+)", ("sit on {0}",)),
-    (r"sit (?:back )?(?:down )?(?:onto|upon) (.+)", ("sit on {0}",)),
+    ("put set lay place", r"(?:down (.+)|(.+) down)", "release {0}"),
+    (f"{_PUTTING} insert store pack", r"(.+) (?:into|inside of|inside) (.+)", "put {0} in {1}"),
+    (f"{_PUTTING} insert store pack return", r"(.+?) (?:back |away )?in (.+)", "put {0} in {1}"),
+    (_PUTTING, r"(.+) (?:onto|on top of|upon) (.+)", "put {0} on {1}"),
+    (_PUTTING, r"(.+?) (?:down |back |away )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
+    (_CARRYING, r"(.+?) (?:back )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
+    (_CARRYING, r"(.+?) (?:back )?(?:in|into|inside) (.+)", "put {0} in {1}"),
+    ("fill", r"(?:up )?(.+) with (.+)", "pour {1} into {0}"),
+    ("pour", r"(.+) (?:in|onto|on|over) (.+)", "pour {0} into {1}"),
+    ("throw toss", r"(.+?) (?:away )?(?:in|into|on|onto|to|at) (.+)", "throw {0} at {1}"),
+    ("spread smear rub", r"(.+) (?:onto|over) (.+)", "spread {0} on {1}"),
+    ("squeeze squirt apply", r"(.+) (?:on|onto|to) (.+)", "spread {0} on {1}"),
+    ("take have", r"(?:a|your|my) seat (?:on|in|at) (.+)", "sit on {0}"),
+    ("sit", r"(?:back )?(?:down )?(?:on|onto|upon|in|at) (.+)", "sit on {0}"),
+    ("lie lay", r"(?:back |down )*(?:on|onto|upon|in|into) (.+)", "lie on {0}"),
+    ("get stand", r"(?:back )?up", "stand up"),
+    ("take have", r"(?:another |a )(?:quick |big |small |long )?(?:look at|glance at) (.+)", "look at {0}"),
+    ("look", r"(?:in|into|out of|out|through|inside|over|down at|up at) (.+)", "look at {0}"),
+    ("take have", r"(?:another |a )(?:big |small )?(?:sip|gulp|swig|drink) (?:of|from) (.+)", "drink {0}"),
+    ("take have", r"(?:another |a )(?:big |small )?bite (?:of|from|out of) (.+)", "eat {0}"),
+    ("take have", r"(?:a )(?:quick |short |long )?nap", "sleep"),
+    ("get", r"some sleep", "sleep"),
+    ("pull push slide draw slam swing", r"(.+) (?:shut|closed)", "close {0}"),
+    ("pull push slide draw swing", r"(.+) open", "open {0}"),
 )  # fmt: skip
-_PATTERNS = tuple((re.compile(pattern), phrases) for pattern, phrases in _USUAL)
+"""The first words of a phrasing, what follows, and the step; a phrasing is tried where its verb stands."""
 
 
-_BROUGHT = re.compile(r"(?:move|bring|carry|transfer|take) (.+?)(?: over| back)? to (.+)")
+def _by_verb() -> dict[str, tuple[tuple[re.Pattern[str], str], ...]]:
+    found: dict[str, list[tuple[re.Pattern[str], str]]] = {}
+    for verbs, rest, phrase in _USUAL:
+        for verb in verbs.split():
+            found.setdefault(verb, []).append((re.compile(rest), phrase))
+    return {verb: tuple(phrasings) for verb, phrasings in found.items()}
+
+
+_PHRASINGS = _by_verb()
+_RISING = ("get", "stand", "rise")
+_BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE = "SURFACES"
 
 
@@ -46,15 +82,22 @@ def phrasings(known: Knowledge, text: str) -> Iterator[str]:
         known: the grammar.
         text: a clause in small letters.
     """
-    first, space, rest = text.partition(" ")
+    first, _, rest = text.partition(" ")
     for verb in (first, *(lemma for lemma in verb_lemmas(first) if lemma != first)):
-        clause = verb + space + rest
         if verb != first:
-            yield clause
-        for pattern, phrases in _PATTERNS:
-            if match := pattern.fullmatch(clause):
+            yield f"{verb} {rest}".rstrip()
+        for pattern, phrase in _PHRASINGS.get(verb, ()):
+            if match := pattern.fullmatch(rest):
                 groups = [group for group in match.groups() if group is not None]
-                yield from (phrase.format(*groups) for phrase in phrases)
-        if (match := _BROUGHT.fullmatch(clause)) and (place := thing_of(known, match[2])):
-            # What has a top takes the thing on it; else the thing is put in.
-            yield f"put {match[1]} {'on' if known.has(place, _SURFACE) else 'in'} {match[2]}"
+                yield phrase.format(*groups)
+        yield from _placed(known, verb, rest)
+
+
+def _placed(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
+    """Yield the phrasings that depend on the place in them: a room is entered, what has a top has things put on it."""
+    if verb == "enter" and (room := thing_of(known, rest)) and known.is_room(room):
+        yield f"walk to {rest}"
+    if verb in _RISING and rest.startswith("up from ") and thing_of(known, rest.removeprefix("up from ")):
+        yield "stand up"
+    if verb in _CARRYING.split() and (match := _BROUGHT.fullmatch(rest)) and (place := thing_of(known, match[2])):
+        yield f"put {match[1]} {'on' if known.has(place, _SURFACE) else 'in'} {match[2]}"

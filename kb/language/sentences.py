@@ -2,10 +2,14 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.adjectives import without_adjective
 from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.openings import verb_phrase
 from hearth.kb.language.things import thing_of
 from hearth.kb.language.trailing import changes_act, shortened
 from hearth.kb.language.understanding import Candidate, Understood, understand, understand_exactly
@@ -17,6 +21,7 @@ _JOINTS = re.compile(
 _PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
 _THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 _PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
+_PLURAL = re.compile(r"\b[a-z]+es\b")
 _CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
 _PERSON = "PERSON"
 REMEMBERED = 6
@@ -62,16 +67,80 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
         said: the steps before, the last first, as `said_by` gives them.
         fuzzy: how far from known words a clause may be; off takes exact readings only.
     """
-    if not _PRONOUN.search(words) and (meant := understand_exactly(known, words).meant):
-        return (Asked(meant),)
-    words = " ".join(words.split()).rstrip(".!;,")
+    if plain := _plain(known, words):
+        return plain
+    words = verb_phrase(" ".join(_plurals_of_said(known, words, said).split()))
     whole = _clause(known, words, said, Fuzzy.OFF)
     if whole:
         return whole
-    clauses = [clause for clause in _JOINTS.split(words) if clause]
+    clauses = _clauses(words)
     if 1 < len(clauses) <= _CLAUSES and (joined := _joined(known, clauses, said, fuzzy)):
         return joined
     return _clause(known, words, said, fuzzy) if len(clauses) == 1 and fuzzy is not Fuzzy.OFF else ()
+
+
+@lru_cache(maxsize=65_536)
+def _plain(known: Knowledge, words: str) -> tuple[Asked, ...]:
+    """The step of a line that reads exactly, whatever was said before: without pronoun and without double plural."""
+    if _PRONOUN.search(words) or _double_plurals(known, words):
+        return ()
+    meant = understand_exactly(known, words).meant
+    return (Asked(meant),) if meant else ()
+
+
+def _plurals_of_said(known: Knowledge, words: str, said: Sequence[Mentioned]) -> str:
+    """A line in which a plural that has a meaning of its own is many of a thing said before, as two `glasses` are."""
+    for plural, own, singular, many in _double_plurals(known, words) if said else ():
+        if _is_said(many, said) and not _is_said(own, said):
+            words = re.sub(rf"\b{plural}\b", singular, words, flags=re.IGNORECASE)
+    return words
+
+
+def _double_plurals(known: Knowledge, words: str) -> list[tuple[str, str, str, str]]:
+    """The plurals in a line that are classes of their own, with their class, their singular, and its class."""
+    found = []
+    for plural in _PLURAL.findall(words.lower()):
+        singular = plural.removesuffix("es")
+        own, many = known.object_class(plural), known.object_class(singular)
+        if own and many and own.name != many.name:
+            found.append((plural, own.name, singular, many.name))
+    return found
+
+
+def _is_said(name: str, said: Sequence[Mentioned]) -> bool:
+    return any(name in names for _, names in said)
+
+
+def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked | str, ...]:
+    """Return what a line asks for, clause by clause: the steps of those that are understood, and the words of others.
+
+    Nothing is returned where no clause is understood, and where one of the others may change the act of the line, as
+    `open the fridge, but not the freezer` does.
+    """
+    clauses = _clauses(verb_phrase(" ".join(_plurals_of_said(known, words, said).split())))
+    found: list[Asked | str] = []
+    at = 0
+    while at < len(clauses) <= _CLAUSES:
+        now = tuple((each.meant.action.name, each.meant.names) for each in reversed(found) if isinstance(each, Asked))
+        read, size = _longest(known, clauses[at:], (*now, *said), fuzzy)
+        found += read or (clauses[at],)
+        at += size
+    unread = [each for each in found if isinstance(each, str)]
+    return () if len(unread) == len(found) or any(changes_act(each.lower()) for each in unread) else tuple(found)
+
+
+def _longest(
+    known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy
+) -> tuple[tuple[Asked, ...], int]:
+    """The steps of the most clauses from the first on that are read together, and how many they are; at least 1."""
+    for size in range(len(clauses), 1, -1):
+        if read := _listed(known, clauses[:size], said):
+            return read, size
+    return _clause(known, clauses[0], said, fuzzy), 1
+
+
+def _clauses(words: str) -> list[str]:
+    return [clause for clause in _JOINTS.split(words) if clause]
 
 
 def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> Understood:
@@ -123,17 +192,21 @@ def _is_bare(known: Knowledge, words: str) -> bool:
 
 
 def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
-    """The steps of one clause: exact, else with trailing words left out, else with misspelled words corrected."""
+    """The steps of one clause: exact, else with words left out, else with misspelled words corrected."""
     if read := _exact(known, words, said):
         return read
-    if fuzzy is Fuzzy.OFF or changes_act(words.lower()):
+    words = verb_phrase(words)
+    if fuzzy is Fuzzy.OFF:
         return ()
     if read := _shortened(known, words.lower(), said, ""):
         return read
-    for clause in _referred(known, words, said):
-        meant = understand(known, clause, Fuzzy.TYPOS).meant
-        if meant:
-            return (Asked(meant),)
+    if changes_act(words.lower()):
+        return ()
+    for shorter, out in ((words, ""), *without_adjective(known, words.lower())):
+        for clause in _referred(known, shorter, said):
+            meant = understand(known, clause, Fuzzy.TYPOS).meant
+            if meant and (clause == shorter or _affords(known, meant)):
+                return (Asked(meant, left_out=out),)
     return ()
 
 
@@ -159,12 +232,20 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
         afforded = (each for each in readings if _affords(known, each))
         return (Asked(next(afforded, readings[0])),)
     count = _COUNT.search(words)
-    if count is None or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
+    if not count or not count.start() or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
         return ()
-    meant = understand_exactly(known, f"{words[: count.start()]}{words[count.end() :]}").meant
+    meant = _of_one(known, words[: count.start()], words[count.end() :])
     if meant is None or not meant.names:
         return ()
     return tuple(Asked(meant, number) for number in range(1, _COUNTS[count[1].lower()] + 1))
+
+
+def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:
+    """The step for one of the things that are counted: two `glasses` are glasses to drink from, not spectacles."""
+    noun, space, after = counted.partition(" ")
+    singular = (lemma for lemma in noun_lemmas(noun.lower()) if lemma != noun and thing_of(known, lemma))
+    sentences = (f"{before}{one}{space}{after}" for one in (*singular, noun))
+    return next((meant for each in sentences if (meant := understand_exactly(known, each).meant)), None)
 
 
 def _affords(known: Knowledge, meant: Candidate) -> bool:

@@ -6,7 +6,15 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import noun_lemmas
 
-_DETERMINERS = re.compile(r"(?:(?:the|a|an|some|my|your|his|her|our|their|its|this|that|these|those)\s+(?:of\s+)?)+")
+_DETERMINERS = re.compile(
+    r"(?:(?:all|the|a|an|one|some|any|my|your|his|her|our|their|its|this|that|these|those|one['’]s)\s+(?:of\s+)?)+"
+)
+_PARTITIVE = re.compile(
+    r"(?:pair|slice|piece|bit|loaf|bunch|handful|sheet|bar|stick|couple|drop|spoonful|scoop|pinch|lot)s? of\s+"
+)
+"""Parts and numbers of a thing that are the thing itself; a cup of tea is not, because a cup is a thing as well."""
+
+_POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
 _PLACED = re.compile(
     r"\s+(?:out of|out from|off of|off|from|inside of|inside|in|on top of|on|under|behind|next to|near|at)\s+"
 )
@@ -32,13 +40,18 @@ def thing_of(known: Knowledge, words: str) -> str | None:
 
 
 def _named(known: Knowledge, words: str) -> str | None:
-    bare = words[match.end() :] if (match := _DETERMINERS.match(words)) else words
+    bare = _POSSESSIVE.sub("", _without(_DETERMINERS, words))
+    bare = _without(_DETERMINERS, _without(_PARTITIVE, bare))
     for name in (words, bare, *_singular(bare)):
         if name and (thing := known.object_class(name)):
             return thing.name
     whole = _PARTS.sub("", bare)
     thing = known.object_class(whole) if whole != bare else None
     return thing.name if thing and known.has(thing.name, _OPENED) else None
+
+
+def _without(beginning: re.Pattern[str], words: str) -> str:
+    return words[match.end() :] if (match := beginning.match(words)) else words
 
 
 def _singular(words: str) -> tuple[str, ...]:

@@ -4,33 +4,44 @@ import re
 from collections.abc import Iterator
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import is_verb
+from hearth.kb.language.adjectives import without_adjective
+from hearth.kb.language.lexicon import is_verb, verb_lemmas
 from hearth.kb.language.things import thing_of
 
 ADVERBS = (
-    "again", "briefly", "calmly", "carefully", "completely", "easily", "firmly", "fully", "gently", "immediately",
-    "lightly", "now", "patiently", "properly", "quickly", "quietly", "safely", "securely", "slowly", "softly",
-    "thoroughly", "well",
+    "again", "briefly", "calmly", "carefully", "completely", "easily", "first", "firmly", "fully", "gently",
+    "immediately", "lightly", "now", "once again", "once more", "one more time", "patiently", "properly", "quickly",
+    "quietly", "safely", "securely", "slowly", "softly", "thoroughly", "too", "twice", "well",
 )  # fmt: skip
 """Adverbs that say how a step is done, before the verb or at the end."""
 
 _MANNER = "|".join(ADVERBS)
-_NUMBER = r"(?:a|an|one|two|three|four|five|six|ten|fifteen|twenty|thirty|\d+|a few|several|some|a couple of|about \d+)"
-_UNIT = r"(?:second|minute|hour|moment|while|bit|time)s?"
+_ABOUT = r"(?:about|around|approximately|roughly|at least|another|a good)"
+_NUMBER = (
+    r"(?:a|an|one|two|three|four|five|six|seven|eight|nine|ten|fifteen|twenty|thirty|forty|\d+|a few|several|some"
+    r"|a couple of|half an)"
+)
+_UNIT = r"(?:sec(?:ond)?|min(?:ute)?|hour|moment|while|bit|time)s?"
 _ENDINGS = tuple(
     re.compile(rf"\s+{ending}$")
     for ending in (
         rf"(?:{_MANNER})",
-        rf"for {_NUMBER} {_UNIT}",
+        rf"(?:for )?(?:{_ABOUT} )?{_NUMBER} (?:more )?{_UNIT}",
         r"for (?:breakfast|lunch|dinner|later|[a-z]+ing(?: .+)?)",
         r"so (?:that )?(?:you|i|we|it|he|she|they) .+",
     )
 )
 _BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
+_WAITING = re.compile(r"((?:wait|pause)(?:s|ed|ing|d)?) (?:until|till|for) .+")
+"""What one waits for may be left out, even where it is a condition."""
+
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
 _TOOL = re.compile(r"\s+(?:with|using) (.+)$")
 _BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
-_WORKED = ("brush", "clean", "cut", "dry", "rinse", "scrub", "slice", "chop", "stir", "sweep", "wash", "wipe", "open")
+_WORKED = frozenset(
+    ("brush", "chop", "clean", "comb", "cut", "dry", "dust", "mix", "mop", "open", "polish", "rinse", "scrub", "shave",
+     "slice", "stir", "sweep", "wash", "wipe")
+)  # fmt: skip
 """Verbs after which a tool may be left out; with others, as `cover` or `fill`, it is part of the act."""
 
 _CHANGES = re.compile(
@@ -44,12 +55,14 @@ def changes_act(text: str) -> bool:
 
 
 def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
-    """Yield what is left of a clause, and what is left out: an adverb, a duration, a purpose or a tool.
+    """Yield what is left of a clause, and what is left out: an adverb, a duration, a purpose, a tool or an adjective.
 
     Args:
         known: the grammar.
         text: a clause in small letters.
     """
+    if match := _WAITING.fullmatch(text):
+        yield match[1], text[match.end(1) :].strip()
     if changes_act(text):
         return
     if match := _BEGINNING.match(text):
@@ -60,8 +73,14 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     for match in reversed(list(_PURPOSE.finditer(text))):
         if is_verb(match[1]) and thing_of(known, text[match.end() :]) is None:
             yield text[: match.start()], text[match.start() :].strip()
-    if (match := _TOOL.search(text)) and text.startswith(_WORKED) and _is_tool(known, match[1]):
+    if (match := _TOOL.search(text)) and _WORKED.intersection(_verbs(text)) and _is_tool(known, match[1]):
         yield text[: match.start()], match[0].strip()
+    yield from without_adjective(known, text)
+
+
+def _verbs(text: str) -> tuple[str, ...]:
+    first = text.partition(" ")[0]
+    return (first, *verb_lemmas(first))
 
 
 def _is_tool(known: Knowledge, words: str) -> bool:

@@ -26,6 +26,11 @@ def corrected(known: Knowledge, text: str) -> tuple[tuple[str, ...], ...]:
     return tuple(tuple(found[edits]) for edits in sorted(found))
 
 
+def near_words(known: Knowledge, word: str) -> tuple[str, ...]:
+    """Return the words of ours that a word may be when it is misspelled; itself if it is right."""
+    return tuple(spelt for _, spelt in _choices(known, word))
+
+
 @lru_cache(maxsize=65_536)
 def _choices(known: Knowledge, word: str) -> tuple[tuple[int, str], ...]:
     """The words that one may be, with the number of edits; itself if it is right."""

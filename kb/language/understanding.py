@@ -7,12 +7,16 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.idioms import is_idiom
+from hearth.kb.language.lexicon import verb_lemmas
+from hearth.kb.language.openings import verb_phrase
 from hearth.kb.language.phrases import Parse, parses
 from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.things import thing_of
-from hearth.kb.language.typos import corrected
+from hearth.kb.language.typos import corrected, near_words
 from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
+from hearth.schemas.brief import brief
 
 ACCEPTED = 0.75
 """The similarity from which the nearest valid instruction is accepted as the meaning where `fuzzy` is loose."""
@@ -27,7 +31,7 @@ _WEAK = 0.5
 _HEADS = 8
 _NAMES = 4
 _SHOWN = 3
-_FILLER = re.compile(r"(?:then|next|first|finally|now|please|and|afterwards|after that|you|i|we)\b[\s,]*")
+_GRAB = "Grab"
 _ARTICLE = re.compile(r"\b(?:the|a|an|some|my|your|his|her|their)\b ")
 
 
@@ -37,6 +41,9 @@ class Candidate(NamedTuple):
     score: float
     action: Action
     names: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 class Understood(NamedTuple):
@@ -51,6 +58,9 @@ class Understood(NamedTuple):
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
     ambiguous: bool = False
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @lru_cache(maxsize=65_536)
@@ -78,7 +88,7 @@ def understand(knowledge: Knowledge, sentence: str, fuzzy: Fuzzy = Fuzzy.TYPOS) 
     if fuzzy is Fuzzy.LOOSE and near and near[0].score >= ACCEPTED:
         is_sure = len(near) < 2 or near[0].score - near[1].score >= MARGIN
         return Understood(near[0] if is_sure else None, near, not is_sure)
-    return Understood(None, tuple(each for each in near if each.score >= HINTED))
+    return Understood(None, tuple(each for each in near if each.score >= HINTED and _related(knowledge, cleaned, each)))
 
 
 @lru_cache(maxsize=65_536)
@@ -98,13 +108,20 @@ def _exact_otherwise(knowledge: Knowledge, text: str) -> Understood:
 
 
 def _readings(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
-    """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first."""
+    """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first.
+
+    Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings.
+    """
+    unlikely: tuple[Parse, ...] = ()
+    first = text.partition(" ")[0]
+    verbs = (first, *verb_lemmas(first))
     for phrasing in (text, *phrasings(knowledge, text)):
-        found = (_with_things(knowledge, parse) for parse in parses(knowledge, phrasing))
+        found = (_with_things(knowledge, parse) for parse in _acts(knowledge, phrasing))
         read = tuple(dict.fromkeys(parse for parse in found if parse))
         if any(_afforded(knowledge, parse) for parse in read):
             return read
-    return ()
+        unlikely = unlikely or (read if phrasing.partition(" ")[0] in verbs else ())
+    return unlikely[:1]
 
 
 def _with_things(knowledge: Knowledge, parse: Parse) -> Parse | None:
@@ -129,6 +146,17 @@ def _without_typos(knowledge: Knowledge, text: str) -> Understood:
     return Understood(None, ())
 
 
+def _related(knowledge: Knowledge, text: str, near: Candidate) -> bool:
+    """Return whether a sentence has the verb of a step or one of its things; a step with other words is not a hint."""
+    said = (near.action.template, *near.action.words)
+    verbs = {words.lower().partition(" ")[0] for words in said}
+    first = text.partition(" ")[0]
+    if not verbs.isdisjoint((first, *verb_lemmas(first))) or verbs.intersection(near_words(knowledge, first)):
+        return True
+    padded = f" {text} "
+    return any(f" {spelt.replace('_', ' ')}" in padded for name in near.names for spelt in knowledge.same_class(name))
+
+
 def _nearest(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
     found = tuple(sorted(_near(knowledge, text), key=lambda each: (-each.score, each.action.id, each.names)))
     near = tuple({(each.action.name, each.names): each for each in reversed(found)}.values())
@@ -136,19 +164,19 @@ def _nearest(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
 
 
 def _cleaned(sentence: str) -> str:
-    text = " ".join(sentence.strip().rstrip(".!;,").lower().replace("_", " ").split())
-    while match := _FILLER.match(text):
-        if match.end() == len(text):
-            break
-        text = text[match.end() :]
-    return text
+    return " ".join(verb_phrase(sentence).lower().replace("_", " ").split())
 
 
 def _exact(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
     """The exact paraphrases about known objects; those that afford the action first."""
-    known = [parse for parse in parses(knowledge, text) if all(map(knowledge.object_class, parse[1]))]
+    known = [parse for parse in _acts(knowledge, text) if all(map(knowledge.object_class, parse[1]))]
     known.sort(key=lambda parse: not _afforded(knowledge, parse))
     return tuple(Candidate(1.0, *parse) for parse in known[:_SHOWN])
+
+
+def _acts(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
+    """The steps that some words mean; what an idiom takes, as in `take a shower`, is not grabbed."""
+    return tuple(parse for parse in parses(knowledge, text) if parse[0].name != _GRAB or not is_idiom(text))
 
 
 def _afforded(knowledge: Knowledge, parse: Parse) -> bool:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import ObjectClass
+from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.vocabulary import PROPERTIES
@@ -31,6 +32,8 @@ class Query:
     has: tuple[str, ...] = ()
     may_be: tuple[str, ...] = ()
     kind: str = ""
+
+    __repr__ = brief
 
 
 def find(knowledge: Knowledge, query: Query) -> tuple[ObjectClass, ...]:

@@ -177,7 +177,7 @@ def never_executed(program: Program, known: Knowledge) -> Iterator[Finding]:
     """Steps whose action no simulation runs: they can be written, and the program fails there."""
     for number, step in enumerate(program.steps):
         if not known.actions[step.action].executed:
-            message = f"[{step.action}] is valid to write, but never executed"
+            message = f"[{step.action}] can be written, but the simulator does not execute it"
             yield Finding(Code.NOT_SIMULATED, number, message, found=step.action)
 
 

@@ -1,6 +1,7 @@
 """The homes of a build: the catalog, the user's homes laid over it, and homes derived from stored start graphs."""
 
 from functools import cache
+from pathlib import Path
 
 import orjson
 
@@ -10,6 +11,27 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.names import inside
+
+
+def known_homes(settings: Settings) -> None:
+    """Refuse names of homes that there can't be, before any source is read.
+
+    Scene graphs among the sources are homes, too: a folder or a packed file may hold some, which `ingest` finds.
+
+    Raises:
+        HearthError: UNKNOWN_HOME.
+    """
+    from hearth.homes import library
+
+    sources = [Path(source) for source in settings.sources]
+    if all(source.is_file() and source.suffix not in _PACKED for source in sources):
+        known = {*library.names(settings.homes_folder), *(source.stem for source in sources)}
+        for name in settings.homes:
+            if name not in known:
+                library.load_graph(name, knowledge(settings), settings.homes_folder)
+
+
+_PACKED = frozenset({".zip", ".gz", ".zst"})
 
 
 class Homes:

@@ -25,7 +25,7 @@ from hearth.pipelines.engine.activity_tables import COUNTED, Activities
 from hearth.pipelines.engine.annotated_sketches import ANNOTATED, Annotations, fitting, inherited_annotations
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.stage import Job
-from hearth.pipelines.engine.stages import RECORDS, STAGES
+from hearth.pipelines.engine.stages import STAGES, record_of
 from hearth.schemas import published_rows, stage_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -276,7 +276,7 @@ def _ledger(job: Job, counts: Counts) -> Iterator[published_rows.LedgerRow]:
         codes = sorted(stage_counts.codes.items(), key=lambda item: (-item[1], item[0]))
         yield {
             "stage": stage,
-            "record": RECORDS[stage],
+            "record": record_of(stage, job.plan if stage == job.stage.name else _manifest(job, stage).content["plan"]),
             "order": order,
             "records_in": stage_counts.records_in,
             "records_through": stage_counts.through,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import errno
 import importlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, islice
@@ -28,6 +28,10 @@ from hearth.storage.partitions import Counts, PartWriter, read_rows
 from hearth.storage.rejects import Reject, as_text
 
 Plan = dict[str, Any]
+
+NOTE = "note"
+"""Entry of a plan: what is left out of the records without being a reject; the ledger has it."""
+
 Output = Row | Reject | tuple[str, Row]
 
 BATCH = 64
@@ -74,7 +78,7 @@ class Stage:
         identify: the id of a record.
         columns: columns of the input to read; None for all.
         batch: the number of records whose rows are converted to Arrow together.
-        label: a label by which rows are counted, or None.
+        labels: the labels under which a row is counted, once for each.
         finish: writes the tables that need all partitions, before the manifest.
         facts: further entries of the manifest.
         time_factor: multiplies the time limit of a record.
@@ -100,7 +104,7 @@ class Stage:
     identify: Callable[[Any], str] = lambda record: str(record["program_id"])
     columns: tuple[str, ...] | None = None
     batch: Callable[[Partition], int] = lambda partition: BATCH
-    label: Callable[[Any], str | None] = lambda row: None
+    labels: Callable[[Any], Sequence[str]] = lambda row: ()
     finish: Callable[[Job, Counts], None] | None = None
     facts: Callable[[Job], dict[str, Any]] = lambda job: {}
     time_factor: int = 1
@@ -191,9 +195,12 @@ def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
 
 def records_of(job: Job, partition: Partition) -> Iterable[Any]:
     """The records of a partition, as the stage has them."""
+    return (job.stage.records or rows_of)(job, partition)
+
+
+def rows_of(job: Job, partition: Partition) -> Iterator[Any]:
+    """The rows of a partition that the stage selects."""
     stage = job.stage
-    if stage.records is not None:
-        return stage.records(job, partition)
     columns = list(stage.columns) if stage.columns is not None else None
     rows: Iterable[Any] = chain.from_iterable(read_rows(Path(path), columns) for path in partition.payload)
     if partition.rows is not None:
@@ -299,7 +306,7 @@ class _Sink:
         if not outputs:
             raise AssertionError("this record gave neither rows nor a reject")
         faults = [fault for reject in rejects for fault in reject.rows()]
-        labels = [label for _, row in rows if (label := self.stage.label(row)) is not None]
+        labels = [label for _, row in rows for label in self.stage.labels(row)]
         return _Outcome(rows, len(rejects), faults, rejects[0].code if rejects else "", labels)
 
     def _refused(self, error: Exception) -> _Outcome:

@@ -2,7 +2,7 @@
 
 import importlib
 
-from hearth.pipelines.engine.stage import Stage
+from hearth.pipelines.engine.stage import NOTE, Plan, Stage
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -26,6 +26,11 @@ RECORDS = {
     "publish": "executions of sample and of augment",
 }
 """What a record of each stage is: its input is counted in these."""
+
+
+def record_of(name: str, plan: Plan) -> str:
+    """Return what a record of a stage is, and what its plan leaves out."""
+    return "; ".join(filter(None, (RECORDS[name], plan.get(NOTE))))
 
 
 def stage(name: str) -> Stage:

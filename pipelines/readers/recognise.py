@@ -18,7 +18,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph_wrappers import graph_in
 from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
-from hearth.storage.files import links_not_followed, walk
+from hearth.storage.files import SERVED, links_not_followed, walk
 from hearth.storage.rejects import Reject, as_text
 
 _MAGIC: dict[bytes, str] = {
@@ -88,7 +88,10 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
         what = [fault.message for entry in found if entry.refusal for fault in entry.refusal.diagnostics]
         kinds = f"; the first is {what[0]}" if what else ""
         message = f"nothing to read among {len(files)} files{kinds}" if found else "an empty folder"
-        raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion=f"give {FORMS}")
+        remedy = f"give {FORMS}"
+        if not found and (path / SERVED).is_dir():
+            message, remedy = "nothing was accepted yet", "review programs in the room Annotate of `serve` first"
+        raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion=remedy)
     yield from found
 
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from hearth.kb.grammar import affordances, check
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.scoring.lines import Lines, steps_of
@@ -96,6 +97,8 @@ class Executability:
     error: ErrorClass | None = None
     code: Code | None = None
     final: World | None = None
+
+    __repr__ = brief
 
     @property
     def executable(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
+from hearth.schemas.brief import brief
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.common import Action
 from hearth.simulation.actions.registry import ACTIONS, EVERY
@@ -34,6 +35,9 @@ class Legal:
     home: Home
     agent: int
     masks: Mapping[str, tuple[int, ...]]
+
+    def __repr__(self) -> str:
+        return f"Legal({self.home!r}, agent {self.agent}, {len(self):,} instructions)"
 
     def __contains__(self, instruction: Step) -> bool:
         masks = self.masks.get(instruction.action)
@@ -113,6 +117,8 @@ def legal(
 
 class _Masks(Mapping[str, tuple[int, ...]]):
     """The masks of the actions that can be done, each made when it is asked for: most agents ask for few."""
+
+    __repr__ = brief
 
     def __init__(self, situation: Situation, actions: Mapping[str, Action], keep: int) -> None:
         self._situation, self._actions, self._keep = situation, actions, keep

@@ -6,6 +6,7 @@ from functools import cached_property
 from types import MappingProxyType
 
 from hearth.schemas.agent_messages import Message
+from hearth.schemas.brief import brief
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
@@ -23,6 +24,8 @@ class LastAction:
 
     instruction: Step
     failure: Failure | None = None
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +58,8 @@ class Pose:
     stride: float = world_pose.STRIDE
     last: LastAction | None = None
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True)
 class View:
@@ -77,6 +82,8 @@ class View:
     others: tuple[Pose, ...]
     tick: int = 0
     messages: tuple[tuple[int, Message], ...] = ()
+
+    __repr__ = brief
 
     @cached_property
     def ids(self) -> tuple[int, ...]:

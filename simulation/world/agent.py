@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
+from hearth.schemas.brief import brief
 from hearth.simulation.world.pose import STRIDE, Pose
 
 AGENT_OUT = {
@@ -49,6 +50,9 @@ class Agent(NamedTuple):
     origins: tuple[tuple[int, int, int], ...] = ()
     pose: Pose | None = None
     stride: float = STRIDE
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def held(self) -> int:

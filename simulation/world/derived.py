@@ -9,6 +9,7 @@ from operator import attrgetter, or_
 from types import MappingProxyType
 from typing import NamedTuple
 
+from hearth.schemas.brief import brief
 from hearth.schemas.change import Change, restated
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -36,6 +37,9 @@ class Movable(NamedTuple):
     place: int
     room: int
     near: int
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     def edges(self, ids: Sequence[int]) -> Iterator[Edge]:
         """The same as edges, CLOSE one way round."""

@@ -7,6 +7,7 @@ from functools import cached_property, partial
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.brief import brief
 from hearth.schemas.explained import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
 from hearth.simulation.world import building
@@ -18,6 +19,8 @@ from hearth.simulation.world.nodes import with_states
 
 class Memo(dict[int, int]):
     """A table filled on first use; what is never asked for costs nothing."""
+
+    __repr__ = brief
 
     def __init__(self, compute: Callable[[int], int]) -> None:
         super().__init__()
@@ -34,6 +37,8 @@ MOST_UNIONS = 4_096
 
 class Unions(dict[int, int]):
     """The union of the rows of a set of nodes, by the set; sets recur from tick to tick, and the last ones are kept."""
+
+    __repr__ = brief
 
     def __init__(self, rows: Rows) -> None:
         super().__init__()

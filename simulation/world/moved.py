@@ -6,6 +6,7 @@ that relation in both directions at once; what it stands in now is *extra*.
 
 from typing import NamedTuple
 
+from hearth.schemas.brief import brief
 from hearth.simulation.world.bits import indices
 
 ON, BEARS, INSIDE, CONTENTS, CLOSE, FACING, FACED = range(7)
@@ -22,6 +23,9 @@ class Moved(NamedTuple):
     close: int = 0
     facing: int = 0
     extra: dict[int, int] = {}  # noqa: RUF012 - shared and never written to
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 NOTHING = Moved()

@@ -168,6 +168,7 @@ def test_approach_goes_towards_the_thing_and_then_the_place(maple):
     progress = Progress.start(goal, world)
     far = metres_left(progress, world, 0)
     env = HomeEnv(Setting(opening(maple, "HOLDS(agent, milk)", agents=1)))
+    env.reset(seed=1)
     env.session._begin(world, Progress.start(env.session.progress.goal, world).goal)
     walk_and_grab(env, "milk")
     held = env.session.env.world
@@ -324,3 +325,12 @@ def test_arrays_are_the_same_bytes_in_every_process():
         return done.stdout.strip()
 
     assert digest("1") == digest("2") != ""
+
+
+def test_a_step_before_the_first_reset_is_a_fault(one):
+    env = HomeEnv(Setting(one))
+    with pytest.raises(HearthError, match=r"`step` came before the first `reset`.*call `reset\(\)`") as caught:
+        env.step(0)
+    assert caught.value.diagnostics[0].code == Code.OUT_OF_ORDER
+    env.reset(seed=1)
+    env.step(0)

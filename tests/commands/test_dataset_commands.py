@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth import cli
+from hearth.commands import output
 
 SQL = "SELECT origin, count(*) AS n FROM programs GROUP BY origin ORDER BY origin"
 
@@ -87,6 +88,8 @@ def test_augmented_programs_are_compared_with_the_thesis(dataset, tmp_path):
     shown = run("augmented", dataset, "--out", tmp_path / "figures")
     assert shown.exit_code == 0
     assert "13.26" in shown.stdout, "table 5.1"
+    headings = [part for part in shown.stdout.split("\n\n") if part.startswith("Conditions of the start")]
+    assert all(len(part.splitlines()) > 1 for part in headings)
     assert any((tmp_path / "figures").iterdir())
 
 
@@ -110,3 +113,15 @@ def test_a_missing_dataset_is_reported(tmp_path, command):
     result = run(command, tmp_path / "nowhere", *more)
     assert result.exit_code == 1
     assert "nowhere" in result.output
+
+
+def test_a_figure_that_there_is_not_is_an_empty_cell(capsys):
+    output.table(("activity", "LCS"), [("Watch TV", float("nan")), ("Read", 0.25)])
+    assert capsys.readouterr().out == "activity    LCS\nWatch TV\nRead      0.250\n"
+
+
+def test_statistics_of_one_program_have_no_nan(tmp_path):
+    (tmp_path / "one.txt").write_text("Watch TV\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n")
+    result = run("corpus", "stats", tmp_path / "one.txt")
+    assert result.exit_code == 0 and "Watch TV" in result.stdout
+    assert "nan" not in result.stdout.split()

@@ -10,7 +10,7 @@ import duckdb
 import pytest
 
 import hearth
-from hearth.datasets.format.catalog import CATALOG, SQL, published
+from hearth.datasets.format.catalog import CATALOG, SQL, VIEWS, published
 from hearth.datasets.verify import verify
 from hearth.schemas.tables import TABLES, comment_of, nested
 
@@ -49,7 +49,7 @@ def test_paths_of_nested_fields():
 
 def test_views_columns_and_macros_of_the_catalog_have_comments(said):
     names = {name for name, _ in said}
-    assert names >= {*TABLES, "steps", "ticks", "start_relations", "program_text", "graph_edges", "final_state"}
+    assert names >= {*TABLES, *VIEWS, "program_text", "graph_edges", "final_state"}
     assert [key for key, text in said.items() if not text] == []
     for table, schema in TABLES.items():
         for column in schema:
@@ -86,6 +86,26 @@ def test_its_first_line_says_what_to_do_where_it_is_attached(folder):
             plain.execute("SELECT count(*) FROM mine.programs")
         plain.execute(f"SET file_search_path = '{folder}'")
         assert plain.execute("SELECT count(*) FROM mine.programs").fetchone()[0] > 0
+
+
+@pytest.mark.parametrize("name", ["h", 'my "data"; --'])
+def test_a_dataset_is_attached_to_a_connection_of_anybodys(folder, tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    with duckdb.connect(tmp_path / "own.duckdb") as own:
+        own.execute("CREATE TABLE mine AS SELECT 'crowd:P1' AS program_id, 3 AS grade")
+        hearth.attach(own, str(folder), name)
+        hearth.attach(own, str(folder), "again")
+        named = '"' + name.replace('"', '""') + '"'
+        query = f"SELECT count(*), sum(executable::int) FROM {named}.originals"
+        assert own.execute(query).fetchall() == hearth.load(folder).rows(query.replace(f"{named}.", ""))[1]
+        found = own.execute(f"SELECT title, grade, again.program_text(program_id) FROM mine JOIN {named}.programs USING"
+                            " (program_id)").fetchall()  # fmt: skip
+        assert [row[:2] for row in found] == [("Watch TV", 3)] and found[0][2].startswith("[")
+        assert own.execute("SELECT current_database()").fetchone() == ("own",)
+        with pytest.raises(hearth.HearthError, match="has a database `again` already"):
+            hearth.attach(own, str(folder), "again")
+    with duckdb.connect(tmp_path / "own.duckdb") as own:
+        assert own.execute("SHOW TABLES").fetchall() == [("mine",)]
 
 
 def test_verify_sees_another_comment(folder, tmp_path):

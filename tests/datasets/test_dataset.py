@@ -11,6 +11,7 @@ import pytest
 import hearth
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.cases import rerun
+from hearth.datasets.format.catalog import VIEWS
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import from_release
@@ -263,7 +264,7 @@ def test_what_replaces_an_open_dataset_is_looked_at_as_well(made, tmp_path, mani
     folder = shutil.copytree(made.out / "publish", tmp_path / "copy")
     dataset = Dataset.open(folder)
     assert dataset.rows("SELECT 1")[1] == [(1,)]
-    newer = (folder / "manifest.json").read_text().replace('"format": 2', '"format": 99')
+    newer = (folder / "manifest.json").read_text().replace('"format": 3', '"format": 99')
     (folder / "other.json").write_text(manifest or newer)
     (folder / "other.json").replace(folder / "manifest.json")
     with pytest.raises(HearthError, match=message):
@@ -274,7 +275,7 @@ def test_no_dataset_and_a_newer_one(made, tmp_path):
     with pytest.raises(HearthError, match="no dataset here"):
         hearth.load(tmp_path)
     folder = shutil.copytree(made.out / "publish", tmp_path / "newer")
-    text = (folder / "manifest.json").read_text().replace('"format": 2', '"format": 99')
+    text = (folder / "manifest.json").read_text().replace('"format": 3', '"format": 99')
     (folder / "manifest.json").write_text(text)
     with pytest.raises(HearthError, match="format 99"):
         hearth.load(folder)
@@ -316,3 +317,14 @@ def test_relations_counted_from_differences(made):
     found = dict(ds.rows("SELECT relation, edges FROM start_relations WHERE edges > 0")[1])
     runs = [run for program_id in ds for run in ds[program_id].runs]
     assert found == Counter(edge.relation for run in runs for edge in run.start.edges)
+
+
+def test_an_unknown_id_names_those_that_are_like_it(ds):
+    with pytest.raises(KeyError, match=r"no program `crowd:P01` among .*; the nearest ids are `crowd:P1"):
+        _ = ds["crowd:P01"]
+    with pytest.raises(KeyError, match=r"x{77}\.\.\.`"):
+        _ = ds["x" * 10_000]
+
+
+def test_completion_has_tables_and_views(ds):
+    assert {*TABLES, *VIEWS, "sql", "rows", "folder"} <= {*dir(ds)}

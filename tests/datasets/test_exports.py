@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import csv
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import networkx
@@ -126,6 +129,34 @@ def test_code_is_python_that_makes_the_same_calls(ds, tmp_path):
         ]
         assert [call.func.id.replace("_", "") for call in calls] == [step.action.lower() for step in steps]
         assert {call.func.id for call in calls} <= imported
+
+
+def test_code_runs_alone_in_its_folder(ds, made, tmp_path):
+    folder = shutil.copytree(made.out / "publish", tmp_path / "dataset")
+    rename(folder, "Watch TV", "Walk")
+    rename(folder, "Grab", "print")
+    export(hearth.load(folder), "code", tmp_path / "out")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"programs.py", "actions.py"}
+    plain = [sys.executable, "-I", "-c"]
+    for body, said in (("runpy.run_path('programs.py')", ""), ("import programs; programs.walk_2()", "walk('")):
+        code = f"import runpy, sys; sys.path.insert(0, '.'); {body}"
+        done = subprocess.run([*plain, code], cwd=tmp_path / "out", capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout.startswith(said) and bool(said) == bool(done.stdout)
+
+
+def test_tables_as_csv_have_the_rows_of_the_lines(ds, tmp_path):
+    for wanted, to in ((Wanted(), "all"), (Wanted((MILK,)), "one")):
+        assert export(ds, "csv", tmp_path / to / "csv", wanted) == export(ds, "jsonl", tmp_path / to / "json", wanted)
+        for path in (tmp_path / to / "json").iterdir():
+            with (tmp_path / to / "csv" / f"{path.stem}.csv").open(newline="") as file:
+                found = list(csv.DictReader(file))
+            rows = [json.loads(line) for line in path.read_text().splitlines()]
+            assert len(found) == len(rows)
+            for cells, row in zip(found, rows, strict=True):
+                assert [*cells] == [*row]
+                nested = {key: json.loads(cells[key]) for key, value in row.items() if isinstance(value, list | dict)}
+                assert nested == {key: row[key] for key in nested}
 
 
 @pytest.mark.parametrize("form", ["networkx", "graphml"])

@@ -200,7 +200,7 @@ def test_a_sketch_without_a_flag_for_each_step(copy):
 
 
 def test_a_newer_dataset_is_not_guessed_at(copy):
-    text = (copy / "manifest.json").read_text().replace('"format": 2', '"format": 99')
+    text = (copy / "manifest.json").read_text().replace('"format": 3', '"format": 99')
     (copy / "manifest.json").write_text(text)
     with pytest.raises(HearthError, match="format 99"):
         verify(copy)

@@ -1,15 +1,19 @@
 """Plans are read whole, and everything wrong with one is said at once, with its line and a remedy."""
 
+import re
 from pathlib import Path
 
 import pytest
 
+from hearth.homes.library import graph_of
+from hearth.homes.lint import lint
 from hearth.homes.plans.layout import read
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
-GOLDEN = Path(__file__).parents[1] / "golden" / "homes"
+ROOT = Path(__file__).parents[2]
+GOLDEN = ROOT / "tests/golden/homes"
 
 
 def faults_of(text):
@@ -31,6 +35,13 @@ def test_all_faults_of_a_plan_are_reported_together_with_line_and_remedy():
     found = "\n".join(map(str, faults_of(text))) + "\n"
     # Refresh after a change that is meant: HEARTH_GOLDEN=1 pytest tests/homes
     assert_golden(GOLDEN / "faulty.txt", found)
+
+
+def test_the_plan_to_copy_is_a_home_without_a_fault(tmp_path):
+    known, page = default(), ROOT / "data_raw/homes/README.md"
+    (block,) = re.findall(r"```yaml\n(home: .*?)```", page.read_text("utf-8"), re.DOTALL)
+    (tmp_path / "hut.yaml").write_text(block, "utf-8")
+    assert not lint(graph_of(tmp_path / "hut.yaml", known), known)
 
 
 def test_faults_underline_the_words_of_the_plan():

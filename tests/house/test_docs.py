@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from hearth import cli
-from hearth.datasets.format.catalog import comments
+from hearth.datasets.format.catalog import VIEWS, comments
 from hearth.kb.loading.load import default
+from hearth.repair.perturb import PERTURBATIONS
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES, nested
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -32,13 +36,19 @@ def test_actions_objects_tables_and_failures_are_there(pages):
     known = default()
     assert all(f"`{name}`" in pages.actions() for name in known.actions)
     assert all(f"`{name}`" in pages.objects() for name in known.objects)
-    assert all(f"## {name}\n" in pages.tables() for name in (*TABLES, "steps", "ticks", "start_relations"))
-    assert all(f"`{code}`" in pages.failures() for code in Code)
+    assert all(f"## {name}\n" in pages.tables() for name in (*TABLES, *VIEWS))
+
+
+def test_every_failure_has_its_meaning(pages):
+    rows = {row.split(" | ")[0]: row.split(" | ")[1] for row in pages.failures().splitlines() if row.startswith("| `")}
+    assert [*rows] == [f"| `{code}`" for code in Code]
+    assert all(len(meaning) > 10 and "{" not in meaning for meaning in rows.values())
+    assert rows["| `INSIDE_CLOSED`"] == "the thing is inside the other thing, which is closed"
 
 
 @pytest.mark.parametrize("name", ["tables.md", "pictures/tables.svg"])
 def test_the_page_of_the_tables_is_current(pages, name):
-    kept = Path(__file__).resolve().parents[2] / "docs" / name
+    kept = ROOT / "docs" / name
     assert kept.read_text("utf-8") == pages.WRITTEN[name](), "write it with: python docs/hooks/pages.py"
 
 
@@ -56,3 +66,24 @@ def test_every_module_has_a_page_and_a_line(pages):
     listed = pages.library()
     for name in pages.modules():
         assert f"]({Path(name).name}): " in listed, name
+
+
+def test_pages_for_all_installations_name_the_command_that_all_have():
+    pages = [*(ROOT / "docs").rglob("*.md"), *(ROOT / "web/templates").rglob("*.html")]
+    of_a_checkout = {"docs/examples/new-action.md"}  # it changes Hearth, and runs what it changed
+    wrong = {page.relative_to(ROOT).as_posix() for page in pages if "python cli.py" in page.read_text("utf-8")}
+    assert wrong == of_a_checkout
+
+
+def test_homes_and_the_knowledge_have_pages_that_name_the_command_of_all(pages):
+    for page, words in (("homes.md", "home: hut"), ("knowledge.md", "waffle_iron")):
+        text = pages.PAGES[page]()
+        assert words in text and "python cli.py" not in text
+    assert "](homes.md)" in pages.PAGES["index.md"]() and "](knowledge.md)" in pages.PAGES["index.md"]()
+
+
+def test_the_page_of_the_tables_names_what_there_is_and_no_module(pages):
+    text = pages.tables()
+    assert not re.findall(r"\| [^|]*(?:, \.\.\.|\w\.\.\.|see `)[^|]* \|", text)
+    (kinds,) = re.findall(r"what was changed: (.*?) \|", text)
+    assert re.split(", | or ", kinds) == [*PERTURBATIONS]

@@ -46,6 +46,36 @@ def test_every_file_is_reported_though_others_can_not_be_read(tmp_path):
     assert (result.exit_code, report["faults"]) == (1, 5)
 
 
+def faulty_files(folder):
+    """Three files with one fault twice and another once, found in an order that is not that of lines."""
+    for number in (1, 2, 3):
+        steps = "[Walk] <kitchn> (1)\n[Fly] <bed> (1)\n[Walk] <kitchn> (1)\n[Walk] <bed> (1)\n"
+        (folder / f"{number}.txt").write_text(f"Sleep\n\n\n{steps}")
+    return sorted(folder.glob("*.txt"))
+
+
+def test_equal_faults_are_printed_once_with_their_other_places(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = check(*(file.name for file in faulty_files(tmp_path)))
+    assert result.stdout.count("error[UNKNOWN_OBJECT]") == result.stdout.count("error[UNKNOWN_ACTION]") == 1
+    assert "+ 5 more: 6:9, 2.txt:4:9, 6:9, 3.txt:4:9, 6:9\n" in result.stdout
+    assert "+ 2 more: 2.txt:5:2, 3.txt:5:2\n" in result.stdout
+    assert result.stdout.endswith("3 files, 3 programs, 12 steps: 9 faults\n")
+
+
+def test_the_json_has_every_fault_in_the_order_of_lines(tmp_path):
+    (report, *_) = json.loads(check(*faulty_files(tmp_path), "--json").stdout)["files"]
+    assert [fault["line"] for fault in report["faults"]] == [4, 5, 6]
+
+
+def test_a_summary_counts_faults_by_kind(tmp_path):
+    result = check(tmp_path, *faulty_files(tmp_path)[1:], "--summary", "--lint")
+    rows = [line.split()[:4] for line in result.stdout.splitlines()[1:-1]]
+    assert rows[:2] == [["error", "UNKNOWN_OBJECT", "10", "3"], ["error", "UNKNOWN_ACTION", "5", "3"]]
+    assert rows[2][0] == "warning" and "-->" not in result.stdout
+    assert result.exit_code == 1
+
+
 def test_clean_programs_are_status_0():
     result = check("-", input="Sleep\n\n\n[Walk] <bedroom> (1)\n")
     assert (result.exit_code, result.output) == (0, "1 file, 1 program, 1 step: no faults\n")

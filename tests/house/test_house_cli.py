@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import re
 import subprocess
 import sys
 from inspect import signature
@@ -56,6 +57,23 @@ def test_help_shows_an_example_and_json(words):
     assert f"hearth {' '.join(words)}" in result.output.partition("Example")[2], "no example of this command"
     assert "--json" in result.output or words in DOCUMENTS
     assert "\b" not in result.output
+
+
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_help_has_plain_names_and_whole_sentences(words):
+    shown = call(*words, "--help").output
+    usage = " ".join(shown.partition("\n\n")[0].split()).partition("[OPTIONS]")[2]
+    assert all(re.fullmatch(r"\[?[A-Z][A-Z|:.*_-]*\]?(\.\.\.)?", name) for name in usage.split()), usage
+    assert not re.search(r"<[a-z]", shown.partition("Arguments:")[2].partition("Options:")[0])
+    if len(words) == 2:
+        listed = call(words[0], "--help").output.partition("Commands:")[2]
+        assert not re.search(r"\.\.\.$", listed, re.MULTILINE)
+
+
+def test_usage_of_arguments_that_may_be_left_out_or_given_several_times():
+    assert "check [OPTIONS] FILE...\n" in call("check", "--help").output
+    assert "build [OPTIONS] [SOURCE]...\n" in call("build", "--help").output
+    assert "synthesize [OPTIONS] [N]\n" in call("corpus", "synthesize", "--help").output
 
 
 def test_every_parameter_has_its_entry_and_every_entry_its_parameter():

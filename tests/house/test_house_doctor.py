@@ -3,12 +3,15 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from hearth import cli
 from hearth.commands import doctor
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def call(*arguments):
@@ -104,3 +107,20 @@ def test_the_doctor_runs_where_the_libraries_do_not_load():
         [sys.executable, "-c", code + "print(doctor.missing_libraries())"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("called", ["cli.py", ".venv/bin/hearth"])
+def test_a_copy_that_runs_the_code_of_the_original_is_broken(called, tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "argv", [str(tmp_path / called)])
+    assert doctor.folder().state == doctor.OK  # of no checkout
+    (tmp_path / "commands").mkdir()
+    (tmp_path / "commands/doctor.py").touch()
+    found = doctor.folder()
+    assert found.state == doctor.BROKEN and found.cost == f"run `make setup` in {tmp_path}"
+    assert str(ROOT) in found.found and str(tmp_path) in found.found
+
+
+def test_a_checkout_that_runs_its_own_code_is_sound(monkeypatch):
+    for called in (ROOT / "cli.py", ROOT / ".venv/bin/hearth"):
+        monkeypatch.setattr(sys, "argv", [str(called)])
+        assert doctor.folder().state == doctor.OK

@@ -100,6 +100,15 @@ def touch(path):
     os.utime(path, (1_600_000_000, 1_600_000_000))
 
 
+@pytest.mark.parametrize(("made_in", "again"), [("", False), ("{tree}", False), ("/home/somebody/hearth", True)])
+def test_make_sets_up_again_in_a_copy(tree, made_in, again):
+    ready = tree / ".venv/.ready"
+    ready.write_text(f"{made_in.format(tree=tree)}\n" if made_in else "")
+    shown, _ = make(tree, "--dry-run", "setup")
+    ready.write_text("")
+    assert ("setup.sh" in shown) == again
+
+
 def test_make_runs_all_stages_in_order_ends_with_the_funnel_and_then_does_nothing(tree):
     shown, ran = make(tree)
     assert ran == NAMES
@@ -225,6 +234,20 @@ def test_set_up_uses_pip_and_the_lock(bare):
     assert "--no-deps -r requirements.lock" in calls and "--no-deps --no-build-isolation -e ." in calls
     assert (bare / ".venv/.ready").exists()
     assert "apt-get" not in calls + done.stderr
+
+
+def test_set_up_begins_anew_in_a_copy(bare):
+    """Its `.venv` has the commands of the folder that it was copied from."""
+    set_up(bare)
+    assert (bare / ".venv/.ready").read_text() == f"{bare}\n"
+    (bare / ".venv/of_the_original").touch()
+    set_up(bare)
+    assert (bare / ".venv/of_the_original").exists()
+    (bare / ".venv/.ready").write_text("/home/somebody/hearth\n")
+    done, _ = set_up(bare)
+    assert "it was set up in /home/somebody/hearth" in done.stderr
+    assert not (bare / ".venv/of_the_original").exists()
+    assert (bare / ".venv/.ready").read_text() == f"{bare}\n"
 
 
 def test_set_up_prefers_uv(bare):

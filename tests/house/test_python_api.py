@@ -91,7 +91,7 @@ def test_what_hearth_has_is_what_type_checkers_see():
     seen = {alias.asname: node.module for node in imports for alias in node.names if alias.asname}
     assert seen == hearth._modules() and len(seen) > 25
     rooms = {path.name for path in ROOT.iterdir() if path.is_dir()}
-    assert not rooms & (seen.keys() | {"load", "knowledge", "home", "parse_program"}) - {"build"}
+    assert not rooms & (seen.keys() | {"load", "knowledge", "home", "parse_program", "attach"}) - {"build"}
     for name, module in seen.items():
         assert getattr(hearth, name).__name__ == name
         value = getattr(hearth, name)
@@ -104,6 +104,22 @@ def test_what_hearth_has_is_what_type_checkers_see():
     assert defined == {name: arguments for name, arguments in functions.items() if not name.startswith("_")}
     with pytest.raises(AttributeError, match="has no attribute `runs`"):
         _ = hearth.runs
+
+
+def test_completion_has_the_entry_points_and_nothing_else():
+    stub = (ROOT / "__init__.pyi").read_text()
+    assert hearth.__all__ == sorted({*hearth._modules(), "load", "knowledge", "home", "parse_program", "attach"})
+    assert all(name in stub and getattr(hearth, name) for name in hearth.__all__)
+    assert {"Env", "run", "build", "bind", "World", "load", "__version__"} <= {*dir(hearth)} >= {*hearth.__all__}
+    assert not {"Any", "lru_cache", "annotations", "explained", "VERSION", "TYPE_CHECKING"} & {*dir(hearth)}
+    rest = {name for name in dir(hearth) if not name.startswith("__")} - {*hearth.__all__}
+    assert rest <= {path.name for path in ROOT.iterdir() if path.is_dir()} | {"version", "cli"}
+
+
+def test_a_star_imports_the_entry_points():
+    names = {}
+    exec("from hearth import *", names)
+    assert names.keys() - {"__builtins__"} == {*hearth.__all__}
 
 
 def test_import_hearth_stays_light():

@@ -133,7 +133,7 @@ def test_a_record_of_any_type_is_refused(settings, record):
 
 def test_a_count_that_breaks_costs_only_its_record(settings):
     stage = replace(
-        STAGE, process=lambda record, context: [row(**record)], label=lambda row: str(1 / (row["number"] - 5))
+        STAGE, process=lambda record, context: [row(**record)], labels=lambda row: (str(1 / (row["number"] - 5)),)
     )
     counts = run_stage(stage, settings).manifest.counts
     assert (counts.through, counts.rejected, counts.rows.total(), counts.tally.total()) == (99, 1, 99, 99)

@@ -108,3 +108,15 @@ def test_a_folder_that_is_missing_is_reported_before_the_sources_are_read(tmp_pa
     with pytest.raises(HearthError, match="not a directory"):
         build(list(map(str, GOLDEN_SOURCES)), str(tmp_path / "out"), homes_folder=str(tmp_path / "nowhere"))
     assert not (tmp_path / "out/ingest").exists()
+
+
+@pytest.mark.parametrize(("among", "read"), [("programs.txt", False), (".", True)], ids=["a file", "a folder"])
+def test_a_home_that_is_not_there_is_refused_as_soon_as_it_can_be(among, read, tmp_path):
+    """A folder may hold a scene graph of that name, which its reading shows."""
+    source = tmp_path / "sources"
+    source.mkdir()
+    (source / "programs.txt").write_text("Sleep\n\n\n[Walk] <bedroom> (1)\n")
+    with pytest.raises(HearthError, match="there is no home `nowhere`"):
+        build([str(source / among)], str(tmp_path / "out"), homes=("nowhere",))
+    assert (tmp_path / "out/ingest").exists() == read
+    assert not (tmp_path / "out/validate").exists()

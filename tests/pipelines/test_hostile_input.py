@@ -12,7 +12,7 @@ import pytest
 from oracles import mutated_input
 
 from hearth.analysis import ratings
-from hearth.analysis.spreadsheet_cells import original_cell, safe_cell
+from hearth.analysis.spreadsheet_cells import original_cell
 from hearth.analysis.synthesis import load
 from hearth.datasets.export.release_layout import stem
 from hearth.pipelines.engine.sources import labelled
@@ -21,6 +21,7 @@ from hearth.pipelines.readers.crowd import PROGRAMS
 from hearth.pipelines.readers.recognise import recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import Program
+from hearth.storage.csv_files import safe_cell
 from hearth.storage.rejects import Reject
 
 PROGRAM = "Nap\nOn it.\n\n[Walk] <bed> (1)\n"

@@ -166,3 +166,10 @@ def test_a_plain_line_is_read_as_one_with_markdown_would_be(start, words):
     plain = plan_lines.plan_line(start + words)
     with patch.object(plan_lines, "_PLAIN", re.compile("(?!)")):
         assert plan_lines.plan_line(start + words) == plain
+
+
+def test_a_row_is_counted_once_for_each_fuzzy_step():
+    from hearth.pipelines.validate import FUZZY, STAGE
+
+    warnings = [{"code": code} for code in ("FUZZY_MATCH", "NO_STEP", "FUZZY_MATCH")]
+    assert STAGE.labels({"warnings": warnings}) == [FUZZY, FUZZY]

@@ -9,6 +9,7 @@ from read_sources import PROGRAM, answer, batch, faults, read, rows, zipped
 
 from hearth.pipelines.readers.recognise import recognise
 from hearth.schemas.diagnostics import HearthError
+from hearth.storage.files import SERVED
 
 
 def test_an_archive_without_the_releases_folders(tmp_path):
@@ -17,6 +18,12 @@ def test_an_archive_without_the_releases_folders(tmp_path):
         archive.writestr("photos/cat.jpg", b"")
     with pytest.raises(HearthError, match=r"without any of the release's folders.*photos/cat\.jpg"):
         read(path)
+
+
+def test_a_folder_of_a_server_without_accepted_programs(tmp_path):
+    (tmp_path / SERVED).mkdir()
+    with pytest.raises(HearthError, match=r"nothing was accepted yet \(review programs"):
+        list(recognise(tmp_path, "collected"))
 
 
 def test_a_folder_of_pictures(write):

@@ -137,3 +137,39 @@ def test_demonstrations_have_a_picture_a_tick_from_above(filmed):
     assert ds.rows("SELECT count(*), any_value(home) FROM demonstration_frames")[1] == [(2, "maple")]
     assert (ds.folder / rows[0]["file"]).is_file()
     assert hearth.verify(filmed.out).faults == ()
+
+
+def test_pictures_are_exported_as_instances_of_coco(filmed, tmp_path):
+    import json
+
+    import numpy as np
+
+    import hearth
+    from hearth.rendering.film.png import decode
+
+    dataset = hearth.load(filmed.out)
+    assert hearth.export(dataset, "coco", tmp_path / "coco") == 4  # two ticks by two cameras
+    found = json.loads((tmp_path / "coco/instances.json").read_text())
+    names = {each["id"]: each["name"] for each in found["categories"]}
+    rows = {(row["tick"], row["camera"], row["modality"]): row["file"] for row in filmed.rows("render")}
+    known = dataset.rows("SELECT name FROM vocabulary WHERE kind = 'class'")[1]
+    assert {*names.values()} == {name for (name,) in known}
+    lines = [json.loads(line) for line in (tmp_path / "coco/images/metadata.jsonl").read_text().splitlines()]
+    assert lines == found["images"]
+    for image in found["images"]:
+        picture, mask = (rows[image["tick"], image["camera"], name] for name in ("rgb", "instance_ids"))
+        copied = (tmp_path / "coco/images" / image["file_name"]).read_bytes()
+        assert copied == (filmed.out / "render" / picture).read_bytes()
+        mask = decode((filmed.out / "render" / mask).read_bytes())
+        classes = {node.id: node.class_name for node in dataset["text:bed.txt"].runs[0].graph(image["tick"]).nodes}
+        mine = [each for each in found["annotations"] if each["image_id"] == image["id"]]
+        assert {each["node_id"] for each in mine} == {*np.unique(mask).tolist()} & classes.keys() != set()
+        for each in mine:
+            flat = np.repeat(np.arange(len(each["segmentation"]["counts"])) % 2, each["segmentation"]["counts"])
+            shown = flat.reshape(each["segmentation"]["size"], order="F") == 1
+            assert (shown == (mask == each["node_id"])).all() and each["area"] == shown.sum()
+            assert names[each["category_id"]] == classes[each["node_id"]]
+            left, top, width, height = each["bbox"]
+            assert shown[top : top + height, left : left + width].sum() == each["area"]
+            assert shown[top].any() and shown[top + height - 1].any()
+    assert [each["id"] for each in found["annotations"]] == [*range(1, len(found["annotations"]) + 1)]

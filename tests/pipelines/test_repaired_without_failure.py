@@ -37,13 +37,17 @@ def test_the_original_that_runs_is_no_case(tmp_path):
     assert not verify(made.dataset).faults
 
 
-def test_without_variants_each_execution_has_a_reason(tmp_path):
-    """A program's sketch comes with its first execution; the others give nothing, and say why."""
+def test_without_variants_nothing_is_refused_and_the_ledger_says_what_was_left_out(tmp_path):
+    """A program's sketch comes with its first execution; nothing was asked of the others."""
     batch = tmp_path / "programs.csv"
     batch.write_text(f'{HEAD}\nPA01006a,written,finder,Approved,,Make coffee,I brew coffee.,,,"{COFFEE}"\n')
     options = {"homes": ("juniper", "maple"), "variants": 0, "pictures": 0, "videos": 0}
     made = hearth.build([str(batch)], str(tmp_path / "out"), **options)
     dataset = hearth.load(made.dataset)
-    (ran,) = dataset.rows("SELECT count(*) FROM executions WHERE executable")[1][0]
-    codes = [code for (code,) in dataset.rows("SELECT code FROM rejects WHERE stage = 'augment'")[1]]
-    assert codes == ["UNPERTURBED"] * (ran - 1)
+    assert dataset.rows("SELECT count(*) > 1 FROM executions WHERE executable")[1] == [(True,)]
+    assert not dataset.rows("SELECT code FROM rejects WHERE stage = 'augment'")[1]
+    assert dataset.rows("SELECT count(*) FROM sketches")[1] == [(1,)]
+    columns = "records_in, records_through, records_rejected, record"
+    ((*numbers, record),) = dataset.rows(f"SELECT {columns} FROM ledger WHERE stage = 'augment'")[1]
+    assert numbers == [1, 1, 0] and "no variants were requested" in record
+    assert not verify(made.dataset).faults

@@ -62,5 +62,5 @@ def test_lint_says_what_no_simulation_runs(tmp_path):
     file.write_text("Brush\n\n\n\n[Walk] <teeth> (1)\n[Brush] <teeth> (1)\n")
     result = CliRunner().invoke(app, ["check", "--lint", str(file)])
     assert result.exit_code == 0
-    assert "warning[NOT_SIMULATED]: [Brush] is valid to write, but never executed" in result.stdout
+    assert "warning[NOT_SIMULATED]: [Brush] can be written, but the simulator does not execute it" in result.stdout
     assert "a.txt:6:2" in result.stdout, "the action is underlined"

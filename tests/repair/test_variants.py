@@ -150,10 +150,11 @@ def share_repaired(found: list[Augmented]) -> tuple[float, int]:
 
 
 def test_nearly_all_pairs_of_the_corpus_are_repaired():
-    found = [augment(program, home("maple"), 0, record_id, Options(3)) for record_id, program in programs()[::8]]
+    # A program that no handler helps counts once for each of its pairs, so that a share of fewer programs is a lottery.
+    found = [augment(program, home("maple"), 0, record_id, Options(3)) for record_id, program in programs()[::4]]
     share, pairs = share_repaired([one for one in found if isinstance(one, Augmented)])
-    assert pairs > 100
-    assert share >= 0.98
+    assert pairs > 400
+    assert share >= 0.97
 
 
 def things_on(seat: int, execution: Execution, tick: int, but: set[int]) -> list[str]:

@@ -1,0 +1,83 @@
+"""Faults that repeat: equal ones are printed once, with their number and their other places."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Hashable, Iterable
+from typing import TextIO
+
+from hearth.commands import output
+from hearth.schemas.diagnostics import Diagnostic
+
+PLACES = 5
+"""Other places of a fault that are named."""
+
+NODE = re.compile(r"\w+ \(\d+\)")
+"""A node of a graph in a message: `cup (12)`."""
+
+
+def in_order(faults: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Return faults by file, line and column."""
+    return sorted(faults, key=lambda fault: (fault.file, fault.line, fault.column))
+
+
+def equal(fault: Diagnostic) -> Hashable:
+    """Return what equal faults share, the words at fault among it."""
+    words = fault.source[max(0, fault.column - 1) :][: fault.length]
+    return fault.code, fault.message, fault.suggestion, words
+
+
+def alike(fault: Diagnostic) -> Hashable:
+    """Return what faults of different nodes of a graph share: all but `cup (12)`."""
+    return fault.code, *(NODE.sub("", text) for text in (fault.message, fault.suggestion))
+
+
+def groups(faults: Iterable[Diagnostic], key: Callable[[Diagnostic], Hashable] = equal) -> list[list[Diagnostic]]:
+    """Return faults in groups that share a key, in the order of the first of each."""
+    found: dict[Hashable, list[Diagnostic]] = {}
+    for fault in faults:
+        found.setdefault(key(fault), []).append(fault)
+    return list(found.values())
+
+
+def report(
+    faults: Iterable[Diagnostic],
+    stream: TextIO | None = None,
+    kind: str = "error",
+    key: Callable[[Diagnostic], Hashable] = equal,
+) -> None:
+    """Print the first fault of each group in full, and where the others are."""
+    for first, *others in groups(faults, key):
+        output.report([first], stream, kind)
+        if others:
+            print(f"    + {len(others):,} more: {_places(first, others)}", file=stream or sys.stderr)
+
+
+def _places(first: Diagnostic, others: list[Diagnostic]) -> str:
+    """Name some places, the file only where it differs from that of the place before; nodes where there is no line."""
+    file, named = first.file, []
+    for fault in others[:PLACES]:
+        node = None if fault.line else NODE.search(fault.message)
+        where = node[0] if node else fault.place()
+        named.append(where.removeprefix(f"{file}:") if fault.line and fault.file == file else where)
+        file = fault.file
+    return output.shown(", ".join(named) + (", ..." if len(others) > PLACES else ""))
+
+
+def summary(kinds: Iterable[tuple[str, list[Diagnostic]]]) -> None:
+    """Print a row for each code of errors and of warnings: how many, in how many files, and one of them."""
+    rows = [
+        (
+            kind,
+            first.code,
+            1 + len(others),
+            len({fault.file for fault in (first, *others)}),
+            first.place(),
+            first.message,
+        )
+        for kind, faults in kinds
+        for first, *others in sorted(groups(faults, lambda fault: fault.code), key=len, reverse=True)
+    ]
+    if rows:
+        output.table(("", "code", "faults", "files", "first", "which says"), rows)

@@ -1,0 +1,44 @@
+"""Adjectives: words before a thing that only say which one of its kind it is, in a closed list."""
+
+import re
+from collections.abc import Iterator
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.lexicon import is_english
+
+SIZES = (
+    "big bigger biggest large larger largest small smaller smallest little tiny huge long short tall wide narrow thick"
+    " thin heavy"
+)
+AGES = "old older oldest new newer newest fresh ancient antique modern used"
+PLACES = "near nearest nearby closest close left right upper lower top bottom front back main"
+STATES = (
+    "clean dirty empty full open closed hot cold warm cool wet dry soft hard sharp broken loose folded unfolded dusty"
+    " ready ripe raw cooked frozen whole sliced leftover spare"
+)
+LOOKS = (
+    "nice pretty beautiful lovely good favorite favourite comfortable comfy cozy cosy shiny round square plain simple"
+    " same"
+)
+MATERIALS = "wooden plastic metallic woolen ceramic porcelain leather cotton steel"
+COLORS = "red blue green yellow white black brown gray grey orange purple pink golden silver dark bright"
+
+_ADJECTIVES = "|".join(
+    word for words in (SIZES, AGES, PLACES, STATES, LOOKS, MATERIALS, COLORS) for word in words.split()
+)
+_ROOMS = r"(?:kitchen|bathroom|bedroom|dining room|living room|home office|office|hall)"
+"""A room before a thing says where it is, as in `the kitchen sink`."""
+
+_FOUND = re.compile(rf"(?<= )(?:very |really |quite )?({_ADJECTIVES}|{_ROOMS}),? (?=([a-z-]+))")
+
+
+def without_adjective(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
+    """Yield a clause without one of its adjectives, and the adjective.
+
+    An adjective that makes another noun of the next one stays: a `hot dog` is not a dog, nor a `white board` a board,
+    because they are words when run together, or names of classes.
+    """
+    for found in _FOUND.finditer(text):
+        adjective, noun = found[1], found[2]
+        if not is_english(adjective + noun) and not known.object_class(f"{adjective} {noun}"):
+            yield text[: found.start()] + text[found.end() :], found[0].strip(" ,")

@@ -1,0 +1,67 @@
+"""Openings: what stands before the verb of a sentence and asks for no other step, and courtesies at its end."""
+
+import re
+
+_SUBJECT = r"(?:i|you|he|she|we|they|(?:the|a|our|my|your) (?:robot|agent|person|user|character|human)|one)"
+_DUTY = (
+    r"(?:should|shall|must|will|would|(?:need|needs|needed) to|ha(?:s|ve|d) to|wants? to|ought to"
+    r"|(?:am|is|are|was|were) (?:going|supposed|asked) to)"
+)
+_TENSE = r"(?:am|is|are|was|were)(?= [a-z]+ing\b)|(?:has|have|had)(?! (?:a|an|the|some|my|your|his|her|it)\b)"
+_ORDER = "(?: (?:then|now|also|next|first))?"
+_OPENINGS = (
+    r"(?:(?:i|we) would|(?:i|we)['’]d) like (?:you )?to|(?:i |we )?want you to",
+    r"(?:could|can|would|will) you",
+    rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?{_ORDER}(?: (?:{_DUTY}|{_TENSE})){{0,2}}{_ORDER}",
+    r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
+    r"go ahead and|make sure to|be sure to|remember to|(?:start|begin) (?:off )?by|your (?:next )?(?:job|task) is to",
+    r"(?:first|second|third|fourth|fifth|sixth|last|final)(?:ly)?(?: of all)?\s*[,:]",
+    r"(?:firstly|secondly|thirdly|fourthly|fifthly|lastly|finally)",
+    r"after (?:that|this|which)|once (?:that is )?done|from there|at last|in the end",
+    r"as a (?:first|next|last|final) step",
+    r"then|next|first|now|please|kindly|just|simply|and|afterwards|also|ok|okay|so",
+)
+_OPENING = re.compile(rf"(?:{'|'.join(_OPENINGS)})(?:\b|(?<=[,:]))[\s,]*", re.IGNORECASE)
+_CLOSING = re.compile(
+    r"(?:[\s,]+(?:please|thanks|thank you|if you (?:can|please|would|like)|if possible|for me))+$", re.IGNORECASE
+)
+_MARKS = re.compile(r"[^\w\s)\]>'’\"”%?]+$")
+_FIRST = frozenset(
+    [
+        *("i", "you", "he", "she", "we", "they", "one", "the", "a", "our", "my", "your"),
+        *("could", "can", "would", "will", "want", "let", "go", "make", "be", "remember", "start", "begin"),
+        *("first", "second", "third", "fourth", "fifth", "sixth", "last", "final"),
+        *("firstly", "secondly", "thirdly", "fourthly", "fifthly", "lastly", "finally"),
+        *("after", "once", "from", "at", "in", "as", "then", "next", "now", "please", "kindly", "just", "simply"),
+        *("and", "afterwards", "also", "ok", "okay", "so"),
+    ]
+)
+"""First words of openings; most sentences begin with none of them."""
+
+_WORD = re.compile(r"[A-Za-z]+")
+
+
+def verb_phrase(sentence: str) -> str:
+    """Return a sentence from its verb on: without subject, duty, tense, courtesy and what orders it among others.
+
+    `Then you should open the fridge, please!` is `open the fridge`. A possibility ("you can open it") is not a duty.
+    """
+    text = _MARKS.sub("", sentence.strip()).rstrip()
+    opening = _opening(text)
+    while opening and opening < len(text):
+        text = text[opening:]
+        opening = _opening(text)
+    if text.endswith("?") and len(text) < len(sentence.strip()):
+        text = text.rstrip("? ")
+    if text[-1:].isalpha() and (closing := _CLOSING.search(text)) and closing.start():
+        return text[: closing.start()]
+    return text
+
+
+def _opening(text: str) -> int:
+    """Return where the opening at the beginning of a text ends; 0 where it has none."""
+    word = _WORD.match(text)
+    if not word or word[0].lower() not in _FIRST:
+        return 0
+    found = _OPENING.match(text)
+    return found.end() if found else 0
