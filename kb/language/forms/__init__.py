@@ -13,9 +13,11 @@ from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
+from hearth.kb.language.forms.tuples import TUPLES
 
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
+    "tuples": TUPLES,
     "SayCanPay": SAY_CAN_PAY,
     "ReAct": REACT,
     "ALFWorld": COMMANDS,
