@@ -43,6 +43,9 @@ _WITH_IT = re.compile(
 )
 """What is in the hands goes along, and what is taken is with one."""
 
+_MOVED = re.compile(r"((?:push|pull|drag|slide)(?:es|s|ing|ed)? .+?) ((?:to|towards|against|next to) (.+))")
+"""Where something is pushed to."""
+
 _POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
 
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
@@ -50,7 +53,7 @@ _TOOL = re.compile(r"\s+(?:with|using) (.+)$")
 _BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
 _WORKED = frozenset(
     ("brush", "chop", "clean", "comb", "cut", "dry", "dust", "mix", "mop", "open", "polish", "rinse", "scrub", "shave",
-     "slice", "stir", "sweep", "wash", "wipe")
+     "slice", "stir", "sweep", "wash", "water", "wipe")
 )  # fmt: skip
 """Verbs after which a tool may be left out; with others, as `cover` or `fill`, it is part of the act."""
 
@@ -78,6 +81,8 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     if changes_act(text):
         return
     if match := _WITH_IT.fullmatch(text):
+        yield match[1], match[2]
+    if (match := _MOVED.fullmatch(text)) and thing_of(known, match[3]):
         yield match[1], match[2]
     if match := _POINTED.fullmatch(text):
         yield f"point at {match[2]}", match[1]
