@@ -35,12 +35,25 @@ _BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
 _WAITING = re.compile(r"((?:wait|pause)(?:s|ed|ing|d)?) (?:until|till|for) .+")
 """What one waits for may be left out, even where it is a condition."""
 
+_INSTEAD = " instead"
+"""At the end of a step it says only that another one was thought of; `instead of` names the other."""
+
+_WITH_IT = re.compile(
+    r"((?:walk|go|run|move|head|return|come|take|bring|grab|carry|leave)(?:s|ing|ed)? .+?)\s+(?:along )?(with (?:it|them|you|me))"
+)
+"""What is in the hands goes along, and what is taken is with one."""
+
+_MOVED = re.compile(r"((?:push|pull|drag|slide)(?:es|s|ing|ed)? .+?) ((?:to|towards|against|next to) (.+))")
+"""Where something is pushed to."""
+
+_POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
+
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
 _TOOL = re.compile(r"\s+(?:with|using) (.+)$")
 _BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
 _WORKED = frozenset(
     ("brush", "chop", "clean", "comb", "cut", "dry", "dust", "mix", "mop", "open", "polish", "rinse", "scrub", "shave",
-     "slice", "stir", "sweep", "wash", "wipe")
+     "slice", "stir", "sweep", "wash", "water", "wipe")
 )  # fmt: skip
 """Verbs after which a tool may be left out; with others, as `cover` or `fill`, it is part of the act."""
 
@@ -63,8 +76,16 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     """
     if match := _WAITING.fullmatch(text):
         yield match[1], text[match.end(1) :].strip()
+    if text.endswith(_INSTEAD):
+        yield text.removesuffix(_INSTEAD), _INSTEAD.strip()
     if changes_act(text):
         return
+    if match := _WITH_IT.fullmatch(text):
+        yield match[1], match[2]
+    if (match := _MOVED.fullmatch(text)) and thing_of(known, match[3]):
+        yield match[1], match[2]
+    if match := _POINTED.fullmatch(text):
+        yield f"point at {match[2]}", match[1]
     if match := _BEGINNING.match(text):
         yield text[match.end() :], match[0].strip()
     for ending in _ENDINGS:

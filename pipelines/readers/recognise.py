@@ -54,8 +54,8 @@ _YAML = frozenset({".yaml", ".yml"})
 _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 """Endings of texts that are read as programs even without a step; others, such as notes, need one."""
 
-_NUMBER = re.compile(r"\s*\[\d{1,4}\]\s+[^\s,\]}]")
-"""The number of a step in brackets, `[1] Walk to fridge`."""
+_NUMBER = re.compile(r"\s*\[(?:\d{1,4}|[\d/-]*[ T]?\d{1,2}:\d\d[\d:.]*)\]\s+[^\s,\]}]")
+"""The number of a step in brackets, `[1] Walk to fridge`, or its time, `[09:15] robot: walk to fridge`."""
 
 _COMMENT_LINE = re.compile(r"\s*(?://.*|/\*(?:(?!\*/).)*\*/\s*)$")
 """A line of JSON that is a comment."""

@@ -1,28 +1,51 @@
-"""Actions in capitals before their objects: `WALK kitchen`, `PUTBACK plate table`."""
+"""Actions in capitals before their objects: `WALK kitchen`, `PUTBACK plate table`, `WALK: kitchen`, `PUT|cup|table`."""
 
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.form import Form, Placed, step, written
+from hearth.kb.language.forms.form import Form, Placed, step
+from hearth.kb.language.forms.names import composed_step
 from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.program_names import action_of
+from hearth.kb.loading.load import default
+from hearth.schemas.blocks import TITLE
 
 _PAIR = re.compile(r"\s*(?:\d{1,3}[.):]\s+|[-*]\s+)?([A-Z][A-Z_]{2,})((?:\s+[a-z][\w-]*){0,2})\s*[.;]?\s*")
+_MARKED = re.compile(
+    r"\s*(?:\d{1,3}[.):]\s+|[-*]\s+)?([A-Z][A-Z_]{2,})((?:\s*[:|]\s*[a-z][\w' -]*(?:\s*[|,]\s*[a-z][\w' -]*)?)?)\s*[.;]?\s*"
+)
+_BETWEEN = re.compile(r"\s*[:|,]\s*")
 _BEGINS = re.compile(r"\s*(?:#|\**task\b.*:)", re.IGNORECASE)
 
 
+def _parts(raw: str) -> list[str]:
+    """Return the action of a line and its objects; none of a line that is no pair."""
+    pair = _PAIR.fullmatch(raw)
+    if pair:
+        return [pair[1], *pair[2].split()]
+    pair = _MARKED.fullmatch(raw)
+    return [each.strip() for each in _BETWEEN.split(pair[1] + pair[2])] if pair and not TITLE.match(raw) else []
+
+
+def _is_known(parts: list[str]) -> bool:
+    return bool(parts) and (default().action(parts[0]) is not None or bool(action_of(parts[0], parts[1:])))
+
+
 def _fits(lines: Sequence[str]) -> bool:
-    """Return whether most lines, and two at least, are such pairs."""
+    """Return whether most lines, and two at least, are such pairs, and half of those have a known action."""
     texts = [line for line in lines if line.strip()]
-    found = sum(_PAIR.fullmatch(line) is not None for line in texts)
-    return found > 1 and 3 * found >= 2 * len(texts)
+    found = [parts for line in texts if (parts := _parts(line))]
+    if len(found) < 2 or 3 * len(found) < 2 * len(texts):
+        return False
+    return not any(map(_MARKED.fullmatch, texts)) or 2 * sum(map(_is_known, found)) >= len(found)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
     found: list[Placed] = []
     for row, raw in enumerate(lines):
-        pair = _PAIR.fullmatch(raw)
-        found.append(step(row, written(pair[1], pair[2].split())) if pair else Placed(row, plan_line(raw)))
+        parts = _parts(raw)
+        found.append(step(row, composed_step(parts[0], parts[1:])) if parts else Placed(row, plan_line(raw)))
     return found
 
 
-PAIRS = Form(_fits, _lines, lambda raw: _PAIR.fullmatch(raw) is not None, _BEGINS)
+PAIRS = Form(_fits, _lines, lambda raw: bool(_parts(raw)), _BEGINS)
