@@ -11,7 +11,7 @@ from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of
 from hearth.pipelines.readers.item import Item, refused
 from hearth.pipelines.readers.json_actions import is_action
 from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
-from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names
+from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names, plain_name
 from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
@@ -48,7 +48,7 @@ class Table(NamedTuple):
     @property
     def has_actions(self) -> bool:
         """Return whether a row is an action with its objects, in columns of their own."""
-        return not self.steps and is_action(dict.fromkeys(self.layout.columns, "x")) and "program" not in self.columns
+        return not self.steps and _is_action(self.layout, self.columns)
 
 
 class Row(dict[str, str]):
@@ -97,18 +97,30 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
     """The column that counts steps: one whose name says so, else one that goes up by one while the task stays."""
     names = dict.fromkeys(counts, "1")
     sure, may = number_of(names), number_of(names, any_number=True)
-    if sure or not may or "title" not in found:
+    if sure or not may or not ("title" in found or _row_is_step(layout, found)):
         return sure
-    title, number, program = (layout.columns.index(each) for each in (found["title"], may, found.get("program", may)))
-    rows = [(row[title], row[number], row[program]) for row in sample if is_count(row[number])]
+    title, number, program = (layout.columns.index(found.get(each, may)) for each in ("title", "", "program"))
+    rows = [("title" in found and row[title], row[number], row[program]) for row in sample if is_count(row[number])]
     follows = [one[0] == two[0] and int(two[1]) == int(one[1]) + 1 for one, two in itertools.pairwise(rows)]
     begins = all(goes_on or row[1].strip() in ("0", "1") for goes_on, row in zip([False, *follows], rows, strict=True))
     single = "program" not in found or all(is_one_step(step) for _, _, step in rows if step.strip())
     return may if any(follows) and begins and single else ""
 
 
+def _row_is_step(layout: Layout, found: FieldColumns) -> bool:
+    """Whether the names of columns say that a row is a step: it is an action, or has one `step`."""
+    return _is_action(layout, found) or plain_name(found.get("program", "")) in ("step", "action")
+
+
+def _is_action(layout: Layout, found: FieldColumns) -> bool:
+    return "program" not in found and is_action(dict.fromkeys(layout.columns, "x"))
+
+
 def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
     """Whether most rows hold one step and stand beside another row of their title, which is nowhere else."""
+    if "title" not in found and "program" in found and _row_is_step(layout, found):
+        program = layout.columns.index(found["program"])
+        return len(sample) > 1 and all(is_one_step(row[program]) for row in sample if row[program])
     if not {"title", "program"} <= found.keys():
         return False
     title, program = (layout.columns.index(found[field]) for field in ("title", "program"))

@@ -195,6 +195,49 @@ def test_an_unknown_action_among_known_ones_is_a_fault_and_no_title(write, key):
     assert "tickle" not in programs[0][0]
 
 
+CUP = ["[Walk] <kitchen> (1)", "[Grab] <cup> (1)", "[PutBack] <cup> (1) <table> (1)", "[SwitchOn] <lamp> (1)"]
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        [["goto", "kitchen"], ["pickup", "cup"], ["PLACE", "cup", "table"], ["turnon", "lamp"]],
+        [{"action": "GoTo", "object": "kitchen"}, {"action": "PickUp", "object": "cup"},
+         {"action": "put", "object": "cup", "target": "table"}, {"action": "toggle_on", "object": "lamp"}],
+        [{"skill": "navigate", "params": {"to": "kitchen"}}, {"skill": "pick", "params": {"object": "cup"}},
+         {"skill": "place", "params": ["cup", "table"]}, {"skill": "switch on", "params": {"object": "the lamp"}}],
+        [{"goto": "kitchen"}, {"pick": "cup"}, {"place": ["cup", "table"]}, {"turn_on": "lamp"}],
+        [{"verb": "goto", "noun": "kitchen"}, {"verb": "take", "noun": "cup", "from": "fridge"},
+         {"verb": "put", "noun": "cup", "on": "table"}, {"verb": "activate", "noun": "lamps"}],
+    ],
+)  # fmt: skip
+def test_actions_as_programs_name_them(write, steps):
+    programs, faults = read(write("a.json", json.dumps({"title": "A", "plan": steps})))
+    assert [[step for _, step in steps] for _, steps in programs] == [CUP] and not faults
+
+
+@pytest.mark.parametrize(("place", "step"), [("fridge", "PutIn"), ("table", "PutBack"), ("bowl", "PutIn")])
+def test_what_is_put_goes_in_what_is_hollow_and_on_what_is_flat(write, place, step):
+    value = {"title": "A", "plan": [{"action": "put", "args": ["milk", place]}, {"action": "put", "object": "cup"}]}
+    programs, faults = read(write("a.json", json.dumps(value, indent=1)))
+    assert [line for _, line in programs[0][1]] == [f"[{step}] <milk> (1) <{place}> (1)"]
+    assert [code for code, _ in faults] == ["NOT_UNDERSTOOD"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.csv", ",step\n0,walk to kitchen\n1,grab the cup\n2,put the cup on the table\n3,turn on the lamp\n"),
+        ("a.csv", "action\nwalk to kitchen\ngrab the cup\nput the cup on the table\nturn on the lamp\n"),
+        ("a.tsv", "id\tverb\tobject\ttarget\n1\tgoto\tkitchen\t\n2\tpick\tcup\t\n3\tput\tcup\ttable\n"
+                  "4\tturnon\tlamp\t\n"),
+    ],
+)  # fmt: skip
+def test_rows_of_one_step_without_a_task_are_one_program(write, name, text):
+    programs, faults = read(write(name, text))
+    assert [[step for _, step in steps] for _, steps in programs] == [CUP] and not faults
+
+
 def test_comments_in_json_keep_the_places_of_steps(write):
     text = '// "notes"\n{ // of\n"title": "A", /* the\n first */ "steps": ["Sleep", "tickle lamp",], // all\n}\n'
     for given in (text, text.replace("{", "[{", 1).replace("\n}", "\n}]")):
