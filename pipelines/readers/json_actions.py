@@ -149,6 +149,11 @@ def is_known(action: str, objects: Sequence[str] = ()) -> bool:
     return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(action, objects))
 
 
+def is_thing(name: str) -> bool:
+    """Return whether a word is the name of a thing or a room."""
+    return thing_of(default(), name.strip().replace("_", " ").lower()) is not None
+
+
 def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:
     pieces = ["[", action, "]"]
     for name, number in objects:

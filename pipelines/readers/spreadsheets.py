@@ -13,6 +13,7 @@ from hearth.pipelines.readers.json_actions import is_action
 from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
 from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names, plain_name
 from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
+from hearth.pipelines.readers.table_heads import NUMBERED, begun
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
@@ -68,7 +69,7 @@ def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
 def table_of(path: Place, given: FieldColumns) -> Table:
     """What the columns of a table hold: as given, by their names, or by the cells of its first rows."""
     rows = Rows(path)
-    first, layout = _begun(rows)
+    first, layout, is_row = begun(rows, given)
     names = layout.columns
     good = (cells for _, _, cells in rows.parsed(layout) if cells and len(cells) == len(names))
     sample = list(itertools.islice(good, _SAMPLE))
@@ -84,11 +85,12 @@ def table_of(path: Place, given: FieldColumns) -> Table:
         found["program"], found.note = " ".join(steps), "A column is a step."
     elif "program" not in found and "program" not in given:
         _guess_program(table, {name: cells[name] for name in texts})
+    found.note = f"{NUMBERED} {found.note}".strip() if is_row else found.note
     if "title" not in found and "title" not in given and found:
         title = next((name for name in texts if name not in found.values() and _is_title(cells[name])), "")
         found.update({"title": title} if title else {})
     if not (table.number or steps) and _is_by_title(sample, layout, found):
-        found.note = _ROWS_ARE_STEPS
+        found.note = f"{found.note} {_ROWS_ARE_STEPS}".strip()
         return table._replace(by_title=True)
     return table
 
@@ -154,24 +156,13 @@ def _is_title(cells: Sequence[str]) -> bool:
     return bool(cells) and 2 * sum(bool(_WORDS.fullmatch(cell.strip())) for cell in cells) >= len(cells)
 
 
-def _begun(rows: Rows) -> tuple[int, Layout]:
-    """The number and layout of the first line with text; Excel's `sep=;` before it names the delimiter."""
-    delimiter = ""
-    for number, line in rows:
-        if line.lower().startswith("sep=") and len(line) == len("sep=;"):
-            delimiter = line[-1]
-        elif line.strip():
-            return number, layout_of(line, delimiter)
-    return 1, Layout((), ",")
-
-
 def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
     """One item for each row with text, or for the rows of one program; `ours` reads it as a record."""
     table = table_of(path, given)
     columns, layout, first = table.columns, table.layout, table.first
     if not {"program", "description"} & columns.keys() and not table.has_actions:
         rows = Rows(path)
-        _begun(rows)
+        begun(rows, given)
         yield refused(place, _unnamed(rows, first, layout, place, given))
         return
     names = dict.fromkeys(layout.columns)
@@ -179,7 +170,7 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
         if name not in names:
             yield refused(place, lacks(field, name, names, place, first), f"{place}~{name}")
     empty = True
-    for value, line, name in joined(_rows(path, place, table), _reader_of(table)):
+    for value, line, name in joined(_rows(path, place, table, given), _reader_of(table)):
         empty = False
         if isinstance(value, Reject):
             yield refused(place, value, line=line)
@@ -196,10 +187,10 @@ def _reader_of(table: Table) -> Callable[[Any], StepRow | None]:
     return row_of_table(table.columns, table.number) if are_steps else lambda _: None
 
 
-def _rows(path: Place, place: str, table: Table) -> Iterator[Entry]:
+def _rows(path: Place, place: str, table: Table, given: FieldColumns) -> Iterator[Entry]:
     """Each row with text, by its columns; a fault for one that can't be read."""
     rows, layout = Rows(path), table.layout
-    _begun(rows)
+    begun(rows, given)
     for line, raw, cells in rows.parsed(layout):
         full = cells and [*cells, *[""] * (len(layout.columns) - len(cells))]
         wrong = row_fault(line, raw, full, layout, place)

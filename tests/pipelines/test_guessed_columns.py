@@ -8,6 +8,8 @@ import pytest
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
+from hearth.pipelines.readers.delimited import Rows
+from hearth.pipelines.readers.table_heads import begun
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
@@ -236,6 +238,32 @@ def test_what_is_put_goes_in_what_is_hollow_and_on_what_is_flat(write, place, st
 def test_rows_of_one_step_without_a_task_are_one_program(write, name, text):
     programs, faults = read(write(name, text))
     assert [[step for _, step in steps] for _, steps in programs] == [CUP] and not faults
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ('0,Light,"walk to lamp, switch on lamp"\n1,Nap,"lie on bed, sleep"\n', [("Light", [1, 1]), ("Nap", [2, 2])]),
+        ('1,Light,"1. walk to lamp\n2. switch on lamp"\n2,Nap,"1. sleep"\n', [("Light", [1, 2]), ("Nap", [3])]),
+        ("Light;walk to lamp -> switch on lamp\nNap;lie on bed -> sleep\n", [("Light", [1, 1]), ("Nap", [2, 2])]),
+        ("walk,lamp\nswitchon,lamp\n", [("", [1, 2])]),
+    ],
+)
+def test_a_table_without_names_of_columns_loses_no_row(write, text, found):
+    programs, faults = read(write("a.csv", text))
+    assert [(title, [line for line, _ in steps]) for title, steps in programs] == found and not faults
+    assert [step for _, step in programs[0][1]] == LINES
+
+
+@pytest.mark.parametrize("first", ["open,close", "find,object", "1,2", "0,title", "walk,time"])
+def test_names_of_columns_that_are_like_actions_are_no_row(write, first):
+    assert [line for line, _, _ in table_lines(write("a.csv", f"{first}\nx,y\n"))] == [2]
+
+
+def table_lines(path):
+    rows = Rows(path)
+    _, layout, _ = begun(rows, {})
+    return list(rows.parsed(layout))
 
 
 def test_comments_in_json_keep_the_places_of_steps(write):
