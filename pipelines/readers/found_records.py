@@ -43,17 +43,24 @@ def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> I
     A record without a title has the title beside it, or its key.
     """
     titled = guessed([key for key, part in value.items() if isinstance(part, str)], {}, exact=True).get("title", "")
+    is_asked = plain_name(titled) not in ("", "title", "name")  # as those may be of the whole file
     are_objects = all(isinstance(part, dict) for part in value.values())
     for key, part in value.items():
         listed = part if isinstance(part, list) else [part]
-        found = [list(records_in(entry, given, depth)) for entry in listed]
+        found = [_plan_in(entry) or list(records_in(entry, given, depth)) for entry in listed]
         for number, (entry, records) in enumerate(zip(listed, found, strict=True), 1):
             if not records and entry and isinstance(entry, dict) and any(found):
                 yield f".{as_text(key)}[{number}]", entry
             title = value.get(titled, "" if plain_name(key) in _NO_TITLES or not are_objects else key)
             for inside, each in records:
-                is_one = isinstance(part, dict) and len(records) == 1
-                yield f".{as_text(key)}[{number}]{inside}", _with_title(each, title, given) if is_one else each
+                is_its = is_asked or (isinstance(part, dict) and len(records) == 1)
+                yield f".{as_text(key)}[{number}]{inside}", _with_title(each, title, given) if is_its else each
+
+
+def _plan_in(value: Any) -> list[tuple[str, Any]]:
+    """The record of a list in a list, where its texts read as steps."""
+    is_texts = isinstance(value, list) and len(value) > 1 and all(map(is_line, value))
+    return [("", {"steps": value})] if is_texts and column_of_steps({"steps": ["\n".join(value)]}) else []
 
 
 def _with_title(record: Any, title: str, given: FieldColumns) -> Any:

@@ -13,6 +13,7 @@ from hearth.pipelines.readers.json_actions import is_action
 from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
 from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names, plain_name
 from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
+from hearth.pipelines.readers.step_texts import SAID
 from hearth.pipelines.readers.table_heads import NUMBERED, begun
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
@@ -143,16 +144,20 @@ def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:
         found.update({"program": found.pop("description", likeliest)} if likeliest else {})
         found.note = _ROWS_ARE_STEPS
     else:
-        program = column_of_steps({name: texts for name, texts in cells.items() if name not in found.values()})
+        others = {name: texts for name, texts in cells.items() if name not in found.values()}
+        told = found.get("description", "")
+        if cells.get(told) and all(map(SAID.match, cells[told])) and column_of_steps({told: cells[told]}):
+            others = {told: cells[found.pop("description")]}
+        program = column_of_steps(others)
         found.update({"program": program} if program else {})
         found.note = _BY_CELLS if program else ""
 
 
-_WORDS = re.compile(r"[^\d_]{2,}")
+_WORDS = re.compile(r"(?!@)[^\d_]{2,}")
 
 
 def _is_title(cells: Sequence[str]) -> bool:
-    """Whether cells are words, as names of tasks are, and ids such as `w_12` are not."""
+    """Whether cells are words, as names of tasks are, and ids such as `w_12` and `@kim` are not."""
     return bool(cells) and 2 * sum(bool(_WORDS.fullmatch(cell.strip())) for cell in cells) >= len(cells)
 
 

@@ -255,6 +255,15 @@ def test_a_table_without_names_of_columns_loses_no_row(write, text, found):
     assert [step for _, step in programs[0][1]] == LINES
 
 
+def test_a_plan_after_the_words_that_say_so_is_a_plan(write):
+    text = 'user,text\n@ann,"my plan: walk to lamp, switch on lamp"\n@bob,"Todays plan: sleep, rule the world, sleep"\n'
+    programs, faults = read(write("a.csv", text))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES, ["[Sleep]", "[Sleep]"]]
+    assert faults == [("NOT_UNDERSTOOD", 3)] and not any("@" in title for title, _ in programs)
+    told = read(write("b.csv", "task,text\nLight,I walk to the lamp and switch on the lamp.\n"))
+    assert told == ([], [])
+
+
 @pytest.mark.parametrize("first", ["open,close", "find,object", "1,2", "0,title", "walk,time"])
 def test_names_of_columns_that_are_like_actions_are_no_row(write, first):
     assert [line for line, _, _ in table_lines(write("a.csv", f"{first}\nx,y\n"))] == [2]
@@ -264,6 +273,18 @@ def table_lines(path):
     rows = Rows(path)
     _, layout, _ = begun(rows, {})
     return list(rows.parsed(layout))
+
+
+def test_answers_in_lists_have_the_title_that_stands_above_them(write):
+    answers = [{"index": 0, "generated": "1. walk to lamp\n2. switch on lamp"}, {"index": 1, "generated": "1. sleep"}]
+    nested = {"model": "m", "data": [{"task": "Light", "outputs": answers}]}
+    listed = {"prompt": "Light", "outputs": [["walk to lamp", "switch on lamp"], ["lie on bed", "sleep"]]}
+    for value in (nested, listed):
+        programs, faults = read(write("a.json", json.dumps(value)))
+        assert [title for title, _ in programs] == ["Light", "Light"] and not faults
+        assert [step for _, step in programs[0][1]] == LINES
+    named = {"name": "my runs", "data": [{"steps": ["Sleep"]}, {"steps": ["Sleep"]}]}
+    assert "my runs" not in [title for title, _ in read(write("b.json", json.dumps(named)))[0]]
 
 
 def test_comments_in_json_keep_the_places_of_steps(write):
