@@ -28,7 +28,6 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("pick choose", r"out (.+)", "grab {0}"),
     ("get", r"(?:a )?hold of (.+)", "grab {0}"),
     ("grab get fetch take", r"(?:yourself|myself|himself|herself|itself|themselves|ourselves) (.+)", "grab {0}"),
-    ("bring fetch get grab", r"(?:me|us|him|her|them) (.+)", "grab {0}"),
     ("take get pull bring", _TAKEN_OUT, "grab {0}"),
     ("turn switch shut", r"(.+) (on|off)", "switch {1} {0}"),
     ("plug", r"(.+) in(?:to the (?:wall|socket|outlet))?", "plug in {0}"),
