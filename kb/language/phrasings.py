@@ -44,6 +44,7 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     (_CARRYING, r"(.+?) (?:back )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:in|into|inside) (.+)", "put {0} in {1}"),
     ("drop insert slip", r"(.+) (?:into|inside|in) (.+)", "put {0} in {1}"),
+    ("hang", r"(?:up )?(.+?) (?:up )?(?:on|onto|over) (.+)", "put {0} on {1}"),
     ("wring", r"(?:out (.+)|(.+) out)", "squeeze {0}"),
     ("wipe", r"(?:(?:down|off) (.+)|(.+) (?:down|off))", "wipe {0}"),
     ("fold", r"(.+) up", "fold {0}"),
@@ -80,6 +81,9 @@ def _by_verb() -> dict[str, tuple[tuple[re.Pattern[str], str], ...]]:
 _PHRASINGS = _by_verb()
 _ALIVE = ("animal", "person")
 _RISING = ("get", "stand", "rise")
+_INTO = re.compile(r"(?:back )?(?:in)?to (.+)")
+"""What has wheels goes so."""
+
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE = "SURFACES"
 
@@ -113,6 +117,8 @@ def _placed(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
     """Yield the phrasings that depend on the place in them: a room is entered, what has a top has things put on it."""
     if verb == "enter" and (room := thing_of(known, rest)) and known.is_room(room):
         yield f"walk to {rest}"
+    if verb == "roll" and (match := _INTO.fullmatch(rest)) and (thing := thing_of(known, match[1])):
+        yield from [f"walk to {match[1]}"] if known.is_room(thing) else []
     if verb in _RISING and rest.startswith("up from ") and thing_of(known, rest.removeprefix("up from ")):
         yield "stand up"
     if verb in _CARRYING.split() and (match := _BROUGHT.fullmatch(rest)) and (place := thing_of(known, match[2])):

@@ -13,10 +13,17 @@ _FAREWELL = re.compile(
     re.IGNORECASE,
 )
 _END = re.compile(r"[.!?][\"'”’)]*(?:\s+|$)")
-_TOLD = re.compile(r"(?:here is|here's|this is|that is) how (?:i|we|you|he|she|the robot)\b[^:.]{0,60}:\s*", re.IGNORECASE)
-_ROBOT = re.compile(r"(?:the|a|our|my) (?:robot|agent|person|man|woman|character|user|human|child|boy|girl)\b", re.IGNORECASE)
-_IT = re.compile(r"((?:then|next|after that|finally|now|afterwards|first),?\s+)?(?:it|he|she)\s+(?:then\s+)?(?=[a-z])", re.IGNORECASE)
+_TOLD = re.compile(
+    r"(?:here is|here's|this is|that is) how (?:i|we|you|he|she|the robot)\b[^:.]{0,60}:\s*", re.IGNORECASE
+)
+_ROBOT = re.compile(
+    r"(?:the|a|our|my) (?:robot|agent|person|man|woman|character|user|human|child|boy|girl)\b", re.IGNORECASE
+)
+_IT = re.compile(
+    r"((?:then|next|after that|finally|now|afterwards|first),?\s+)?(?:it|he|she)\s+(?:then\s+)?(?=[a-z])", re.IGNORECASE
+)
 _NO_VERB = re.compile(r"(?:is|was|has|does|did|can|could|will|would|may|might|should|must)\b", re.IGNORECASE)
+_OPEN = re.compile(r"\b(?:the|a|an|and|to|of|in|on|with|my|your|his|her|into|from)$", re.IGNORECASE)
 _SHARE = 0.6
 _SHORT = 40
 """Characters of a line at most that nothing runs on from."""
@@ -45,7 +52,12 @@ def sentences_of(lines: Sequence[tuple[int, str]]) -> list[Sentence]:
 
 def is_greeting(line: str) -> bool:
     """Return whether a line begins or ends a letter."""
-    return _GREETING.fullmatch(line) is not None or _FAREWELL.fullmatch(line) is not None
+    return _GREETING.fullmatch(line) is not None or is_farewell(line)
+
+
+def is_farewell(line: str) -> bool:
+    """Return whether a line ends a letter, as `Cheers,` does."""
+    return _FAREWELL.fullmatch(line) is not None
 
 
 def is_prose(lines: Sequence[tuple[int, str]]) -> bool:
@@ -69,7 +81,7 @@ def _joined(lines: Sequence[tuple[int, str]]) -> Iterator[tuple[list[int], str]]
     text = ""
     for row, line in lines:
         told = _TOLD.sub("", line, count=1)
-        if text and row == rows[-1] + 1 and _goes_on(text, told):
+        if text and row == rows[-1] + 1 and goes_on(text, told):
             text = f"{text} {told}"
         else:
             if text:
@@ -80,7 +92,10 @@ def _joined(lines: Sequence[tuple[int, str]]) -> Iterator[tuple[list[int], str]]
         yield rows, text
 
 
-def _goes_on(text: str, following: str) -> bool:
+def goes_on(text: str, following: str) -> bool:
+    """Return whether a line goes on in the next: it ends in no mark, and the next begins small."""
+    if _OPEN.search(text):
+        return following[:1].islower()
     is_open = text[-1:].isalnum() or text.endswith(",")
     return is_open and following[:1].islower() and len(text) > _SHORT and _END.search(f"{text} {following}") is not None
 

@@ -27,6 +27,8 @@ _ENDINGS = tuple(
     for ending in (
         rf"(?:{_MANNER})",
         rf"(?:for )?(?:{_ABOUT} )?{_NUMBER} (?:more )?{_UNIT}",
+        r"at (?:about |around )?(?:one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|noon|midnight|dawn|\d{1,2}(?:[:.]\d\d)?)"
+        r"(?: ?(?:o['’]clock|[ap]m))?(?: in the (?:morning|afternoon|evening))?",
         r"for (?:breakfast|lunch|dinner|later|[a-z]+ing(?: .+)?)",
         r"so (?:that )?(?:you|i|we|it|he|she|they) .+",
     )
@@ -46,6 +48,7 @@ _WITH_IT = re.compile(
 _MOVED = re.compile(r"((?:push|pull|drag|slide)(?:es|s|ing|ed)? .+?) ((?:to|towards|against|next to) (.+))")
 """Where something is pushed to."""
 
+_ASLEEP = re.compile(r"((?:fall|falls|fell|falling) asleep|sleep|sleeps|slept|nap|naps) ((?:on|in|at) .+)")
 _POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
 
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
@@ -81,6 +84,8 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     if changes_act(text):
         return
     if match := _WITH_IT.fullmatch(text):
+        yield match[1], match[2]
+    if match := _ASLEEP.fullmatch(text):
         yield match[1], match[2]
     if (match := _MOVED.fullmatch(text)) and thing_of(known, match[3]):
         yield match[1], match[2]

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commands import COMMANDS
+from hearth.kb.language.forms.commented import COMMENTED
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
 from hearth.kb.language.forms.org_mode import ORG_MODE
@@ -29,6 +30,7 @@ FORMS: dict[str, Form] = {
     "code": CODE,
     "Org mode": ORG_MODE,
     "speakers": SPEAKERS,
+    "comments": COMMENTED,
     "titled lines": TITLED_LINES,
     "Markdown table": MARKDOWN_TABLE,
     "pairs": PAIRS,
@@ -36,7 +38,7 @@ FORMS: dict[str, Form] = {
 """Forms by name, in the order in which they are tried."""
 
 _HINT = re.compile(
-    r"\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]"
+    r"\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
     re.IGNORECASE,
 ).match

@@ -107,5 +107,8 @@ def read(lines: Sequence[str], words_of: Callable[[str], str]) -> list[Placed]:
 
 
 COMMANDS = Form(
-    _fits, _lines, lambda raw: bool(command(_words(raw))), re.compile(r"\s*(task\b|={2,}\s*\w[^=]*={2,}|your task is to:)", re.IGNORECASE)
+    _fits,
+    _lines,
+    lambda raw: bool(command(_words(raw))),
+    re.compile(r"\s*(task\b|={2,}\s*\w[^=]*={2,}|your task is to:)", re.IGNORECASE),
 )
