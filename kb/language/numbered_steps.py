@@ -120,7 +120,7 @@ class _StepParser:
                 self._note(line, raw, number)
 
     def is_description(self, prose: int) -> bool:
-        """Return whether the sentences of a text are its description: more of what they say is no step than is."""
+        """Return whether the sentences of a text are its description: fewer of them are steps than are not."""
         return prose > 0 and len(self.faults) > len(self.steps)
 
     def _lacks(self, line: PlanLine, raw: str, number: int) -> bool:

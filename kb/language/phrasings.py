@@ -44,7 +44,6 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     (_CARRYING, r"(.+?) (?:back )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:in|into|inside) (.+)", "put {0} in {1}"),
     ("drop insert slip", r"(.+) (?:into|inside|in) (.+)", "put {0} in {1}"),
-    ("hang", r"(?:up )?(.+?) (?:up )?(?:on|onto|over) (.+)", "put {0} on {1}"),
     ("wring", r"(?:out (.+)|(.+) out)", "squeeze {0}"),
     ("wipe", r"(?:(?:down|off) (.+)|(.+) (?:down|off))", "wipe {0}"),
     ("fold", r"(.+) up", "fold {0}"),

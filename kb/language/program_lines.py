@@ -225,9 +225,9 @@ def _marked(placed: list[Placed]) -> list[Placed]:
         is_apart = top + 1 < len(placed) and not placed[top + 1].line.text
         is_titled = is_title(texts[0], texts[1:], is_apart) and not (texts[1:] and goes_on(texts[0], texts[1]))
         plain = plain[1:] if is_titled else plain
-    told = [(n, placed[n].line.text) for n in plain]
-    if is_prose(told):
-        return _told(placed, plain, sentences_of(told))
+    prose = [(n, placed[n].line.text) for n in plain]
+    if is_prose(prose):
+        return _as_sentences(placed, plain, sentences_of(prose))
     texts = [_after_label(placed[n].line.text) for n in plain]
     if not are_steps(texts) and not (is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])):
         return placed
@@ -242,11 +242,11 @@ def _without_greetings(placed: list[Placed], plain: list[int]) -> list[int]:
     return [n for n in plain if not is_greeting(placed[n].line.text) and (n < end or not is_end)]
 
 
-def _told(placed: list[Placed], plain: list[int], told: list[Sentence]) -> list[Placed]:
+def _as_sentences(placed: list[Placed], plain: list[int], parts: list[Sentence]) -> list[Placed]:
     """Return lines of prose as its sentences, which are steps."""
     found: list[Placed] = []
     for n, each in enumerate(placed):
-        here = [sentence.text for sentence in told if sentence.row == n]
+        here = [sentence.text for sentence in parts if sentence.row == n]
         found += [Placed(each.row, PlanLine(text, 0, prose=True)) for text in here]
         found += [] if here or n in plain or is_greeting(each.line.text) else [each]
     return found

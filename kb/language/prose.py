@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 from hearth.kb.language.unmarked_lines import is_like_step, sentences
 
-_GREETING = re.compile(r"(?:hi|hello|hey|dear|good (?:morning|evening|afternoon))\b[^.!?:]{0,40}[,!]", re.IGNORECASE)
+_GREETING = re.compile(r"(?:hi|hello|hey|dear|good (?:morning|evening|day))\b[^.!?:]{0,40}[,!]", re.IGNORECASE)
 _FAREWELL = re.compile(
-    r"(?:(?:cheers|regards|thanks|thank you|love|yours|sincerely|(?:best|kind|warm) (?:regards|wishes)|bye|xoxo|see you)"
+    r"(?:(?:cheers|regards|thanks|thank you|love|yours|sincerely|(?:best|kind|warm) (?:regards|wishes)|bye|see you)"
     r"\b[^.!?:]{0,30})[,!.]?",
     re.IGNORECASE,
 )
 _END = re.compile(r"[.!?][\"'”’)]*(?:\s+|$)")
-_TOLD = re.compile(
+_OPENING = re.compile(
     r"(?:here is|here's|this is|that is) how (?:i|we|you|he|she|the robot)\b[^:.]{0,60}:\s*", re.IGNORECASE
 )
 _ROBOT = re.compile(
@@ -80,14 +80,14 @@ def _joined(lines: Sequence[tuple[int, str]]) -> Iterator[tuple[list[int], str]]
     rows: list[int] = []
     text = ""
     for row, line in lines:
-        told = _TOLD.sub("", line, count=1)
-        if text and row == rows[-1] + 1 and goes_on(text, told):
-            text = f"{text} {told}"
+        words = _OPENING.sub("", line, count=1)
+        if text and row == rows[-1] + 1 and goes_on(text, words):
+            text = f"{text} {words}"
         else:
             if text:
                 yield rows, text
-            rows, text = [], told
-        rows += [row] * len(told.split())
+            rows, text = [], words
+        rows += [row] * len(words.split())
     if text:
         yield rows, text
 

@@ -9,6 +9,7 @@ from hearth.kb.language.forms.commented import COMMENTED
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
 from hearth.kb.language.forms.org_mode import ORG_MODE
+from hearth.kb.language.forms.outlines import OUTLINES
 from hearth.kb.language.forms.pairs import PAIRS
 from hearth.kb.language.forms.pddl_plans import PDDL
 from hearth.kb.language.forms.prompts import PROMPTS
@@ -30,6 +31,7 @@ FORMS: dict[str, Form] = {
     "code": CODE,
     "Org mode": ORG_MODE,
     "speakers": SPEAKERS,
+    "outlines": OUTLINES,
     "comments": COMMENTED,
     "titled lines": TITLED_LINES,
     "Markdown table": MARKDOWN_TABLE,
@@ -38,7 +40,8 @@ FORMS: dict[str, Form] = {
 """Forms by name, in the order in which they are tried."""
 
 _HINT = re.compile(
-    r"\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]"
+    r"\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>"
+    r"|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|\s{2,}[a-z]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
     re.IGNORECASE,
 ).match
