@@ -73,6 +73,12 @@ TEXTS = {
         '<plan task="light">\n<step>walk to desk</step>\n'
         '<step>find lamp</step>\n<step>switch on lamp</step>\n</plan>\n',
     ),
+    "YAML": ("a.yaml", "- task: Light\n  steps:\n    - walk to desk\n    - find lamp\n    - switch on lamp\n"),
+    "YAML of actions": (
+        "a.yml",
+        "name: Light\nplan:\n  - action: goto\n    target: desk\n  - action: find\n    object: lamp\n"
+        "  - action: turn_on\n    object: lamp\n",
+    ),
     "comments": ("a.txt", "walk to desk   # by the door\nfind lamp   # the old one\n# careful\nswitch on lamp\n"),
     "an outline": ("a.txt", "1) Light\n    walk to desk\n    find lamp\n    switch on lamp\n"),
     "owners": ("a.md", "Light\n- [ ] @bo Walk to the desk\n- [x] @al Find the lamp\n- [ ] @bo Switch on the lamp\n"),

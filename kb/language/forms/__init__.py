@@ -19,9 +19,11 @@ from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
 from hearth.kb.language.forms.speakers import SPEAKERS
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.tuples import TUPLES
+from hearth.kb.language.forms.yaml_lists import YAML
 
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
+    "YAML": YAML,
     "tuples": TUPLES,
     "SayCanPay": SAY_CAN_PAY,
     "ReAct": REACT,
@@ -40,7 +42,8 @@ FORMS: dict[str, Form] = {
 """Forms by name, in the order in which they are tried."""
 
 _HINT = re.compile(
-    r"\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>"
+    r"\s*(?:- )?(?:steps|plan|actions|program):|\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:"
+    r"|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>"
     r"|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|\s{2,}[a-z]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
     re.IGNORECASE,
