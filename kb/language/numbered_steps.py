@@ -120,8 +120,8 @@ class _StepParser:
                 self._note(line, raw, number)
 
     def is_description(self, prose: int) -> bool:
-        """Return whether the sentences of a text are its description: less than two thirds of them are steps."""
-        return prose > 0 and 3 * len(self.faults) > prose
+        """Return whether the sentences of a text are its description: fewer of them are steps than are not."""
+        return prose > 0 and len(self.faults) > len(self.steps)
 
     def _lacks(self, line: PlanLine, raw: str, number: int) -> bool:
         """Add the fault of an item below a step that asks for something, as a step does; return whether it does."""

@@ -24,7 +24,8 @@ _OPENINGS = (
 )
 _OPENING = re.compile(rf"(?:{'|'.join(_OPENINGS)})(?:\b|(?<=[,:]))[\s,]*", re.IGNORECASE)
 _CLOSING = re.compile(
-    r"(?:[\s,]+(?:please|thanks|thank you|if you (?:can|please|would|like)|if possible|for me))+$", re.IGNORECASE
+    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|if you (?:can|please|would|like)|if possible|for me))+$",
+    re.IGNORECASE,
 )
 _FILLED = re.compile(r",\s+(?:you know|i mean|um+|uh+|like),\s+", re.IGNORECASE)
 _MARKS = re.compile(r"[^\w\s)\]>'’\"”%?]+$")

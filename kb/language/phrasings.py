@@ -28,7 +28,6 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("pick choose", r"out (.+)", "grab {0}"),
     ("get", r"(?:a )?hold of (.+)", "grab {0}"),
     ("grab get fetch take", r"(?:yourself|myself|himself|herself|itself|themselves|ourselves) (.+)", "grab {0}"),
-    ("bring fetch get grab", r"(?:me|us|him|her|them) (.+)", "grab {0}"),
     ("take get pull bring", _TAKEN_OUT, "grab {0}"),
     ("turn switch shut", r"(.+) (on|off)", "switch {1} {0}"),
     ("plug", r"(.+) in(?:to the (?:wall|socket|outlet))?", "plug in {0}"),
@@ -81,6 +80,9 @@ def _by_verb() -> dict[str, tuple[tuple[re.Pattern[str], str], ...]]:
 _PHRASINGS = _by_verb()
 _ALIVE = ("animal", "person")
 _RISING = ("get", "stand", "rise")
+_INTO = re.compile(r"(?:back )?(?:in)?to (.+)")
+"""What has wheels goes so."""
+
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE = "SURFACES"
 
@@ -114,6 +116,8 @@ def _placed(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
     """Yield the phrasings that depend on the place in them: a room is entered, what has a top has things put on it."""
     if verb == "enter" and (room := thing_of(known, rest)) and known.is_room(room):
         yield f"walk to {rest}"
+    if verb == "roll" and (match := _INTO.fullmatch(rest)) and (thing := thing_of(known, match[1])):
+        yield from [f"walk to {match[1]}"] if known.is_room(thing) else []
     if verb in _RISING and rest.startswith("up from ") and thing_of(known, rest.removeprefix("up from ")):
         yield "stand up"
     if verb in _CARRYING.split() and (match := _BROUGHT.fullmatch(rest)) and (place := thing_of(known, match[2])):

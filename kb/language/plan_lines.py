@@ -38,6 +38,13 @@ _MARKER = re.compile(
 
 _HTML = re.compile(r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
 _TAGS = re.compile(r"</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
+_XML_STEP = re.compile(r"\s*<(step|action|instruction)\b[^<>]*>\s*([^<>]*[^<>\s])\s*</\1>\s*", re.IGNORECASE)
+_ELEMENT = r"(?:steps?|plans?|tasks?|programs?|actions?|activity|sequence|root)"
+_XML_NAMED = re.compile(
+    rf"\s*<{_ELEMENT}\b[^<>]*?\b(?:task|title|name|goal)=[\"']([^\"'<>]+)[\"'][^<>]*>\s*",
+    re.IGNORECASE,
+)
+_XML = re.compile(rf"\s*</?{_ELEMENT}\b[^<>]*>\s*|\s*<\?xml\b.*", re.IGNORECASE)
 _LATEX = re.compile(r"\s*\\(?:(?:sub)*section|title|paragraph)\*?\{([^{}]*)\}\s*|\s*\\(?:begin|end)\{\w+\*?\}.*")
 _BOLD = re.compile(r"\s*(?:\*\*|__)(?!\s)([^*_:]+)(?:\*\*|__)\s*:?\s*")
 _ASIDE = re.compile(
@@ -193,6 +200,12 @@ _OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
 
 def _unmarked_up(line: str) -> str:
     """Return a line of LaTeX or HTML as Markdown; `<char0> [Walk] ...` is neither."""
+    if step := _XML_STEP.fullmatch(line):
+        return f"- {step[2]}"
+    if named := _XML_NAMED.fullmatch(line):
+        return f"# {named[1]}"
+    if _XML.fullmatch(line):
+        return ""
     latex = _LATEX.fullmatch(line)
     if latex:
         return f"# {latex[1]}" if latex[1] else ""

@@ -34,7 +34,7 @@ _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 
 def action_of(name: str, objects: Sequence[str], relation: str = "") -> str:
-    """Return the action that a program's name means for so many objects; empty where the table has none.
+    """Return the action that a program's name means for these objects; empty where the table has none.
 
     Args:
         name: the name of the call, the value of `action`, or the first word of a pair.

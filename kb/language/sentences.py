@@ -22,7 +22,9 @@ _PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
 _THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 _PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
 _PLURAL = re.compile(r"\b[a-z]+es\b")
-_OBSERVED = re.compile(r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|heard|notice|notices)\b", re.IGNORECASE)
+_OBSERVED = re.compile(
+    r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|notice|notices)\b", re.IGNORECASE
+)
 """A sentence about what somebody sees asks for nothing."""
 
 _INSIDE = re.compile(r"((?:put|place|drop|set|lay|store)(?:s|ing|ped)?(?: back)? .+?)(?: back)? inside", re.IGNORECASE)

@@ -21,12 +21,15 @@ _NUMBER = (
     r"(?:a|an|one|two|three|four|five|six|seven|eight|nine|ten|fifteen|twenty|thirty|forty|\d+|a few|several|some"
     r"|a couple of|half an)"
 )
+_HOUR = "one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve"
 _UNIT = r"(?:sec(?:ond)?|min(?:ute)?|hour|moment|while|bit|time)s?"
 _ENDINGS = tuple(
     re.compile(rf"\s+{ending}$")
     for ending in (
         rf"(?:{_MANNER})",
         rf"(?:for )?(?:{_ABOUT} )?{_NUMBER} (?:more )?{_UNIT}",
+        rf"at (?:about |around )?(?:{_HOUR}|noon|midnight|dawn|\d{{1,2}}(?:[:.]\d\d)?)"
+        r"(?: ?(?:o['’]clock|[ap]m))?(?: in the (?:morning|afternoon|evening))?",
         r"for (?:breakfast|lunch|dinner|later|[a-z]+ing(?: .+)?)",
         r"so (?:that )?(?:you|i|we|it|he|she|they) .+",
     )
@@ -39,13 +42,12 @@ _INSTEAD = " instead"
 """At the end of a step it says only that another one was thought of; `instead of` names the other."""
 
 _WITH_IT = re.compile(
-    r"((?:walk|go|run|move|head|return|come|take|bring|grab|carry|leave)(?:s|ing|ed)? .+?)\s+(?:along )?(with (?:it|them|you|me))"
+    r"((?:walk|go|run|move|head|return|come|take|bring|grab|carry|leave)(?:s|ing|ed)? .+?)"
+    r"\s+(?:along )?(with (?:it|them|you|me))"
 )
 """What is in the hands goes along, and what is taken is with one."""
 
-_MOVED = re.compile(r"((?:push|pull|drag|slide)(?:es|s|ing|ed)? .+?) ((?:to|towards|against|next to) (.+))")
-"""Where something is pushed to."""
-
+_ASLEEP = re.compile(r"((?:fall|falls|fell|falling) asleep|sleep|sleeps|slept|nap|naps) ((?:on|in|at) .+)")
 _POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
 
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
@@ -80,23 +82,27 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
         yield text.removesuffix(_INSTEAD), _INSTEAD.strip()
     if changes_act(text):
         return
-    if match := _WITH_IT.fullmatch(text):
-        yield match[1], match[2]
-    if (match := _MOVED.fullmatch(text)) and thing_of(known, match[3]):
-        yield match[1], match[2]
+    for pattern in (_WITH_IT, _ASLEEP):
+        if match := pattern.fullmatch(text):
+            yield match[1], match[2]
     if match := _POINTED.fullmatch(text):
         yield f"point at {match[2]}", match[1]
-    if match := _BEGINNING.match(text):
-        yield text[match.end() :], match[0].strip()
-    for ending in _ENDINGS:
-        if match := ending.search(text):
-            yield text[: match.start()], match[0].strip()
+    yield from _without_manner(text)
     for match in reversed(list(_PURPOSE.finditer(text))):
         if is_verb(match[1]) and thing_of(known, text[match.end() :]) is None:
             yield text[: match.start()], text[match.start() :].strip()
     if (match := _TOOL.search(text)) and _WORKED.intersection(_verbs(text)) and _is_tool(known, match[1]):
         yield text[: match.start()], match[0].strip()
     yield from without_adjective(known, text)
+
+
+def _without_manner(text: str) -> Iterator[tuple[str, str]]:
+    """Yield a clause without an adverb before it, or what may stand at its end."""
+    if match := _BEGINNING.match(text):
+        yield text[match.end() :], match[0].strip()
+    for ending in _ENDINGS:
+        if match := ending.search(text):
+            yield text[: match.start()], match[0].strip()
 
 
 def _verbs(text: str) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
+from hearth.kb.language.forms import YAML
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import (
@@ -185,7 +186,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
     if suffix in _YAML and yaml_documents.holds_programs(path, place):
         return Recognised(path, place, yaml_documents.NAME)
-    if suffix in _YAML:
+    if suffix in _YAML and not YAML.fits(first):
         return _refused(path, place, "a YAML file, which holds no programs")
     if first and is_plan(first):
         return Recognised(path, place, plans.NAME)

@@ -14,8 +14,8 @@ from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
 
 PLANS = Path(__file__).with_name("plans.jsonl")
-RIGHT = 0.92
-WRONG = 0.003
+RIGHT = 0.927
+WRONG = 0
 WITHOUT_FAULT = {
     "CSV": 45, "CSV multi-line cells": 26, "tables": 12, "brackets": 4, "JSON lists and objects": 7, "PDDL": 16,
     "JSON actions and tool calls": 1,

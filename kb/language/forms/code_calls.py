@@ -4,8 +4,8 @@ import ast
 import re
 from collections.abc import Sequence
 
+from hearth.kb.language.forms.composed import composed_step
 from hearth.kb.language.forms.form import Form, Placed, note, step, title
-from hearth.kb.language.forms.names import composed_step
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
 _CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*;?\s*(?:#.*|//.*)?$")
@@ -77,7 +77,7 @@ _WITH_WORDS = re.compile(r"(?:\w+\.)*(\w+)\(\s*([A-Za-z][\w '-]*(?:,\s*[A-Za-z][
 
 
 def _called_with_words(call: str) -> str:
-    """Return the step of a call that is no Python, as its things have several words: `Walk(living room)`."""
+    """Return the step of a call that is not Python, as its things have several words: `Walk(living room)`."""
     found = _WITH_WORDS.fullmatch(call)
     return composed_step(found[1], [each.strip() for each in found[2].split(",")]) if found else call
 

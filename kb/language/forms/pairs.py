@@ -3,23 +3,24 @@
 import re
 from collections.abc import Sequence
 
+from hearth.kb.language.forms.composed import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step
-from hearth.kb.language.forms.names import composed_step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_names import action_of
 from hearth.kb.loading.load import default
 from hearth.schemas.blocks import TITLE
 
 _PAIR = re.compile(r"\s*(?:\d{1,3}[.):]\s+|[-*]\s+)?([A-Z][A-Z_]{2,})((?:\s+[a-z][\w-]*){0,2})\s*[.;]?\s*")
+_NAME = r"[a-z][\w' -]*"
 _MARKED = re.compile(
-    r"\s*(?:\d{1,3}[.):]\s+|[-*]\s+)?([A-Z][A-Z_]{2,})((?:\s*[:|]\s*[a-z][\w' -]*(?:\s*[|,]\s*[a-z][\w' -]*)?)?)\s*[.;]?\s*"
+    rf"\s*(?:\d{{1,3}}[.):]\s+|[-*]\s+)?([A-Z][A-Z_]{{2,}})((?:\s*[:|]\s*{_NAME}(?:\s*[|,]\s*{_NAME})?)?)\s*[.;]?\s*"
 )
 _BETWEEN = re.compile(r"\s*[:|,]\s*")
 _BEGINS = re.compile(r"\s*(?:#|\**task\b.*:)", re.IGNORECASE)
 
 
 def _parts(raw: str) -> list[str]:
-    """Return the action of a line and its objects; none of a line that is no pair."""
+    """Return the action of a line and its objects; none of another line."""
     pair = _PAIR.fullmatch(raw)
     if pair:
         return [pair[1], *pair[2].split()]

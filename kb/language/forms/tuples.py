@@ -3,17 +3,16 @@
 import re
 from collections.abc import Sequence
 
+from hearth.kb.language.forms.composed import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step, title
-from hearth.kb.language.forms.names import composed_step
 from hearth.kb.language.plan_lines import plan_line
 
 _TEXT = r"(?:\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
 _TUPLE = re.compile(rf"\s*[(\[]\s*({_TEXT}(?:\s*,\s*{_TEXT})*)\s*,?\s*[)\]]\s*,?\s*(?:#.*)?")
 _STRING = re.compile(rf"\s*({_TEXT})\s*,?\s*(?:#.*)?")
 _QUOTED = re.compile(_TEXT)
-_BEGINS = re.compile(
-    r"\s*(?:(?P<name>[A-Za-z_]\w*)\s*(?::\s*[\w\[\], ]+)?=|(?P<quote>[\"'])(?P<key>[^\"']{1,80})(?P=quote)\s*:)\s*[\[(]\s*"
-)
+_KEY = r"(?P<quote>[\"'])(?P<key>[^\"']{1,80})(?P=quote)\s*:"
+_BEGINS = re.compile(rf"\s*(?:(?P<name>[A-Za-z_]\w*)\s*(?::\s*[\w\[\], ]+)?=|{_KEY})\s*[\[(]\s*")
 _LAYOUT = re.compile(r"\s*(?:[\])}]\s*,?|[A-Za-z_]\w*\s*=\s*\{|#.*|`{3}.*|(?:from|import)\b.*)?\s*")
 _MOST = 1_000
 _USUAL = frozenset(("plan", "steps", "actions", "traj", "trajectory", "program", "demo", "sequence"))
