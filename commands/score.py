@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import typer
 
 from hearth.commands import inputs, output, score_output
+from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.scoring.predictions import Pair
@@ -26,6 +27,7 @@ def lcs(
     *,
     references: Path | None = None,
     instances: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
@@ -41,17 +43,15 @@ def lcs(
       echo '{"id": "tv", "predicted": ["[Walk] <sofa> (1)"], "reference": ["[Sit] <sofa> (1)"]}' > mine.jsonl
       python cli.py score lcs mine.jsonl
     """
-    from functools import partial
-
     from hearth.scoring.bootstrap import intervals
-    from hearth.scoring.dataset_scores import read_line
     from hearth.scoring.evaluate import METRICS, Scored, lcs_of
     from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.line_reader import LineReader
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
 
     rejects = FirstFaults()
-    pairs = read_pairs(file, references, partial(read_line, inputs.read_knowledge(None)), rejects=rejects)
+    pairs = read_pairs(file, references, LineReader(inputs.read_knowledge(None), fuzzy), rejects=rejects)
     scored = [Scored(pair, *both) for pair, both in zip(pairs, lcs_of(pairs, instances), strict=True)]
     shown = {name.removeprefix("lcs_"): metric for name, metric in METRICS.items() if name.startswith("lcs_")}
     columns = {name: [metric(each) for each in scored] for name, metric in shown.items()}
@@ -60,7 +60,7 @@ def lcs(
     signatures = [lcs_signature("+".join(LEVELS), instances), lcs_signature("step+object", instances=True)]
     counts = {"count": len(pairs), **{name: sum(_note(pair) == name for pair in pairs) for name in NOTES}}
     if as_json:
-        named = [{"id": pair.id, **row, "missing": pair.predicted is None, "unread": _unread(pair)}
+        named = [{"id": pair.id, **row, "missing": pair.predicted is None, "unread": _unread(pair), "fuzzy": pair.fuzzy}
                  for pair, row in zip(pairs, rows, strict=True)]  # fmt: skip
         output.emit({"signature": signatures[0], "signature_instances": signatures[1], **counts,
                      **score_output.rejects_json(rejects), "mean": means, "scores": named})  # fmt: skip
@@ -98,10 +98,11 @@ def program(
     graph: Path | None = None,
     home: str = "",
     homes: Path | None = None,
-    rules: Literal["default", "replay", "evolving_graph"] = "default",
+    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     seed: int = 0,
     by: str | None = None,
     as_json: bool = False,
@@ -114,7 +115,8 @@ def program(
     to FILE's folder), else --home or --graph; with `--homes all`, each of our homes. A goal is else what the reference
     achieves; conditions that hold at the start do not count (`goal_whole` counts them). Steps may be natural language.
     Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
-    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph).
+    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph); `auto`
+    takes the last for a --graph in which no two things are CLOSE, as `run` does, and ours otherwise.
 
     \b
     Examples:
@@ -128,9 +130,10 @@ def program(
     from hearth.scoring.first_faults import FirstFaults
     from hearth.simulation.rules import CHOICES
 
-    how = Options(CHOICES[rules], match, scope, instances, seed)
-    known, rejects = inputs.read_knowledge(None), FirstFaults()
-    pairs = read_predictions(file, references, known, rejects)
+    known, rejects = inputs.read_knowledge(None, "", graph), FirstFaults()
+    auto = inputs.read_rules(rules, inputs.read_home("", graph, None, known)) if graph else CHOICES["default"]
+    how = Options(auto if rules == "auto" else CHOICES[rules], match, scope, instances, seed)
+    pairs = read_predictions(file, references, known, rejects, fuzzy)
     if homes and str(homes) == ALL:
         pairs, homes, by = in_homes(pairs, names()), None, by or environments.HOME
     scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes, home), how, rejects)
@@ -150,6 +153,7 @@ def dataset(
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     seed: int = 0,
     by: str | None = None,
     failures: bool = False,
@@ -186,7 +190,17 @@ def dataset(
     with bar("shares scored") as seen:
         opened = Dataset.open(folder, failures)
         scored = score_dataset(
-            opened, file, split, asked, how, workers, seen, only_given=only_given, originals=originals, rejects=rejects
+            opened,
+            file,
+            split,
+            asked,
+            how,
+            workers,
+            seen,
+            only_given=only_given,
+            originals=originals,
+            fuzzy=fuzzy,
+            rejects=rejects,
         )
     score_output.show(scored, how, by, rejects, as_json)
     score_output.warn_missing(scored)

@@ -45,6 +45,7 @@ def _program_json(
             **{name: value for name, metric in METRICS.items() if (value := metric(each)) is not None},
             "missing": each.missing,
             "empty": each.empty,
+            "fuzzy": each.pair.fuzzy,
             "error": each.execution and each.execution.error,
             "code": each.execution and each.execution.code,
             "failed_line": each.execution and each.execution.failed_line,
@@ -62,7 +63,7 @@ def _summary_json(summary: Summary) -> dict[str, Any]:
     return counts | found
 
 
-COUNTS = ("count", "missing", "empty", "unreferenced", "reached_before", "incomparable", "inexact")
+COUNTS = ("count", "missing", "empty", "unreferenced", "fuzzy", "reached_before", "incomparable", "inexact")
 """Counts of a summary."""
 
 
@@ -120,6 +121,10 @@ def _sentence(summary: Summary) -> str:
     if summary.unreferenced:
         parts.append(f"{output.counted(summary.unreferenced, 'prediction')} without a reference")
     parts.append(f"predictions: {summary.missing} missing, {summary.empty} empty")
+    if summary.fuzzy:
+        parts.append(
+            f"{output.counted(summary.fuzzy, 'step')} with words corrected or left out (--fuzzy off refuses them)"
+        )
     if summary.reached_before:
         parts.append(f"{summary.reached_before} left out of `goal`, because nothing of it was left to do at the start")
     if summary.incomparable:

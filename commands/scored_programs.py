@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hearth.commands import inputs
+from hearth.kb.language.fuzzy import Fuzzy
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.scoring.dataset_scores import read_line
 from hearth.scoring.environments import GRAPH, HOME
 from hearth.scoring.first_faults import FirstFaults
-from hearth.scoring.lines import Line, Refused
+from hearth.scoring.line_reader import LineReader, in_order
+from hearth.scoring.lines import Line
 from hearth.scoring.prediction_rows import has_predictions
 from hearth.scoring.predictions import Pair, read_pairs
 from hearth.storage.input_files import placed
@@ -27,16 +27,18 @@ ALL = "all"
 """The value of `--homes` that names all homes of ours."""
 
 
-def read_predictions(file: Path, references: Path | None, known: Knowledge, rejects: FirstFaults) -> list[Pair]:
+def read_predictions(
+    file: Path, references: Path | None, known: Knowledge, rejects: FirstFaults, fuzzy: Fuzzy = Fuzzy.TYPOS
+) -> list[Pair]:
     """Read predictions, with their references where they have one.
 
     Raises:
         HearthError: nothing in the file can be scored.
     """
-    if references or has_predictions(file):
-        return read_pairs(file, references, partial(read_line, known), rejects=rejects, alone=references is None)
     with placed(file) as path:
-        pairs = list(_programs(path, known, inputs.name_of(file), rejects))
+        if references or has_predictions(path):
+            return read_pairs(path, references, LineReader(known, fuzzy), rejects=rejects, alone=references is None)
+        pairs = list(_programs(path, known, inputs.name_of(file), rejects, fuzzy))
     if not pairs:
         raise _nothing(file, rejects)
     return pairs
@@ -51,9 +53,9 @@ def _unplaced(pair: Pair) -> dict[str, object]:
     return {name: value for name, value in pair.more.items() if name not in (HOME, GRAPH)}
 
 
-def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults) -> Iterator[Pair]:
+def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults, fuzzy: Fuzzy) -> Iterator[Pair]:
     number = 0
-    for found in inputs.read_programs(path, known, name):
+    for found in inputs.read_programs(path, known, name, "", fuzzy):
         if isinstance(found, Reject):
             rejects.reject(found.diagnostics)
         elif not found.program.steps and all(fault.code is Code.EMPTY for fault in found.faults):
@@ -62,16 +64,13 @@ def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults) -> 
             number += 1
             first = min((*found.program.lines, *(fault.line for fault in found.faults)), default=0)
             more = {"title": found.program.title}
-            yield Pair(str(number), _lines(found), (), first, more, referenced=False)
+            fuzzy_steps = sum(each.code is Code.FUZZY_MATCH for each in found.warnings)
+            yield Pair(str(number), _lines(found), (), first, more, referenced=False, fuzzy=fuzzy_steps)
 
 
 def _lines(given: inputs.Given) -> tuple[Line, ...]:
     """The lines of a program in order: its steps, and those that are refused with their codes."""
-    program = given.program
-    lines: list[tuple[int, Line]] = list(zip(program.lines, program.steps, strict=True))
-    refused = {fault.line: fault for fault in reversed(given.faults)}
-    lines += [(line, Refused(fault.source or fault.found, fault.code)) for line, fault in refused.items()]
-    return tuple(line for _, line in sorted(lines, key=lambda each: each[0]))
+    return in_order(given.program.steps, given.program.lines, given.faults)
 
 
 def _nothing(file: Path, rejects: FirstFaults) -> HearthError:

@@ -1,9 +1,7 @@
 """Predictions scored against a dataset: its programs are the references, its environments where they run."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -14,14 +12,13 @@ from hearth.datasets.format.cases import Source, start_of
 from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
-from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.understanding import understand
-from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.kb.language.fuzzy import Fuzzy
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.syntax import parse_steps
+from hearth.schemas.program import Program, Step
 from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, scored
 from hearth.scoring.first_faults import FirstFaults
+from hearth.scoring.line_reader import LineReader
 from hearth.scoring.lines import steps_of
 from hearth.scoring.prediction_rows import Named
 from hearth.scoring.predictions import Pair, read_pairs
@@ -50,6 +47,7 @@ def score_dataset(
     *,
     only_given: bool = False,
     originals: bool = False,
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
     rejects: FirstFaults | None = None,
 ) -> list[Scored]:
     """Score a file of predictions for executions of a dataset; those without a prediction are missing.
@@ -69,6 +67,7 @@ def score_dataset(
         seen: reports progress.
         only_given: leave out executions without a prediction.
         originals: leave out executions of augmented programs.
+        fuzzy: how far a natural-language step may be from one that is known.
         rejects: gets the faults of rows, which are left out; without it they are raised.
 
     Returns:
@@ -78,7 +77,7 @@ def score_dataset(
         HearthError: errors of `read_pairs` and of `chosen`.
     """
     wanted = chosen(dataset, split, part, originals)
-    predicted = {pair.id: pair for pair in _read(dataset, file, rejects)}
+    predicted = {pair.id: pair for pair in _read(dataset, file, rejects, fuzzy)}
     pairs = [predicted[name] for name in wanted if predicted[name].line or not only_given]
     if not pairs:
         message = "no prediction is of an execution that is asked for"
@@ -94,11 +93,11 @@ def score_given(
     return _in_shares(dataset, [pair for pair in _read(dataset, file) if pair.line], options, workers, seen)
 
 
-def _read(dataset: Dataset, file: Path, rejects: FirstFaults | None = None) -> list[Pair]:
+def _read(dataset: Dataset, file: Path, rejects: FirstFaults | None = None, fuzzy: Fuzzy = Fuzzy.TYPOS) -> list[Pair]:
     """A pair for each execution of a dataset; `line` is 0 where the file lacks it."""
     opened.cache_clear()
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
-    return read_pairs(file, known, partial(read_line, dataset.knowledge), _named(dataset), rejects)
+    return read_pairs(file, known, LineReader(dataset.knowledge, fuzzy), _named(dataset), rejects)
 
 
 def score_steps(
@@ -215,21 +214,3 @@ def chosen(dataset: Dataset, split: str = "", part: str = "", originals: bool = 
 
 
 _ORIGINALS = "SEMI JOIN (SELECT program_id FROM programs WHERE parent_id IS NULL) USING (program_id)"
-
-
-_UNNUMBERED = re.compile(r"<([^<>]+)>(?!\s*\()")
-
-
-def read_line(knowledge: Knowledge, line: str) -> tuple[Step, ...] | Diagnostic:
-    """A line of a program, or a natural-language step: `2. Put the cup on the table`."""
-    parsed = parse_steps(line)
-    if isinstance(parsed, Diagnostic) and line.startswith("["):
-        # A step without instance numbers, as the thesis writes it (eq. 4.2), is about the first of each class.
-        parsed = parse_steps(_UNNUMBERED.sub(r"<\1> (1)", line))
-    if not isinstance(parsed, Diagnostic):
-        return parsed
-    text = line.lstrip("0123456789.:) ").strip() if line[:1].isdigit() else line.partition(":")[2] or line
-    meant = understand(knowledge, text).meant if text else None
-    if meant is None:
-        return parsed
-    return (Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)),)

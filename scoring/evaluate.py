@@ -184,6 +184,7 @@ class Summary:
     missing: int
     empty: int
     unreferenced: int
+    fuzzy: int
     reached_before: int
     incomparable: int
     inexact: int
@@ -264,6 +265,7 @@ def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
         missing=sum(each.missing for each in every),
         empty=sum(each.empty for each in every),
         unreferenced=sum(not each.pair.referenced for each in every),
+        fuzzy=sum(each.pair.fuzzy for each in every),
         reached_before=sum(each.goal is not None and not each.goal.left for each in every),
         incomparable=sum(each.comparable is False for each in every),
         inexact=sum(each.graph is not None and not each.graph.exact for each in every),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from hearth.kb.language.plan_lines import plan_line, unexplained
@@ -37,6 +38,19 @@ Source = Program | str | Sequence["str | Step"]
 Reader = Callable[[str], "tuple[Step, ...] | Diagnostic"]
 """Reads the instructions of one line of text; `hearth.schemas.syntax.parse_steps` is the usual one."""
 
+
+class PlanReader(ABC):
+    """Reader of lines that also reads whole plans."""
+
+    @abstractmethod
+    def __call__(self, line: str) -> tuple[Step, ...] | Diagnostic:
+        """Read the instructions of one line."""
+
+    @abstractmethod
+    def plan(self, text: str) -> Lines:
+        """Read a plan: its steps and refused lines, in order."""
+
+
 _MARKS = ("[", "<", "(", "|")
 
 
@@ -51,6 +65,8 @@ def read(source: Source, reader: Reader = parse_steps) -> Lines:
         return source.steps
     if isinstance(source, str):
         lines = source.split("\n")
+        if is_plan(lines) and isinstance(reader, PlanReader):
+            return reader.plan(source)
         if is_plan(lines):
             found = lines_of_program(source)
             return tuple(_read_plan(_begun(found, reader) if is_unmarked(lines) else found, reader))

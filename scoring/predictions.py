@@ -10,6 +10,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_steps
 from hearth.scoring.first_faults import SHOWN, FirstFaults
+from hearth.scoring.line_reader import LineReader
 from hearth.scoring.lines import Lines, Reader, Source, read, steps_of
 from hearth.scoring.prediction_rows import Named, Row, rows_of, source_of
 
@@ -27,6 +28,7 @@ class Pair:
         line: the prediction's line (or row of a Parquet file), from 1; 0 if it is missing.
         more: the other fields of the prediction's row.
         referenced: whether there is a reference.
+        fuzzy: steps of the prediction in which words were corrected or left out.
     """
 
     id: str
@@ -35,6 +37,7 @@ class Pair:
     line: int = 0
     more: Mapping[str, Any] = field(default_factory=dict, compare=False)
     referenced: bool = True
+    fuzzy: int = 0
 
 
 def read_pairs(
@@ -134,11 +137,13 @@ def _whole(row: Row, path: Path, reader: Reader, faults: FirstFaults, alone: boo
 
 def _pair(row: Row, reference: Lines | None, path: Path, reader: Reader, faults: FirstFaults) -> Pair | None:
     more = {key: value for key, value in row.values.items() if key not in ("id", "predicted", "reference")}
+    before = reader.fuzzy if isinstance(reader, LineReader) else 0
     predicted = None if row.values["predicted"] is None else _program(row, "predicted", path, reader)
+    fuzzy = reader.fuzzy - before if isinstance(reader, LineReader) else 0
     if isinstance(predicted, Diagnostic):
         faults.append(predicted, row.id)
         return None
-    return Pair(row.id, predicted, reference or (), row.line, more, reference is not None)
+    return Pair(row.id, predicted, reference or (), row.line, more, reference is not None, fuzzy)
 
 
 def _program(row: Row, column: str, path: Path, reader: Reader) -> Lines | Diagnostic:

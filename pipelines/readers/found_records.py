@@ -38,7 +38,7 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
 
 
 def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> Iterator[tuple[str, Any]]:
-    """The records of the parts of an object, in which one that is no record stands beside those that are.
+    """Yield the records of the parts of an object; a part that can't be a record stands beside the others.
 
     A record without a title has the title beside it, or its key.
     """

@@ -64,6 +64,9 @@ _COMMENT_LINE = re.compile(r"\s*(?://.*|/\*(?:(?!\*/).)*\*/\s*)$")
 _MARKUP = re.compile(
     r"\s*(?:(?P<HTML><!doctype html|<html\b)|(?P<SVG><svg\b)|(?P<XML><\?xml\b)|(?P<RTF>\{\\rtf))", re.IGNORECASE
 )
+_STEP_ELEMENT = re.compile(r"<(?:li|step|action)\b[^<>]*>\s*[^\s<]", re.IGNORECASE)
+"""A step that HTML or XML marks on a line."""
+
 _LOOKED_AT = 60
 _LONGEST = 100_000
 
@@ -175,6 +178,8 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     line = first[0] if first else ""
     line = uncommented(line) if suffix in _JSON else line
     if markup := _MARKUP.match(line):
+        if any(map(_STEP_ELEMENT.search, first)) and is_plan(first):
+            return Recognised(path, place, plans.NAME)
         return _refused(path, place, f"{markup.lastgroup}, in which no plans are read: save it as plain text or CSV")
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)

@@ -87,7 +87,7 @@ def step_list(value: Any, is_named: bool) -> list[Any] | None:
 
 
 def text_of(value: Mapping[str, Any], any_number: bool = False) -> str | None:
-    """Return the words of a step that is an object with its number; None for an object that is no such step.
+    """Return the words of a step that is an object with its number; None for any other object.
 
     Args:
         value: the object.

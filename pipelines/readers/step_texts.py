@@ -64,5 +64,5 @@ def numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[st
 
 
 def places_of(text: str, skip: int) -> list[list[int]]:
-    """Return the places of a text's lines, the first of which has so many characters before it."""
+    """Return the places of a text's lines; `skip` characters stand before the first on its line."""
     return text.places(skip) if isinstance(text, Text) else [[skip, 1, 1]] * (text.count("\n") + 1)

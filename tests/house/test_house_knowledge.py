@@ -19,7 +19,7 @@ READS = {
 """Files below that read knowledge because something names it."""
 
 RECOGNISES = {
-    "pipelines/readers/json_actions.py": "whether a key of JSON is an action, before a build reads the step",
+    "pipelines/readers/json_actions.py": "whether a key of JSON is an action, before the build's knowledge checks it",
     "pipelines/readers/program_columns.py": "whether cells of an unnamed column read as steps",
 }
 """Readers that only recognize the form of a file; the steps are checked by the knowledge that a build was given."""

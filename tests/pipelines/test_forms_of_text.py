@@ -1,7 +1,5 @@
 """The forms that a text's steps are written in: check and score read the same, and no record takes another's."""
 
-import functools
-
 import pytest
 
 from hearth.kb.language.forms import FORMS, form_of
@@ -11,7 +9,7 @@ from hearth.pipelines.ingest import items, read
 from hearth.pipelines.validate import checked
 from hearth.schemas.syntax import print_lines
 from hearth.scoring import lines
-from hearth.scoring.dataset_scores import read_line
+from hearth.scoring.line_reader import LineReader
 
 MILK = ["[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Grab] <milk> (1)", "[Close] <fridge> (1)"]
 BOOK = ["[Grab] <novel> (1)", "[Read] <novel> (1)"]
@@ -112,7 +110,7 @@ MILK_TEXTS = {
 def test_the_same_steps_in_every_form_for_check_and_score(write, knowledge, text):
     ((_, steps, faults, _),) = programs(write, knowledge, text)
     assert (steps, faults) == (MILK, [])
-    scored = lines.read(text.removeprefix("\ufeff"), functools.partial(read_line, knowledge))
+    scored = lines.read(text.removeprefix("\ufeff"), LineReader(knowledge))
     assert [step.action.lower() for step in lines.steps_of(scored)] == ["walk", "open", "grab", "close"]
 
 

@@ -29,8 +29,9 @@ from hearth.scoring.baselines import (
     random_retrieval,
     random_sampling,
 )
-from hearth.scoring.dataset_scores import chosen, read_line, score_dataset, score_steps
+from hearth.scoring.dataset_scores import chosen, score_dataset, score_steps
 from hearth.scoring.evaluate import Options, summarise
+from hearth.scoring.line_reader import LineReader
 from hearth.scoring.metrics.parsability import parsability
 
 
@@ -151,9 +152,9 @@ def test_ids_of_another_type_are_refused(made, tmp_path, kind):
 
 def test_lines_as_programs_and_as_sentences():
     step = (Step("PutIn", (ObjectRef("milk"), ObjectRef("fridge"))),)
-    assert read_line(default(), "[PutIn] <milk> (1) <fridge> (1)") == step
+    assert LineReader(default())("[PutIn] <milk> (1) <fridge> (1)") == step
     for text in ("Put milk in fridge", "3. put the milk in the fridge.", "Step 3: Put milk in fridge"):
-        assert read_line(default(), text) == step, text
+        assert LineReader(default())(text) == step, text
 
 
 def walk(name):

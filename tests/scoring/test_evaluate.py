@@ -1,11 +1,9 @@
-from functools import partial
-
 import pytest
 
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
-from hearth.scoring.dataset_scores import read_line
 from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, reference_of, signatures, summarise
+from hearth.scoring.line_reader import LineReader
 from hearth.scoring.lines import read
 from hearth.scoring.metrics.executability import ErrorClass
 from hearth.scoring.predictions import Pair
@@ -109,5 +107,5 @@ def test_a_reference_of_several_predictions_runs_once(knowledge, world):
 
 def test_the_title_of_a_numbered_plan_is_not_a_step():
     plan = "Task: Watch TV\nIn the evening.\nStep 1: Walk to television\nStep 2: Watch television"
-    found = read(plan, partial(read_line, default()))
+    found = read(plan, LineReader(default()))
     assert [step.action for step in found] == ["Walk", "Watch"]

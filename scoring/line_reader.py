@@ -1,0 +1,50 @@
+"""Reader of predictions: lines of programs, natural-language steps, and whole plans as `check` reads them."""
+
+from collections.abc import Sequence
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.numbered_steps import parse_steps as parse_plan
+from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.sentences import asked_steps
+from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.syntax import parse_steps
+from hearth.scoring.lines import Line, Lines, PlanReader, Refused
+
+
+class LineReader(PlanReader):
+    """Reads predictions by a grammar, and counts the steps in which it corrected or left out words.
+
+    Attributes:
+        known: the grammar.
+        how: how far a sentence may be from one that is known.
+        fuzzy: steps read so far that were corrected or shortened.
+    """
+
+    def __init__(self, known: Knowledge, how: Fuzzy = Fuzzy.TYPOS) -> None:
+        self.known, self.how, self.fuzzy = known, how, 0
+
+    def __call__(self, line: str) -> tuple[Step, ...] | Diagnostic:
+        """Read one line: of a program, or a natural-language step such as `2. Put the cup on the table`."""
+        parsed = parse_steps(line)
+        if not isinstance(parsed, Diagnostic):
+            return parsed
+        asked = asked_steps(self.known, plan_line(line).text, (), self.how)
+        self.fuzzy += sum(bool(each.fuzzy) for each in asked)
+        return tuple(Step(each.meant.action.name, tuple(map(ObjectRef, each.meant.names))) for each in asked) or parsed
+
+    def plan(self, text: str) -> Lines:
+        """Read a plan as `check` does: its steps, and the lines that are refused, in order."""
+        found = parse_plan(text, 0, "", self.known, self.how)
+        self.fuzzy += sum(each.code == Code.FUZZY_MATCH for each in found.warnings)
+        return in_order(found.program.steps, found.program.lines, found.faults)
+
+
+def in_order(steps: Sequence[Step], lines: Sequence[int], faults: Sequence[Diagnostic]) -> Lines:
+    """Return the steps of a text and its refused lines, each once and with its code, in the order of the text."""
+    refused = {fault.line: fault for fault in reversed(faults) if fault.code != Code.EMPTY}
+    found: list[tuple[int, Line]] = list(zip(lines, steps, strict=True))
+    found += [(line, Refused(fault.source or fault.found, fault.code)) for line, fault in refused.items()]
+    return tuple(line for _, line in sorted(found, key=lambda each: each[0]))
