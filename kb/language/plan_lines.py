@@ -36,8 +36,13 @@ _MARKER = re.compile(
 )
 """What stands before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
 
-_HTML = re.compile(r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
-_TAGS = re.compile(r"</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
+_HTML = re.compile(
+    r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title|head|meta|!doctype)\b[^<>]*>", re.IGNORECASE
+)
+_NEXT_ITEM = re.compile(r"</(li|step|action|instruction)>\s*<\1\b[^<>]*>", re.IGNORECASE)
+_TAGS = re.compile(
+    r"</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title|head|meta|!doctype)\b[^<>]*>", re.IGNORECASE
+)
 _XML_STEP = re.compile(r"\s*<(step|action|instruction)\b[^<>]*>\s*([^<>]*[^<>\s])\s*</\1>\s*", re.IGNORECASE)
 _ELEMENT = r"(?:steps?|plans?|tasks?|programs?|actions?|activity|sequence|root)"
 _XML_NAMED = re.compile(
@@ -200,6 +205,7 @@ _OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
 
 def _unmarked_up(line: str) -> str:
     """Return a line of LaTeX or HTML as Markdown; `<char0> [Walk] ...` is neither."""
+    line = _NEXT_ITEM.sub("; ", line)
     if step := _XML_STEP.fullmatch(line):
         return f"- {step[2]}"
     if named := _XML_NAMED.fullmatch(line):

@@ -45,6 +45,13 @@ def is_action(value: Any) -> bool:
     return not (isinstance(objects, list) and all(isinstance(each, dict) for each in objects))
 
 
+def is_only_action(value: Any) -> bool:
+    """Return whether a value is an action with its objects, and nothing else."""
+    if not is_action(value) or isinstance(value.get("function"), dict):
+        return False
+    return all(key.lower() in ACTIONS or _holds_object(key) for key in value) and any(map(_holds_object, value))
+
+
 def step_of(value: dict[str, Any]) -> str:
     """The text of a step: as in programs if the action's name is known, else a sentence."""
     call = value.get("function")

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from hearth.kb.language.forms import YAML
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import (
@@ -26,6 +25,7 @@ from hearth.pipelines.readers import (
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
+from hearth.pipelines.readers.json_actions import is_only_action
 from hearth.pipelines.readers.relaxed_json import uncommented
 from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
@@ -191,7 +191,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
     if suffix in _YAML and yaml_documents.holds_programs(path, place):
         return Recognised(path, place, yaml_documents.NAME)
-    if suffix in _YAML and not YAML.fits(first):
+    if suffix in _YAML:
         return _refused(path, place, "a YAML file, which holds no programs")
     if first and is_plan(first):
         return Recognised(path, place, plans.NAME)
@@ -226,11 +226,13 @@ def _json(path: Place, place: str, first: list[str]) -> Recognised:
 def _form_of_list(path: Place, place: str) -> str:
     """The reader of a list, by its first entry that can be read; an empty list is a list of records.
 
-    Texts of one line are the steps of one program, other texts a plan each.
+    Texts of one line and actions are the steps of one program, other texts a plan each.
     """
     for _, value in entries(path, place):
         if isinstance(value, str):
             return TEXTS if "\n" in value.strip() or TITLE.match(value) else DOCUMENT
+        if is_only_action(value):
+            return DOCUMENT
         if not isinstance(value, Reject):
             return LISTED if isinstance(value, (dict, list)) else ""
     return LISTED

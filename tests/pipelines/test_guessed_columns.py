@@ -287,6 +287,31 @@ def test_answers_in_lists_have_the_title_that_stands_above_them(write):
     assert "my runs" not in [title for title, _ in read(write("b.json", json.dumps(named)))[0]]
 
 
+def test_a_list_of_actions_is_one_program_with_the_name_of_its_file(write):
+    steps = [{"verb": "GoTo", "noun": "lamp"}, {"verb": "tickle", "noun": "lamp"}, {"verb": "turnon", "noun": "lamp"}]
+    programs, faults = read(write("night_light.json", json.dumps(steps, indent=1)))
+    assert [(title, [step for _, step in steps]) for title, steps in programs] == [("night light", LINES)]
+    assert faults == [("NOT_UNDERSTOOD", 7)]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "a.html",
+            "<!DOCTYPE html>\n<h1>Light</h1>\n<ul>\n<li>Walk to lamp</li><li>Switch on lamp</li>\n</ul>\n",
+        ),
+        (
+            "a.xml",
+            '<?xml version="1.0"?>\n<plan task="Light">\n<step>Walk to lamp</step>\n<step>Switch on lamp</step>',
+        ),
+    ],
+)
+def test_steps_that_html_and_xml_mark_are_read(write, name, text):
+    programs, faults = read(write(name, text))
+    assert [(title, [step for _, step in steps]) for title, steps in programs] == [("Light", LINES)] and not faults
+
+
 def test_comments_in_json_keep_the_places_of_steps(write):
     text = '// "notes"\n{ // of\n"title": "A", /* the\n first */ "steps": ["Sleep", "tickle lamp",], // all\n}\n'
     for given in (text, text.replace("{", "[{", 1).replace("\n}", "\n}]")):
