@@ -152,7 +152,7 @@ def _plain(action: str) -> str:
 
 
 def is_known(action: str, objects: Sequence[str] = ()) -> bool:
-    """Return whether a word is the name of an action, or one that programs use for an action of so many objects."""
+    """Return whether a word is the name of an action, or one that programs use for it with these objects."""
     return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(action, objects))
 
 

@@ -70,7 +70,7 @@ _CONTENTS = ("content", "value", "parts", "text")
 
 
 def _messages(value: Any) -> list[dict[str, Any]]:
-    """The messages of a chat, with `role` and `content` where others say `from` and `value`; none if it is no chat."""
+    """The messages of a chat, with `role` and `content` for `from` and `value` of others; empty for other values."""
     if not isinstance(value, list) or not value:
         return []
     found = []

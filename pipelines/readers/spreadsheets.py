@@ -145,9 +145,9 @@ def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:
         found.note = _ROWS_ARE_STEPS
     else:
         others = {name: texts for name, texts in cells.items() if name not in found.values()}
-        told = found.get("description", "")
-        if cells.get(told) and all(map(SAID.match, cells[told])) and column_of_steps({told: cells[told]}):
-            others = {told: cells[found.pop("description")]}
+        about = found.get("description", "")
+        if cells.get(about) and all(map(SAID.match, cells[about])) and column_of_steps({about: cells[about]}):
+            others = {about: cells[found.pop("description")]}
         program = column_of_steps(others)
         found.update({"program": program} if program else {})
         found.note = _BY_CELLS if program else ""

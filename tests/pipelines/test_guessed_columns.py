@@ -260,8 +260,8 @@ def test_a_plan_after_the_words_that_say_so_is_a_plan(write):
     programs, faults = read(write("a.csv", text))
     assert [[step for _, step in steps] for _, steps in programs] == [LINES, ["[Sleep]", "[Sleep]"]]
     assert faults == [("NOT_UNDERSTOOD", 3)] and not any("@" in title for title, _ in programs)
-    told = read(write("b.csv", "task,text\nLight,I walk to the lamp and switch on the lamp.\n"))
-    assert told == ([], [])
+    prose = read(write("b.csv", "task,text\nLight,I walk to the lamp and switch on the lamp.\n"))
+    assert prose == ([], [])
 
 
 @pytest.mark.parametrize("first", ["open,close", "find,object", "1,2", "0,title", "walk,time"])
