@@ -7,7 +7,7 @@ from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, value_at
 from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner
 from hearth.pipelines.readers.models import of_others
-from hearth.pipelines.readers.program_columns import column_of_steps
+from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
 from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
 from hearth.pipelines.readers.step_texts import IN_LINE
 from hearth.schemas.blocks import STEP
@@ -27,6 +27,8 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
         yield "", other
     elif of_planner(value.values()):
         yield "", Reject.of(Code.UNSUPPORTED_FILE, _OF_PLANNER, suggestion="write steps as [Walk] <shower> (1)")
+    elif _are_plans(value, given):
+        yield from ((f"[{number}]", {"title": key, "program": value[key]}) for number, key in enumerate(value, 1))
     elif is_record(value, given):
         yield "", value
     elif value and all(map(_is_steps, (by_title := with_step_lists(value)).values())):
@@ -35,6 +37,13 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
             yield f"[{number}]", record if plain_name(title) in _NO_TITLES else {"title": title, **record}
     elif depth:
         yield from _records_inside(value, given, depth - 1)
+
+
+def _are_plans(value: dict[str, Any], given: FieldColumns) -> bool:
+    """Whether an object has several texts and no other values, which all read as steps and whose keys are no fields."""
+    if len(value) < 2 or given or not all(map(is_line, value.values())) or guessed(value, {}, exact=True):
+        return False
+    return all(reading_of([text]).are_steps for text in value.values())
 
 
 def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> Iterator[tuple[str, Any]]:

@@ -21,7 +21,7 @@ _WITH_OBJECTS = frozenset({"skill", "primitive", "operator", "command", "name"})
 """Keys that name an action only where objects stand beside them."""
 
 OBJECTS = frozenset({
-    "object", "objects", "obj", "noun", "object_name", "container", "surface", "target", "targets",
+    "object", "objects", "obj", "noun", "object_name", "where", "container", "surface", "target", "targets",
     "arg", "args", "arguments", "parameters",
     "params", "item", "items", "receptacle", "location", "destination", "recipient", "room", "place", "to", "into",
     "on", "onto", "in", "inside", "from", "with", "value",

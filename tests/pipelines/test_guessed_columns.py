@@ -8,6 +8,7 @@ import pytest
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
+from hearth.pipelines.readers import spreadsheets
 from hearth.pipelines.readers.delimited import Rows
 from hearth.pipelines.readers.table_heads import begun
 from hearth.schemas.diagnostics import HearthError
@@ -310,6 +311,19 @@ def test_a_list_of_actions_is_one_program_with_the_name_of_its_file(write):
 def test_steps_that_html_and_xml_mark_are_read(write, name, text):
     programs, faults = read(write(name, text))
     assert [(title, [step for _, step in steps]) for title, steps in programs] == [("Light", LINES)] and not faults
+
+
+def test_an_object_of_plans_on_a_line_each_loses_none(write):
+    plans = {"light": "walk to lamp, switch on lamp", "nap": "lie on bed, sleep"}
+    for value in (plans, {"tasks": plans}):
+        programs, faults = read(write("a.json", json.dumps(value)))
+        assert [title for title, _ in programs] == ["light", "nap"] and not faults
+        assert [step for _, step in programs[0][1]] == LINES
+
+
+def test_another_column_that_reads_as_steps_is_said(write):
+    path = write("a.csv", 'name,morning,evening\nAnn,"walk to lamp, sleep","lie on bed, sleep"\n')
+    assert spreadsheets.table_of(path, {}).columns.rivals == {"program": ["evening"]}
 
 
 def test_comments_in_json_keep_the_places_of_steps(write):
