@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,24 @@ FOLDER = Path(__file__).resolve().parent / "golden"
 
 def short(value: object) -> str:
     """Twelve digits that stand for some bytes, or for how a value is printed."""
-    data = value if isinstance(value, bytes) else repr(value).encode()
+    data = value if isinstance(value, bytes) else full(value).encode()
     return hashlib.sha256(data).hexdigest()[:12]
+
+
+def full(value: object) -> str:
+    """Everything that a value has, as classes print it whose repr is not shortened for people."""
+    kind = type(value).__qualname__
+    if is_dataclass(value) and not isinstance(value, type):
+        named = [each.name for each in fields(value) if each.repr]
+        return f"{kind}({', '.join(f'{name}={full(getattr(value, name))}' for name in named)})"
+    if isinstance(value, tuple) and hasattr(value, "_fields"):
+        return f"{kind}({', '.join(f'{name}={full(getattr(value, name))}' for name in value._fields)})"
+    if isinstance(value, (list, tuple)):
+        inside = ", ".join(map(full, value))
+        return f"[{inside}]" if isinstance(value, list) else f"({inside}{',' * (len(value) == 1)})"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{full(name)}: {full(each)}' for name, each in value.items())}}}"
+    return repr(value)
 
 
 def known(name: str) -> dict[str, Any]:

@@ -174,7 +174,7 @@ def test_one_turns_to_a_room(tmp_path, room):
     assert call("check", tmp_path / "p.txt").exit_code == 0
     (tmp_path / "p.txt").write_text(f"Wash\n\n\n\n[Wash] <{room}> (1)\n")
     result = call("check", tmp_path / "p.txt")
-    assert result.exit_code == 1 and "it takes any object that is not a room" in result.output
+    assert result.exit_code == 1 and "its object must be any object that is not a room" in result.output
 
 
 @pytest.mark.parametrize(

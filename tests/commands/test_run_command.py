@@ -147,7 +147,7 @@ def test_replay_of_something_else_is_one_clear_error(tmp_path):
     file = tmp_path / "not.zip"
     file.write_bytes(b"PK\x03\x04 truncated")
     result = call("replay", file)
-    assert result.exit_code == 1 and "BAD_ARCHIVE" in result.output and "Traceback" not in result.output
+    assert result.exit_code == 1 and "UNSUPPORTED_FILE" in result.output and "Traceback" not in result.output
 
 
 def test_explain_says_where_to_stand_which_hand_and_which_way_to_face(tmp_path):

@@ -57,7 +57,7 @@ def test_all_that_reads_it_needs_no_other_folder(moved, tmp_path):
     ds = hearth.load(moved)
     assert (verify(moved).faults, verify(moved).unknown) == ((), ())
     assert write_report(ds, tmp_path / "report") and tasks(ds, Wanted())
-    for form in FORMATS:
+    for form in sorted({*FORMATS} - {"coco"}):  # COCO asks for pictures with masks
         assert export(ds, form, tmp_path / form)
     of = dict(ds.rows("SELECT execution_id, program_id FROM executions WHERE executable")[1])
     rows = [{"id": name, "predicted": list(print_lines(ds[program].program))} for name, program in of.items()]

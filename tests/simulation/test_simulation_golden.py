@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
-from golden_files import compare, known, short
+from golden_files import compare, full, known, short
 from small_worlds import random_graph, random_step
 
 from hearth.homes import library
@@ -66,8 +66,8 @@ def _large(name: str, seed: int) -> Iterator[tuple[str, str]]:
                 point and tuple(round(value, 6) for value in point)
                 for point in (spot(world, i) for i in range(len(home)))
             ]
-            options = sorted(map(repr, legal(world, number // 4 % 2, actions=_actions())))
-            facts = (digest(world), poses, spots, seen.ids, repr(seen.me), repr(seen.others), options)
+            options = sorted(map(full, legal(world, number // 4 % 2, actions=_actions())))
+            facts = (digest(world), poses, spots, seen.ids, full(seen.me), full(seen.others), options)
             yield f"{number}", " ".join(map(short, (*facts, sorted(failures.items(), key=str))))
 
 
