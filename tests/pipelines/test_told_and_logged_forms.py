@@ -73,6 +73,14 @@ TEXTS = {
         '<plan task="light">\n<step>walk to desk</step>\n'
         '<step>find lamp</step>\n<step>switch on lamp</step>\n</plan>\n',
     ),
+    "a log of levels": ("a.log", "[INFO] walk to desk\n[INFO] find lamp\n[WARN] slow\n[INFO] switch on lamp\n"),
+    "tuples on a line": ("a.py", "actions = [('GoTo', 'desk'), ('Find', 'lamp'), ('TurnOn', 'lamp')]\n"),
+    "names with humps": ("a.txt", "GotoLocation desk\nSearchFor lamp\nTurnOn lamp\n"),
+    "arrows of pairs": ("a.txt", "walk -> desk\nfind -> lamp\nturn_on -> lamp\n"),
+    "actions and objects in columns": (
+        "a.md",
+        "| n | Action | Object |\n|---|---|---|\n| 1 | Walk | desk |\n| 2 | Find | lamp |\n| 3 | SwitchOn | lamp |\n",
+    ),
     "YAML": ("a.yaml", "- task: Light\n  steps:\n    - walk to desk\n    - find lamp\n    - switch on lamp\n"),
     "YAML of actions": (
         "a.yml",
