@@ -113,6 +113,17 @@ def test_each_row_of_a_table_is_a_record(write, knowledge):
     assert second[1] == [] and second[2] == [4]
 
 
+def test_the_steps_of_several_robots_are_not_those_of_one(write, knowledge):
+    text = "robot1: walk to desk\nrobot2: walk to bed\nrobot1: find lamp\n"
+    assert [steps for _, steps, _, _ in programs(write, knowledge, text, "a.txt") if steps] == []
+
+
+def test_a_numbered_step_with_steps_below_it_is_not_a_title(write, knowledge):
+    text = "1. Walk to the desk\n   find lamp\n   switch on lamp\n2. Walk to bed\n   lie on bed\n   sleep\n"
+    ((_, steps, _, _),) = programs(write, knowledge, text, "a.txt")
+    assert steps[:3] == LAMP and len(steps) == 6
+
+
 def test_what_a_game_answers_is_counted(write, knowledge):
     text = ">open drawer\nYou see a pen.\n>grab pen\nTaken.\n"
     ((_, steps, _, warnings),) = programs(write, knowledge, text, "a.log")

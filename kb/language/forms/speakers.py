@@ -62,6 +62,8 @@ def _fits(lines: Sequence[str]) -> bool:
     if len(said) < _SHARE * len(texts) or not any(each.is_step for each in said):
         return False
     who = {each.who for each in said}
+    if len({each.who for each in said if each.is_step}) > 1:
+        return False  # Each of several robots has a plan of its own.
     if who & {"a", "answer"}:
         return "q" in who or "question" in who
     steps = [each for each in said if each.is_step]
