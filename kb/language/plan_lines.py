@@ -31,7 +31,7 @@ _TIME = r"(?:[01]?\d|2[0-3])(?:[:.][0-5]\d(?:\s*[ap]m\b)?|\s?[ap]m\b)"
 _MARKER = re.compile(
     r"(?:[\u2190-\u21ff\u2500-\u2604\u2606-\u2617\u2705\u2713-\u2718\u2794-\u27bf\u2b00-\u2bff"
     r"\U0001f446-\U0001f449\U0001f518\U0001f532-\U0001f53d\U0001f7e0-\U0001f7ff·◦‣⁃∙▪]\ufe0f?\s*)+(?=\S)"
-    rf"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|{_TIME}(?:\s*[–—-]\s*{_TIME})?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])",
+    rf"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|{_TIME}(?:\s*[–—-]\s*{_TIME})?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])|@[\w-]+[:,]?\s+(?=[a-z])",
     re.IGNORECASE,
 )
 """What stands before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""

@@ -73,6 +73,14 @@ TEXTS = {
         '<plan task="light">\n<step>walk to desk</step>\n'
         '<step>find lamp</step>\n<step>switch on lamp</step>\n</plan>\n',
     ),
+    "a log of levels": ("a.log", "[INFO] walk to desk\n[INFO] find lamp\n[WARN] slow\n[INFO] switch on lamp\n"),
+    "tuples on a line": ("a.py", "actions = [('GoTo', 'desk'), ('Find', 'lamp'), ('TurnOn', 'lamp')]\n"),
+    "names with humps": ("a.txt", "GotoLocation desk\nSearchFor lamp\nTurnOn lamp\n"),
+    "arrows of pairs": ("a.txt", "walk -> desk\nfind -> lamp\nturn_on -> lamp\n"),
+    "actions and objects in columns": (
+        "a.md",
+        "| n | Action | Object |\n|---|---|---|\n| 1 | Walk | desk |\n| 2 | Find | lamp |\n| 3 | SwitchOn | lamp |\n",
+    ),
     "YAML": ("a.yaml", "- task: Light\n  steps:\n    - walk to desk\n    - find lamp\n    - switch on lamp\n"),
     "YAML of actions": (
         "a.yml",
@@ -103,6 +111,17 @@ def test_each_row_of_a_table_is_a_record(write, knowledge):
     first, second = programs(write, knowledge, text, "a.md")
     assert first[1] == ["[Walk] <bed> (1)", "[Lie] <bed> (1)"]
     assert second[1] == [] and second[2] == [4]
+
+
+def test_the_steps_of_several_robots_are_not_those_of_one(write, knowledge):
+    text = "robot1: walk to desk\nrobot2: walk to bed\nrobot1: find lamp\n"
+    assert [steps for _, steps, _, _ in programs(write, knowledge, text, "a.txt") if steps] == []
+
+
+def test_a_numbered_step_with_steps_below_it_is_not_a_title(write, knowledge):
+    text = "1. Walk to the desk\n   find lamp\n   switch on lamp\n2. Walk to bed\n   lie on bed\n   sleep\n"
+    ((_, steps, _, _),) = programs(write, knowledge, text, "a.txt")
+    assert steps[:3] == LAMP and len(steps) == 6
 
 
 def test_what_a_game_answers_is_counted(write, knowledge):

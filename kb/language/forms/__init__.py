@@ -21,6 +21,8 @@ from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.tuples import TUPLES
 from hearth.kb.language.forms.yaml_lists import YAML
 
+__all__ = ["FORMS", "YAML", "form_of"]
+
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
     "YAML": YAML,
@@ -42,7 +44,8 @@ FORMS: dict[str, Form] = {
 """Forms by name, in the order in which they are tried."""
 
 _HINT = re.compile(
-    r"\s*(?:- )?(?:steps|plan|actions|program):|\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:"
+    r".*(?:->|→|@)|\s*[A-Z][a-z]+[A-Z]|\s*(?:- )?(?:steps|plan|actions|program):|\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s"
+    r"|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:"
     r"|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>"
     r"|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|\s{2,}[a-z]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",

@@ -9,6 +9,9 @@ from hearth.kb.language.unmarked_lines import is_like_step
 
 _TITLE = re.compile(r"\d{1,3}[.)]\s+(\S.*)")
 _STEP = re.compile(r"(?:\s{2,}|\t)\s*([A-Za-z][^.:!?]*)")
+_GOING = re.compile(r"\d{1,3}[.)]\s+(?:walk|go|head|move|run)\b", re.IGNORECASE)
+"""Where somebody goes is a step with others below it, and no title."""
+
 _SHARE = 0.7
 _FEWEST = 2
 
@@ -18,7 +21,7 @@ def _fits(lines: Sequence[str]) -> bool:
     texts = [line for line in lines if line.strip()]
     titles = [n for n, line in enumerate(texts) if _TITLE.fullmatch(line)]
     steps = [found[1] for line in texts if (found := _STEP.fullmatch(line))]
-    if not titles or titles[0] or len(titles) + len(steps) < len(texts):
+    if any(map(_GOING.match, texts)) or not titles or titles[0] or len(titles) + len(steps) < len(texts):
         return False
     enough = sum(end - start > _FEWEST for start, end in zip(titles, [*titles[1:], len(texts)], strict=True))
     return enough > len(titles) / 2 and sum(map(is_like_step, steps)) >= _SHARE * len(steps)

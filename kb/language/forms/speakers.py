@@ -9,15 +9,18 @@ from hearth.kb.language.plan_lines import PlanLine, is_said_around, plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
 
 _CLOCK = r"\d{1,2}:\d\d(?::\d\d(?:[.,]\d{1,9})?)?(?:\s?[ap]m)?"
-_STAMP = rf"[\[(]?(?:\d{{4}}[-/]\d\d[-/]\d\d[ T])?{_CLOCK}Z?[\])]?"
+_STAMP = rf"(?:\d{{9,13}}(?:\.\d{{1,9}})?|[\[(]?(?:\d{{4}}[-/]\d\d[-/]\d\d[ T])?{_CLOCK}Z?[\])]?)"
 _LEVEL = r"\[?(?:INFO|DEBUG|WARN(?:ING)?|ERROR|TRACE|FATAL)\]?"
 _LINE = re.compile(
     rf"\s*(?P<time>{_STAMP}\s+)?(?:[-–]\s+)?(?P<level>{_LEVEL}:?\s+)?\**(?P<who>[A-Za-z][\w.-]{{0,20}})\**\s*:\**\s+(?P<said>\S.*)",
 )
-_TIMED = re.compile(rf"\s*{_STAMP}\s+(?:[-–]\s+)?{_LEVEL}:?\s+(?P<said>\S.*)")
+_TIMED = re.compile(
+    rf"\s*(?:{_STAMP}\s+(?:[-–]\s+)?(?P<level>{_LEVEL}|ACTION|EXEC|STEP)|(?P<only>\[(?:{_LEVEL}|ACTION|EXEC)\])):?\s+(?P<said>\S.*)"
+)
+_ACTS = re.compile(r"\W*(?:INFO|DEBUG|ACTION|EXEC|STEP)\W*")
 _QUESTION = re.compile(r"\s*\**\s*Q(?:uestion)?\s*\d*\s*:\s*(?P<said>[^*]*)\**\s*")
 _ROBOTS = re.compile(
-    r"(?:robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant_?robot|a|answer)\d{0,2}", re.IGNORECASE
+    r"(?:robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}", re.IGNORECASE
 )
 """Names of those that do what they say; `A` answers where a question stands above."""
 
@@ -46,7 +49,9 @@ def _said(raw: str) -> _Said | None:
     found = _LINE.fullmatch(raw)
     if not found:
         timed = _TIMED.fullmatch(raw)
-        return _Said("", timed["said"], False) if timed else None
+        level = (timed["level"] or timed["only"]) if timed else ""
+        is_step = timed is not None and _ACTS.fullmatch(level) is not None and is_like_step(timed["said"])
+        return _Said("", timed["said"], is_step) if timed else None
     return _Said(found["who"].lower(), found["said"], _ROBOTS.fullmatch(found["who"]) is not None)
 
 
@@ -57,6 +62,8 @@ def _fits(lines: Sequence[str]) -> bool:
     if len(said) < _SHARE * len(texts) or not any(each.is_step for each in said):
         return False
     who = {each.who for each in said}
+    if len({each.who for each in said if each.is_step}) > 1:
+        return False  # Each of several robots has a plan of its own.
     if who & {"a", "answer"}:
         return "q" in who or "question" in who
     steps = [each for each in said if each.is_step]

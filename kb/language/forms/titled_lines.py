@@ -16,7 +16,7 @@ _ROW = re.compile(r"\s*\|(?:[^|]{0,80}\|)??(?P<title>[^|]{2,80})\|(?P<steps>[^|]
 
 _HTML_ROW = re.compile(r"\s*(?:<t(?:able|body)\b[^>]*>\s*)?<tr\b[^>]*>\s*<t[dh]\b", re.IGNORECASE)
 _CELLS = re.compile(r"(?:\s*</?(?:table|tbody|tr|td|th)\b[^>]*>)+\s*", re.IGNORECASE)
-_PIPED = re.compile(r"(?P<title>[^|]{2,80})\|(?P<steps>[^|]{3,}(?:\|[^|]{3,})+)\|?\s*")
+_PIPED = re.compile(r"(?P<title>[^|]{2,80})\|(?P<steps>[^|]{8,}|[^|]{3,}(?:\|[^|]{3,})+)\|?\s*")
 """Title and steps between pipes, `write letter | sit on chair | grab pen`."""
 
 _LAYOUT = re.compile(r"[\s|:-]*|\s*\|[^.]*\|\s*")
@@ -33,7 +33,7 @@ _LONGEST = 5_000
 
 
 _BEGINS = re.compile(
-    r"(?!\s*\|\s*:?-)\s*(?:[-*+•–▪]\s+)?(?:\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**\s*[:=–—-]|\|(?=.*(?:<br|;|->|→|\d[.)]\s))|\|.*[a-z]\.\s*\|\s*$|[^|\[(]{2,80}\|[^|]{3,}\||\s*(?:<t(?:able|body)\b[^>]*>\s*)?<tr\b[^>]*>\s*<td\b)"
+    r"(?!\s*\|\s*:?-)\s*(?:[-*+•–▪]\s+)?(?:\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**\s*[:=–—-]|\|(?=.*(?:<br|;|->|→|\d[.)]\s))|\|.*[a-z]\.\s*\|\s*$|[^|\[(<]{2,80}\|[^|]{3,}|\s*(?:<t(?:able|body)\b[^>]*>\s*)?<tr\b[^>]*>\s*<td\b)"
 )
 
 
