@@ -120,8 +120,8 @@ class _StepParser:
                 self._note(line, raw, number)
 
     def is_description(self, prose: int) -> bool:
-        """Return whether the sentences of a text are its description: less than two thirds of them are steps."""
-        return prose > 0 and 3 * len(self.faults) > prose
+        """Return whether the sentences of a text are its description: fewer of them are steps than are not."""
+        return prose > 0 and len(self.faults) > len(self.steps)
 
     def _lacks(self, line: PlanLine, raw: str, number: int) -> bool:
         """Add the fault of an item below a step that asks for something, as a step does; return whether it does."""
@@ -176,6 +176,8 @@ class _StepParser:
             asked = self._asked(shorter, said) if shorter not in ("", words) else ()
             if not asked and not words.endswith(":"):
                 asked = asked_steps(self.known, words, said, self.fuzzy)
+            if not asked and shorter not in ("", words):
+                asked = self._asked(shorter, said, self.fuzzy)
         for each in asked:
             self._take_asked(each, raw, words, number)
         return [] if asked else self._read_in_part(words, raw, number, said)
@@ -197,10 +199,11 @@ class _StepParser:
         if asked.fuzzy:
             self.warnings.append(self._fuzzy(asked, raw, words, number))
 
-    def _asked(self, shorter: str, said: tuple[Mentioned, ...]) -> tuple[Asked, ...]:
+    def _asked(self, shorter: str, said: tuple[Mentioned, ...], fuzzy: Fuzzy = Fuzzy.OFF) -> tuple[Asked, ...]:
         """The steps of a line before its explanation, which is left out."""
-        first, *others = asked_steps(self.known, shorter, said, Fuzzy.OFF) or (None,)
-        return (first._replace(left_out="the explanation"), *others) if first else ()
+        first, *others = asked_steps(self.known, shorter, said, fuzzy) or (None,)
+        left_out = f"{first.left_out}, the explanation".lstrip(", ") if first else ""
+        return (first._replace(left_out=left_out), *others) if first else ()
 
     def _nearest(self, words: str, raw: str, number: int, said: tuple[Mentioned, ...]) -> list[Diagnostic]:
         """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
@@ -240,7 +243,9 @@ class _StepParser:
         action, names = asked.meant.action.name, asked.meant.names
         self.steps.append(_step(action, names, asked.instance))
         self.lines.append(number)
-        self._said = ((action, names), *self._said[: REMEMBERED - 1])
+        # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
+        last = self._said[:1] if asked.left_out.startswith("with it") else ()
+        self._said = (*last, (action, names), *self._said[len(last) :])[:REMEMBERED]
 
     def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
         message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"

@@ -11,7 +11,9 @@ _TENSE = r"(?:am|is|are|was|were)(?= [a-z]+ing\b)|(?:has|have|had)(?! (?:a|an|th
 _ORDER = "(?: (?:then|now|also|next|first))?"
 _OPENINGS = (
     r"(?:(?:i|we) would|(?:i|we)['’]d) like (?:you )?to|(?:i |we )?want you to",
-    r"(?:could|can|would|will) you",
+    r"(?:yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening))(?=,? )",
+    r"(?:could|can|would|will) you(?: mind)?",
+    r"(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)\s*,|(?:um+|uh+|oh|you know)(?= |,)",
     rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?{_ORDER}(?: (?:{_DUTY}|{_TENSE})){{0,2}}{_ORDER}",
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
     r"go ahead and|make sure to|be sure to|remember to|(?:start|begin) (?:off )?by|your (?:next )?(?:job|task) is to",
@@ -23,12 +25,16 @@ _OPENINGS = (
 )
 _OPENING = re.compile(rf"(?:{'|'.join(_OPENINGS)})(?:\b|(?<=[,:]))[\s,]*", re.IGNORECASE)
 _CLOSING = re.compile(
-    r"(?:[\s,]+(?:please|thanks|thank you|if you (?:can|please|would|like)|if possible|for me))+$", re.IGNORECASE
+    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|if you (?:can|please|would|like)|if possible|for me))+$",
+    re.IGNORECASE,
 )
+_FILLED = re.compile(r",\s+(?:you know|i mean|um+|uh+|like),\s+", re.IGNORECASE)
 _MARKS = re.compile(r"[^\w\s)\]>'’\"”%?]+$")
 _FIRST = frozenset(
     [
         *("i", "you", "he", "she", "we", "they", "one", "the", "a", "our", "my", "your"),
+        *("yesterday", "today", "tonight", "this"),
+        *("hey", "hi", "hello", "robot", "bot", "alexa", "siri", "jarvis", "um", "umm", "uh", "uhh", "oh"),
         *("could", "can", "would", "will", "want", "let", "go", "make", "be", "remember", "start", "begin"),
         *("first", "second", "third", "fourth", "fifth", "sixth", "last", "final"),
         *("firstly", "secondly", "thirdly", "fourthly", "fifthly", "lastly", "finally"),
@@ -46,7 +52,7 @@ def verb_phrase(sentence: str) -> str:
 
     `Then you should open the fridge, please!` is `open the fridge`. A possibility ("you can open it") is not a duty.
     """
-    text = _MARKS.sub("", sentence.strip()).rstrip()
+    text = _MARKS.sub("", _FILLED.sub(" ", sentence.strip())).rstrip()
     opening = _opening(text)
     while opening and opening < len(text):
         text = text[opening:]

@@ -14,6 +14,9 @@ _ITS_PLACE = (
     r"(?:in|into|to|at|on)? ?"
     r"(?:(?:its|their|the) (?:(?:usual|original|right|proper|own) )?(?:place|spot)|where (?:it|they) belongs?)"
 )
+_TAKEN_OUT = r"(?:out (.+)|(.+) out)"
+"""A thing is taken out of where it is; a dog is taken for a walk."""
+
 _USUAL: tuple[tuple[str, str, str], ...] = (
     (_GOING, r"(?:back |over |on |up |down |straight |right )?(?:to|into|inside) (.+)", "walk to {0}"),
     ("head go make", r"(?:for|straight for) (.+)", "walk to {0}"),
@@ -25,7 +28,7 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("pick choose", r"out (.+)", "grab {0}"),
     ("get", r"(?:a )?hold of (.+)", "grab {0}"),
     ("grab get fetch take", r"(?:yourself|myself|himself|herself|itself|themselves|ourselves) (.+)", "grab {0}"),
-    ("take get pull bring", r"(?:out (.+)|(.+) out)", "grab {0}"),
+    ("take get pull bring", _TAKEN_OUT, "grab {0}"),
     ("turn switch shut", r"(.+) (on|off)", "switch {1} {0}"),
     ("plug", r"(.+) in(?:to the (?:wall|socket|outlet))?", "plug in {0}"),
     ("take", r"(.+) off", "take off {0}"),
@@ -40,6 +43,11 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     (_PUTTING, r"(.+?) (?:down |back |away )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:in|into|inside) (.+)", "put {0} in {1}"),
+    ("drop insert slip", r"(.+) (?:into|inside|in) (.+)", "put {0} in {1}"),
+    ("wring", r"(?:out (.+)|(.+) out)", "squeeze {0}"),
+    ("wipe", r"(?:(?:down|off) (.+)|(.+) (?:down|off))", "wipe {0}"),
+    ("fold", r"(.+) up", "fold {0}"),
+    ("water", r"(.+)", "pour water into {0}"),
     ("fill", r"(?:up )?(.+) with (.+)", "pour {1} into {0}"),
     ("pour", r"(.+) (?:in|onto|on|over) (.+)", "pour {0} into {1}"),
     ("throw toss", r"(.+?) (?:away )?(?:in|into|on|onto|to|at) (.+)", "throw {0} at {1}"),
@@ -70,7 +78,11 @@ def _by_verb() -> dict[str, tuple[tuple[re.Pattern[str], str], ...]]:
 
 
 _PHRASINGS = _by_verb()
+_ALIVE = ("animal", "person")
 _RISING = ("get", "stand", "rise")
+_INTO = re.compile(r"(?:back )?(?:in)?to (.+)")
+"""What has wheels goes so."""
+
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE = "SURFACES"
 
@@ -88,15 +100,24 @@ def phrasings(known: Knowledge, text: str) -> Iterator[str]:
             yield f"{verb} {rest}".rstrip()
         for pattern, phrase in _PHRASINGS.get(verb, ()):
             if match := pattern.fullmatch(rest):
+                if pattern.pattern == _TAKEN_OUT and _is_alive(known, rest):
+                    continue
                 groups = [group for group in match.groups() if group is not None]
                 yield phrase.format(*groups)
         yield from _placed(known, verb, rest)
+
+
+def _is_alive(known: Knowledge, words: str) -> bool:
+    thing = known.object_class(thing_of(known, words.removeprefix("out ").removesuffix(" out")) or "")
+    return thing is not None and thing.hypernym in _ALIVE
 
 
 def _placed(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
     """Yield the phrasings that depend on the place in them: a room is entered, what has a top has things put on it."""
     if verb == "enter" and (room := thing_of(known, rest)) and known.is_room(room):
         yield f"walk to {rest}"
+    if verb == "roll" and (match := _INTO.fullmatch(rest)) and (thing := thing_of(known, match[1])):
+        yield from [f"walk to {match[1]}"] if known.is_room(thing) else []
     if verb in _RISING and rest.startswith("up from ") and thing_of(known, rest.removeprefix("up from ")):
         yield "stand up"
     if verb in _CARRYING.split() and (match := _BROUGHT.fullmatch(rest)) and (place := thing_of(known, match[2])):

@@ -22,21 +22,34 @@ _ITEM = r"\(?(?:[a-z]|[ivx]{2,5})[.)](?=\s)|\d{1,3}(?:\.\d{1,3})+[.:)]?(?=\s)"
 """Letters, roman numerals and `1.2`: the items of a list without a number that counts its steps."""
 
 _NUMBERED = re.compile(
-    rf"(?:[-*+•–]\s+)?(?:(?P<number>{_NUMBER})\s*|(?:{_ITEM})\s+)(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE
+    rf"(?:[-*+•–—]\s+)?(?:(?P<number>{_NUMBER})\s*|(?:{_ITEM})\s+)(?=\S)|[-*+•–—]\s+(?=\S)", re.IGNORECASE
 )
 _PLAIN = re.compile(r"([ \t]*)(?:[Ss]tep )?(\d{1,4})[.:)] +([A-Za-z][A-Za-z0-9 ,.;()'-]*)")
 """A numbered step of plain words, of which nothing has to be undone."""
 
+_TIME = r"(?:[01]?\d|2[0-3])(?:[:.][0-5]\d(?:\s*[ap]m\b)?|\s?[ap]m\b)"
 _MARKER = re.compile(
     r"(?:[\u2190-\u21ff\u2500-\u2604\u2606-\u2617\u2705\u2713-\u2718\u2794-\u27bf\u2b00-\u2bff"
     r"\U0001f446-\U0001f449\U0001f518\U0001f532-\U0001f53d\U0001f7e0-\U0001f7ff·◦‣⁃∙▪]\ufe0f?\s*)+(?=\S)"
-    r"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|(?:[01]?\d|2[0-3])[:.][0-5]\d(?:\s*[ap]m)?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])",
+    rf"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|{_TIME}(?:\s*[–—-]\s*{_TIME})?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])|@[\w-]+[:,]?\s+(?=[a-z])",
     re.IGNORECASE,
 )
 """What stands before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
 
-_HTML = re.compile(r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
-_TAGS = re.compile(r"</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title)\b[^<>]*>", re.IGNORECASE)
+_HTML = re.compile(
+    r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title|head|meta|!doctype)\b[^<>]*>", re.IGNORECASE
+)
+_NEXT_ITEM = re.compile(r"</(li|step|action|instruction)>\s*<\1\b[^<>]*>", re.IGNORECASE)
+_TAGS = re.compile(
+    r"</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title|head|meta|!doctype)\b[^<>]*>", re.IGNORECASE
+)
+_XML_STEP = re.compile(r"\s*<(step|action|instruction)\b[^<>]*>\s*([^<>]*[^<>\s])\s*</\1>\s*", re.IGNORECASE)
+_ELEMENT = r"(?:steps?|plans?|tasks?|programs?|actions?|activity|sequence|root)"
+_XML_NAMED = re.compile(
+    rf"\s*<{_ELEMENT}\b[^<>]*?\b(?:task|title|name|goal)=[\"']([^\"'<>]+)[\"'][^<>]*>\s*",
+    re.IGNORECASE,
+)
+_XML = re.compile(rf"\s*</?{_ELEMENT}\b[^<>]*>\s*|\s*<\?xml\b.*", re.IGNORECASE)
 _LATEX = re.compile(r"\s*\\(?:(?:sub)*section|title|paragraph)\*?\{([^{}]*)\}\s*|\s*\\(?:begin|end)\{\w+\*?\}.*")
 _BOLD = re.compile(r"\s*(?:\*\*|__)(?!\s)([^*_:]+)(?:\*\*|__)\s*:?\s*")
 _ASIDE = re.compile(
@@ -54,7 +67,7 @@ LOOSE = re.compile(r"\s*\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s+([A-Za-z][\w .'-]*?)
 """A step that lacks the marks of its object, `[grab] milk`."""
 
 _DIGITS = re.compile(r"\d+")
-_CHECKBOX = re.compile(r"\[[ xX]\]\s+")
+_CHECKBOX = re.compile(r"\[[ xX]\]\s+(?:@[\w-]+:?\s+)?")
 
 _LAYOUT = re.compile(r"\s*(?:`{3}|~{3}|(?:[-*_=]\s*){3,}$|//|<!--.*-->\s*$)")
 """A line that begins or ends a code block, a horizontal rule, or a comment."""
@@ -192,6 +205,13 @@ _OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
 
 def _unmarked_up(line: str) -> str:
     """Return a line of LaTeX or HTML as Markdown; `<char0> [Walk] ...` is neither."""
+    line = _NEXT_ITEM.sub("; ", line)
+    if step := _XML_STEP.fullmatch(line):
+        return f"- {step[2]}"
+    if named := _XML_NAMED.fullmatch(line):
+        return f"# {named[1]}"
+    if _XML.fullmatch(line):
+        return ""
     latex = _LATEX.fullmatch(line)
     if latex:
         return f"# {latex[1]}" if latex[1] else ""

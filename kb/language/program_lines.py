@@ -11,6 +11,7 @@ from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
+from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
 from hearth.kb.language.unmarked_lines import (
     are_steps,
     chained,
@@ -189,6 +190,9 @@ def _has_steps(section: Sequence[PlanLine]) -> bool:
 
 
 _FIRST = 4
+_SIGNED = 3
+"""Lines below the end of a letter that are not its name any more."""
+
 _NUMBERED = re.compile(r"(?:step )?\d{1,4}[.:)] ", re.IGNORECASE)
 
 
@@ -215,16 +219,37 @@ def _marked(placed: list[Placed]) -> list[Placed]:
     plain = [n for n, (_, line) in enumerate(placed) if line.text and _is_plain(line)]
     named = next((n for n, (_, line) in enumerate(placed) if line.heading and not _is_plain(line)), -1)
     is_titled, plain = named >= 0, [n for n in plain if n > named]
+    plain = _without_greetings(placed, plain)
     if plain and not is_titled:
         top, texts = plain[0], [placed[n].line.text for n in plain]
         is_apart = top + 1 < len(placed) and not placed[top + 1].line.text
-        is_titled = is_title(texts[0], texts[1:], is_apart)
+        is_titled = is_title(texts[0], texts[1:], is_apart) and not (texts[1:] and goes_on(texts[0], texts[1]))
         plain = plain[1:] if is_titled else plain
+    prose = [(n, placed[n].line.text) for n in plain]
+    if is_prose(prose):
+        return _as_sentences(placed, plain, sentences_of(prose))
     texts = [_after_label(placed[n].line.text) for n in plain]
     if not are_steps(texts) and not (is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])):
         return placed
     steps = {n for n, text in zip(plain, texts, strict=True) if is_like_step(text) or chained(text)}
     return [part for n, each in enumerate(placed) for part in (_steps_on(each) if n in steps else [each])]
+
+
+def _without_greetings(placed: list[Placed], plain: list[int]) -> list[int]:
+    """Leave out how a letter begins, and how it ends with the name below."""
+    end = next((n for n in plain if n and is_farewell(placed[n].line.text)), len(placed))
+    is_end = sum(n > end for n in plain) < _SIGNED
+    return [n for n in plain if not is_greeting(placed[n].line.text) and (n < end or not is_end)]
+
+
+def _as_sentences(placed: list[Placed], plain: list[int], parts: list[Sentence]) -> list[Placed]:
+    """Return lines of prose as its sentences, which are steps."""
+    found: list[Placed] = []
+    for n, each in enumerate(placed):
+        here = [sentence.text for sentence in parts if sentence.row == n]
+        found += [Placed(each.row, PlanLine(text, 0, prose=True)) for text in here]
+        found += [] if here or n in plain or is_greeting(each.line.text) else [each]
+    return found
 
 
 def _is_plain(line: PlanLine) -> bool:

@@ -22,6 +22,12 @@ _PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
 _THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 _PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
 _PLURAL = re.compile(r"\b[a-z]+es\b")
+_OBSERVED = re.compile(
+    r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|notice|notices)\b", re.IGNORECASE
+)
+"""A sentence about what somebody sees asks for nothing."""
+
+_INSIDE = re.compile(r"((?:put|place|drop|set|lay|store)(?:s|ing|ped)?(?: back)? .+?)(?: back)? inside", re.IGNORECASE)
 _CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
 _PERSON = "PERSON"
 REMEMBERED = 6
@@ -67,6 +73,8 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
         said: the steps before, the last first, as `said_by` gives them.
         fuzzy: how far from known words a clause may be; off takes exact readings only.
     """
+    if _OBSERVED.match(words):
+        return ()
     if plain := _plain(known, words):
         return plain
     words = verb_phrase(" ".join(_plurals_of_said(known, words, said).split()))
@@ -117,6 +125,8 @@ def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
     Nothing is returned where no clause is understood, and where one of the others may change the act of the line, as
     `open the fridge, but not the freezer` does.
     """
+    if _OBSERVED.match(words):
+        return ()
     clauses = _clauses(verb_phrase(" ".join(_plurals_of_said(known, words, said).split())))
     found: list[Asked | str] = []
     at = 0
@@ -145,6 +155,8 @@ def _clauses(words: str) -> list[str]:
 
 def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> Understood:
     """Return what a line as a whole is understood as, and the nearest steps as hints."""
+    if _OBSERVED.match(words):
+        return Understood(None, ())
     return understand(known, next(_referred(known, words, said), words), fuzzy)
 
 
@@ -172,7 +184,7 @@ def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tu
     middle = [part for part in parts[1:-1] if thing_of(known, part.lower())]
     if len(middle) != len(parts) - 2:
         return ()
-    start = next((n for n in range(1, len(first)) if thing_of(known, " ".join(first[n:]).lower())), 0)
+    start = next((n for n in range(1, len(first)) if thing_of(known, _uncounted(first[n:]))), 0)
     end = next((n for n in range(len(last), 0, -1) if _is_bare(known, " ".join(last[:n]).lower())), 0)
     if not start or not end:
         return ()
@@ -188,7 +200,11 @@ def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tu
 
 def _is_bare(known: Knowledge, words: str) -> bool:
     """Whether words are a thing without the place where it is."""
-    return thing_of(known, words) is not None and not _BETWEEN.search(words)
+    return thing_of(known, _uncounted(words.split())) is not None and not _BETWEEN.search(words)
+
+
+def _uncounted(words: Sequence[str]) -> str:
+    return _COUNT.sub("", " ".join(words).lower())
 
 
 def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
@@ -225,7 +241,9 @@ def _shortened(
 
 def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
     """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
-    readings = [found for clause in _referred(known, words, said) if (found := understand_exactly(known, clause).meant)]
+    words = _inside_of(words, said)
+    found = (understand_exactly(known, clause).meant for clause in _referred(known, words, said))
+    readings = [each for each in found if each and (len(each.names) < 2 or each.names[0] != each.names[1])]
     if len(readings) == 1:
         return (Asked(readings[0]),)
     if readings:
@@ -238,6 +256,13 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
     if meant is None or not meant.names:
         return ()
     return tuple(Asked(meant, number) for number in range(1, _COUNTS[count[1].lower()] + 1))
+
+
+def _inside_of(words: str, said: Sequence[Mentioned]) -> str:
+    """`Put it inside` with the thing that was opened last."""
+    put = _INSIDE.fullmatch(words)
+    opened = next((names[0] for action, names in said if action == "Open"), None) if put else None
+    return f"{put[1]} inside {opened.replace('_', ' ')}" if put and opened else words
 
 
 def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:

@@ -10,9 +10,11 @@ _DETERMINERS = re.compile(
     r"(?:(?:all|the|a|an|one|some|any|my|your|his|her|our|their|its|this|that|these|those|one['’]s)\s+(?:of\s+)?)+"
 )
 _PARTITIVE = re.compile(
-    r"(?:pair|slice|piece|bit|loaf|bunch|handful|sheet|bar|stick|couple|drop|spoonful|scoop|pinch|lot)s? of\s+"
+    r"(?:\d+(?:[.,/]\d+)? ?(?:k?g|m?l|cl|dl|oz|lbs?|grams?|kilos?|lit(?:er|re)s?|ounces?|pounds?)\b"
+    r"(?: of)?\s+"
+    r"|(?:pair|slice|piece|bit|loaf|bunch|handful|sheet|bar|stick|couple|drop|spoonful|scoop|pinch|lot)s? of\s+)"
 )
-"""Parts and numbers of a thing that are the thing itself; a cup of tea is not, because a cup is a thing as well."""
+"""Amounts, parts and numbers of a thing that are the thing itself; a cup of tea is not, as a cup is a thing as well."""
 
 _POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
 _PLACED = re.compile(

@@ -21,12 +21,15 @@ _NUMBER = (
     r"(?:a|an|one|two|three|four|five|six|seven|eight|nine|ten|fifteen|twenty|thirty|forty|\d+|a few|several|some"
     r"|a couple of|half an)"
 )
+_HOUR = "one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve"
 _UNIT = r"(?:sec(?:ond)?|min(?:ute)?|hour|moment|while|bit|time)s?"
 _ENDINGS = tuple(
     re.compile(rf"\s+{ending}$")
     for ending in (
         rf"(?:{_MANNER})",
         rf"(?:for )?(?:{_ABOUT} )?{_NUMBER} (?:more )?{_UNIT}",
+        rf"at (?:about |around )?(?:{_HOUR}|noon|midnight|dawn|\d{{1,2}}(?:[:.]\d\d)?)"
+        r"(?: ?(?:o['’]clock|[ap]m))?(?: in the (?:morning|afternoon|evening))?",
         r"for (?:breakfast|lunch|dinner|later|[a-z]+ing(?: .+)?)",
         r"so (?:that )?(?:you|i|we|it|he|she|they) .+",
     )
@@ -35,12 +38,24 @@ _BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
 _WAITING = re.compile(r"((?:wait|pause)(?:s|ed|ing|d)?) (?:until|till|for) .+")
 """What one waits for may be left out, even where it is a condition."""
 
+_INSTEAD = " instead"
+"""At the end of a step it says only that another one was thought of; `instead of` names the other."""
+
+_WITH_IT = re.compile(
+    r"((?:walk|go|run|move|head|return|come|take|bring|grab|carry|leave)(?:s|ing|ed)? .+?)"
+    r"\s+(?:along )?(with (?:it|them|you|me))"
+)
+"""What is in the hands goes along, and what is taken is with one."""
+
+_ASLEEP = re.compile(r"((?:fall|falls|fell|falling) asleep|sleep|sleeps|slept|nap|naps) ((?:on|in|at) .+)")
+_POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
+
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
 _TOOL = re.compile(r"\s+(?:with|using) (.+)$")
 _BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
 _WORKED = frozenset(
     ("brush", "chop", "clean", "comb", "cut", "dry", "dust", "mix", "mop", "open", "polish", "rinse", "scrub", "shave",
-     "slice", "stir", "sweep", "wash", "wipe")
+     "slice", "stir", "sweep", "wash", "water", "wipe")
 )  # fmt: skip
 """Verbs after which a tool may be left out; with others, as `cover` or `fill`, it is part of the act."""
 
@@ -63,19 +78,31 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     """
     if match := _WAITING.fullmatch(text):
         yield match[1], text[match.end(1) :].strip()
+    if text.endswith(_INSTEAD):
+        yield text.removesuffix(_INSTEAD), _INSTEAD.strip()
     if changes_act(text):
         return
-    if match := _BEGINNING.match(text):
-        yield text[match.end() :], match[0].strip()
-    for ending in _ENDINGS:
-        if match := ending.search(text):
-            yield text[: match.start()], match[0].strip()
+    for pattern in (_WITH_IT, _ASLEEP):
+        if match := pattern.fullmatch(text):
+            yield match[1], match[2]
+    if match := _POINTED.fullmatch(text):
+        yield f"point at {match[2]}", match[1]
+    yield from _without_manner(text)
     for match in reversed(list(_PURPOSE.finditer(text))):
         if is_verb(match[1]) and thing_of(known, text[match.end() :]) is None:
             yield text[: match.start()], text[match.start() :].strip()
     if (match := _TOOL.search(text)) and _WORKED.intersection(_verbs(text)) and _is_tool(known, match[1]):
         yield text[: match.start()], match[0].strip()
     yield from without_adjective(known, text)
+
+
+def _without_manner(text: str) -> Iterator[tuple[str, str]]:
+    """Yield a clause without an adverb before it, or what may stand at its end."""
+    if match := _BEGINNING.match(text):
+        yield text[match.end() :], match[0].strip()
+    for ending in _ENDINGS:
+        if match := ending.search(text):
+            yield text[: match.start()], match[0].strip()
 
 
 def _verbs(text: str) -> tuple[str, ...]:

@@ -32,6 +32,9 @@ _HEADS = 8
 _NAMES = 4
 _SHOWN = 3
 _GRAB = "Grab"
+_POINTED = re.compile(r"point(?:s|ing|ed)? (?!at |to ).+ (?:at|to|towards?) .+")
+"""A thing is pointed at another; only the other is an object of the step."""
+
 _ARTICLE = re.compile(r"\b(?:the|a|an|some|my|your|his|her|their)\b ")
 
 
@@ -176,7 +179,10 @@ def _exact(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
 
 def _acts(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """The steps that some words mean; what an idiom takes, as in `take a shower`, is not grabbed."""
-    return tuple(parse for parse in parses(knowledge, text) if parse[0].name != _GRAB or not is_idiom(text))
+    if _POINTED.fullmatch(text):
+        return ()
+    found = (parse for parse in parses(knowledge, text) if parse[0].name != _GRAB or not is_idiom(text))
+    return tuple(found)
 
 
 def _afforded(knowledge: Knowledge, parse: Parse) -> bool:

@@ -65,6 +65,10 @@ class Rows(Iterator[tuple[int, str]]):
     def __next__(self) -> tuple[int, str]:
         return self._again.pop() if self._again else next(self._source)
 
+    def put_back(self, number: int, line: str) -> None:
+        """Give a line once more."""
+        self._again.append((number, line))
+
     def parsed(self, layout: Layout) -> Iterator[tuple[int, str, list[str] | None]]:
         """Each record: its first line's number, its text and its cells; None for cells that can't be separated."""
         for number, line in self:

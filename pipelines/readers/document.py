@@ -2,12 +2,14 @@
 
 import json
 import re
+from contextlib import suppress
 from typing import Any
 
 import orjson
 
 from hearth.pipelines.readers.item import LARGEST_FILE, opened
 from hearth.pipelines.readers.placed_texts import Located, Pairs
+from hearth.pipelines.readers.relaxed_json import strict
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place, size_of
@@ -48,7 +50,7 @@ def _data(path: Place, place: str) -> bytes | Reject:
 
 def located(data: bytes | str, place: str, line: int, column: int = 1) -> Located | Reject:
     """A JSON value whose texts know their places, with repeated keys; it begins at this line and column."""
-    value = parsed(data, place, line, column)
+    value, data = _loaded(data, place, line, column)
     if isinstance(value, Reject):
         return value
     text = data if isinstance(data, str) else data.decode()
@@ -63,12 +65,26 @@ def located(data: bytes | str, place: str, line: int, column: int = 1) -> Locate
 
 
 def parsed(data: bytes | str, place: str, line: int, column: int = 1) -> Any | Reject:
-    """A JSON value that begins at this line and column."""
+    """A JSON value that begins at this line and column; comments and commas after the last entry mean nothing."""
+    return _loaded(data, place, line, column)[0]
+
+
+def _loaded(data: bytes | str, place: str, line: int, column: int) -> tuple[Any | Reject, bytes | str]:
+    """A JSON value, and the strict JSON in which it was found."""
     try:
-        return orjson.loads(data)
+        return orjson.loads(data), data
     except (orjson.JSONDecodeError, RecursionError) as error:
-        down, across = getattr(error, "lineno", 1) - 1, getattr(error, "colno", 1)
-        across += column - 1 if not down else 0
-        message = f"not JSON: {getattr(error, 'msg', error)}"
-        remedy = "save it as JSON in UTF-8"
-        return Reject((Diagnostic(Code.BAD_JSON, message, place, line + down, across, suggestion=remedy),))
+        text = data if isinstance(data, str) else data.decode("utf-8", "replace")
+        plain = strict(text)
+        if plain != text:
+            with suppress(orjson.JSONDecodeError, RecursionError):
+                return orjson.loads(plain), plain
+        return _not_json(error, place, line, column), data
+
+
+def _not_json(error: Exception, place: str, line: int, column: int) -> Reject:
+    down, across = getattr(error, "lineno", 1) - 1, getattr(error, "colno", 1)
+    across += column - 1 if not down else 0
+    message = f"not JSON: {getattr(error, 'msg', error)}"
+    remedy = "save it as JSON in UTF-8"
+    return Reject((Diagnostic(Code.BAD_JSON, message, place, line + down, across, suggestion=remedy),))

@@ -8,6 +8,7 @@ from typing import Any
 from hearth.pipelines.readers.document import located, parsed
 from hearth.pipelines.readers.item import fault_of, pieces
 from hearth.pipelines.readers.placed_texts import Located
+from hearth.pipelines.readers.relaxed_json import uncommented
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
@@ -15,7 +16,7 @@ from hearth.storage.rejects import Reject
 LONGEST_ENTRY = 16_000_000
 """Characters of one entry at most."""
 
-_TOKEN = re.compile(r'"[^"\\]*+(?:\\.[^"\\]*+)*+"|[\[\]{},:"]', re.DOTALL)
+_TOKEN = re.compile(r'"[^"\\]*+(?:\\.[^"\\]*+)*+"|[\[\]{},:"]|//[^\n]*+\n|/\*.{0,2000}?\*/|/(?=[/*]|\Z)', re.DOTALL)
 _OPENS, _CLOSES = frozenset("[{"), frozenset("]}")
 _PAIR = {"]": "[", "}": "{"}
 
@@ -75,7 +76,7 @@ class _Scanner:
         self._buffer, self._start, self._at = "", -1, 0
         self._line, self._counted, self._line_start = 1, 0, 0
         self._stack: list[str] = []
-        self._began, self._comma = False, False
+        self._began = False
         self._key, self._name = "", ""
 
     def entries(self, texts: Iterable[str]) -> Iterator[tuple[int, int, str]]:
@@ -87,15 +88,17 @@ class _Scanner:
         for text in texts:
             self._buffer += text
             for match in _TOKEN.finditer(self._buffer, self._at):
-                if match[0] == '"':
-                    break  # a string that ends in a later piece
+                if match[0] in ('"', "/"):
+                    break  # a string or comment that ends in a later piece
                 yield from self._take(match[0], match.start(), match.end())
                 self._at = match.end()
             self._forget()
-        if self._stack or not self._began or self._buffer[self._at :].strip():
+        if self._stack or not self._began or uncommented(self._buffer[self._at :]).strip():
             raise BrokenError("the document is not complete", self._here(len(self._buffer)))
 
     def _take(self, token: str, at: int, end: int) -> Iterator[tuple[int, int, str]]:
+        if token[0] == "/":
+            return
         if not self._stack:
             self._begin(token, at)
             self._start = end if self._listed() else -1
@@ -113,7 +116,7 @@ class _Scanner:
             self._name = token[1:-1]
 
     def _begin(self, token: str, at: int) -> None:
-        if self._began or token not in _OPENS or self._buffer[:at].strip():
+        if self._began or token not in _OPENS or uncommented(self._buffer[:at]).strip():
             raise BrokenError("text beside the list or object", self._here(at))
         self._began = True
         self._stack.append(token)
@@ -132,13 +135,12 @@ class _Scanner:
     def _ended(self, token: str, at: int) -> Iterator[tuple[int, int, str]]:
         """A comma or bracket, which may end an entry."""
         if self._listed() and self._start >= 0:
-            text = self._buffer[self._start : at]
-            # `[]` is an empty list; before or after a comma an empty text is an entry, and not JSON.
-            if self._comma or token == "," or text.strip():
+            text = uncommented(self._buffer[self._start : at])
+            # `[]` is an empty list, and nothing need follow the last comma; before a comma an empty text is an entry.
+            if token == "," or text.strip():
                 lead = len(text) - len(text.lstrip())
                 line = self._here(self._start + lead)
                 yield line, self._start + lead - self._line_start + 1, text.strip()
-            self._comma = token == ","
             self._start = -1
         if token == "," and len(self._stack) == 1:
             self._key = ""

@@ -7,7 +7,7 @@ from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, value_at
 from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner
 from hearth.pipelines.readers.models import of_others
-from hearth.pipelines.readers.program_columns import column_of_steps
+from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
 from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
 from hearth.pipelines.readers.step_texts import IN_LINE
 from hearth.schemas.blocks import STEP
@@ -27,6 +27,8 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
         yield "", other
     elif of_planner(value.values()):
         yield "", Reject.of(Code.UNSUPPORTED_FILE, _OF_PLANNER, suggestion="write steps as [Walk] <shower> (1)")
+    elif _are_plans(value, given):
+        yield from ((f"[{number}]", {"title": key, "program": value[key]}) for number, key in enumerate(value, 1))
     elif is_record(value, given):
         yield "", value
     elif value and all(map(_is_steps, (by_title := with_step_lists(value)).values())):
@@ -37,23 +39,37 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
         yield from _records_inside(value, given, depth - 1)
 
 
+def _are_plans(value: dict[str, Any], given: FieldColumns) -> bool:
+    """Whether an object has several texts and no other values, which all read as steps and whose keys are no fields."""
+    if len(value) < 2 or given or not all(map(is_line, value.values())) or guessed(value, {}, exact=True):
+        return False
+    return all(reading_of([text]).are_steps for text in value.values())
+
+
 def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> Iterator[tuple[str, Any]]:
     """Yield the records of the parts of an object; a part that can't be a record stands beside the others.
 
     A record without a title has the title beside it, or its key.
     """
     titled = guessed([key for key, part in value.items() if isinstance(part, str)], {}, exact=True).get("title", "")
+    is_asked = plain_name(titled) not in ("", "title", "name")  # as those may be of the whole file
     are_objects = all(isinstance(part, dict) for part in value.values())
     for key, part in value.items():
         listed = part if isinstance(part, list) else [part]
-        found = [list(records_in(entry, given, depth)) for entry in listed]
+        found = [_plan_in(entry) or list(records_in(entry, given, depth)) for entry in listed]
         for number, (entry, records) in enumerate(zip(listed, found, strict=True), 1):
             if not records and entry and isinstance(entry, dict) and any(found):
                 yield f".{as_text(key)}[{number}]", entry
             title = value.get(titled, "" if plain_name(key) in _NO_TITLES or not are_objects else key)
             for inside, each in records:
-                is_one = isinstance(part, dict) and len(records) == 1
-                yield f".{as_text(key)}[{number}]{inside}", _with_title(each, title, given) if is_one else each
+                is_its = is_asked or (isinstance(part, dict) and len(records) == 1)
+                yield f".{as_text(key)}[{number}]{inside}", _with_title(each, title, given) if is_its else each
+
+
+def _plan_in(value: Any) -> list[tuple[str, Any]]:
+    """The record of a list in a list, where its texts read as steps."""
+    is_texts = isinstance(value, list) and len(value) > 1 and all(map(is_line, value))
+    return [("", {"steps": value})] if is_texts and column_of_steps({"steps": ["\n".join(value)]}) else []
 
 
 def _with_title(record: Any, title: str, given: FieldColumns) -> Any:

@@ -3,6 +3,7 @@
 from typing import Any
 
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
+from hearth.schemas.blocks import TITLE
 
 
 def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
@@ -15,8 +16,9 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
         return {**_answer(answered), **({"id": own} if isinstance(own, str) else {})}
     if isinstance(value.get("content"), list) and _used(value["content"]):
         return _answer(value)
-    if _is_chat(value.get("messages")):
-        return _chat(value["messages"])
+    chat = next((found for key in _CHATS if (found := _messages(value.get(key)))), None)
+    if chat:
+        return _chat(chat)
     if _are_calls(value.get("tool_calls")):
         return _answer(value)
     if "title" not in value and is_action(value) and ("function" in value or "object" in value):
@@ -27,10 +29,11 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
 def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
     """The last answer of a chat, with the request before it as title."""
     last = max((at for at, each in enumerate(messages) if each["role"] == "assistant"), default=None)
-    asked = [each.get("content") for each in messages[:last] if each["role"] == "user"]
-    title = asked[-1] if asked and isinstance(asked[-1], str) else ""
+    asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
+    title = asked[-1] if asked else ""
     answer = _answer(messages[last]) if last is not None else {}
     first, _, rest = title.strip().partition("\n")
+    first = TITLE.sub("", first, count=1)
     return {"title": first[:200], **({"description": rest.strip()} if rest.strip() else {}), **answer}
 
 
@@ -41,10 +44,16 @@ def _answer(message: dict[str, Any]) -> dict[str, Any]:
     content = message.get("content")
     if isinstance(content, list) and (used := _used(content)):
         return {"steps": used}
+    said = _said(content)
+    return {"program": said} if said.strip() else {}
+
+
+def _said(content: Any) -> str:
+    """The text of a message, or of the first of its parts that has one."""
     if isinstance(content, list):
         parts = [part["text"] for part in content if isinstance(part, dict) and isinstance(part.get("text"), str)]
         content = parts[0] if parts else None
-    return {"program": content} if isinstance(content, str) and content.strip() else {}
+    return content if isinstance(content, str) else ""
 
 
 def _used(content: list[Any]) -> list[dict[str, Any]]:
@@ -53,12 +62,25 @@ def _used(content: list[Any]) -> list[dict[str, Any]]:
     return [{"action": part["name"], "args": part.get("input")} for part in parts if isinstance(part.get("name"), str)]
 
 
-def _is_chat(value: Any) -> bool:
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and all(isinstance(each, dict) and isinstance(each.get("role"), str) for each in value)
-    )
+_CHATS = ("messages", "conversations", "conversation", "contents", "dialogue", "dialog", "chat")
+"""Keys of the messages of a chat."""
+
+_ROLES = {"human": "user", "gpt": "assistant", "model": "assistant", "bot": "assistant", "chatgpt": "assistant"}
+_CONTENTS = ("content", "value", "parts", "text")
+
+
+def _messages(value: Any) -> list[dict[str, Any]]:
+    """The messages of a chat, with `role` and `content` for `from` and `value` of others; empty for other values."""
+    if not isinstance(value, list) or not value:
+        return []
+    found = []
+    for each in value:
+        role = (each.get("role") or each.get("from")) if isinstance(each, dict) else None
+        if not isinstance(role, str):
+            return []
+        content = next((each[key] for key in _CONTENTS if key in each), None)
+        found.append({**each, "role": _ROLES.get(role.lower(), role.lower()), "content": content})
+    return found
 
 
 def _are_calls(value: Any) -> bool:

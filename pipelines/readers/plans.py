@@ -95,7 +95,7 @@ def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_0
     has_steps, begun = False, set[str]()
     for number, raw in lines:
         begins = form.begins.match(raw)
-        key = next(iter(begins.groups()), "").lower() if begins else ""
+        key = next(filter(None, begins.groups()), "").lower() if begins else ""
         if begins and (has_steps or key in begun):
             yield first, block
             block, size, has_steps, begun = [], 0, False, set()

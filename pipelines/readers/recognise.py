@@ -25,6 +25,8 @@ from hearth.pipelines.readers import (
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
+from hearth.pipelines.readers.json_actions import is_only_action
+from hearth.pipelines.readers.relaxed_json import uncommented
 from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -53,12 +55,18 @@ _YAML = frozenset({".yaml", ".yml"})
 _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 """Endings of texts that are read as programs even without a step; others, such as notes, need one."""
 
-_NUMBER = re.compile(r"\s*\[\d{1,4}\]\s+[^\s,\]}]")
-"""The number of a step in brackets, `[1] Walk to fridge`."""
+_NUMBER = re.compile(r"\s*\[(?:\d{1,4}|[\d/-]*[ T]?\d{1,2}:\d\d[\d:.]*)\]\s+[^\s,\]}]")
+"""The number of a step in brackets, `[1] Walk to fridge`, or its time, `[09:15] robot: walk to fridge`."""
+
+_COMMENT_LINE = re.compile(r"\s*(?://.*|/\*(?:(?!\*/).)*\*/\s*)$")
+"""A line of JSON that is a comment."""
 
 _MARKUP = re.compile(
     r"\s*(?:(?P<HTML><!doctype html|<html\b)|(?P<SVG><svg\b)|(?P<XML><\?xml\b)|(?P<RTF>\{\\rtf))", re.IGNORECASE
 )
+_STEP_ELEMENT = re.compile(r"<(?:li|step|action)\b[^<>]*>\s*[^\s<]", re.IGNORECASE)
+"""A step that HTML or XML marks on a line."""
+
 _LOOKED_AT = 60
 _LONGEST = 100_000
 
@@ -162,17 +170,21 @@ def _text(path: Place, place: str) -> Recognised:
 
 
 def _by_first_lines(path: Place, place: str) -> Recognised:
-    whole = [line for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
-    first = [line[:_LONGEST] for line in whole if line.strip()]
+    suffix = _suffix(path)
+    whole = [line for line, _ in itertools.islice(lines(path), _LOOKED_AT) if line.strip()]
+    if suffix in _JSON:
+        whole = list(itertools.dropwhile(_COMMENT_LINE.match, whole))
+    first = [line[:_LONGEST] for line in whole]
     line = first[0] if first else ""
+    line = uncommented(line) if suffix in _JSON else line
     if markup := _MARKUP.match(line):
+        if any(map(_STEP_ELEMENT.search, first)) and is_plan(first):
+            return Recognised(path, place, plans.NAME)
         return _refused(path, place, f"{markup.lastgroup}, in which no plans are read: save it as plain text or CSV")
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
     if looks_like_json(line) and not _NUMBER.match(line):
-        return _json(path, place, [line for line in whole if line.strip()])
-    suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
-    suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
+        return _json(path, place, whole)
     if (suffix in _TABLES and first) or (line.lstrip()[:1] != "|" and spreadsheets.names_it(line[:10_000])):
         return Recognised(path, place, spreadsheets.NAME)
     if suffix in _JSON and first:
@@ -186,6 +198,12 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     if suffix not in _TEXT | _JSON | _TABLES and not any(plan_line(line).bracketed for line in first):
         return _refused(path, place, "a text without a step")
     return Recognised(path, place, text.NAME)
+
+
+def _suffix(path: Place) -> str:
+    """The ending of a file's name, without that of a packed file."""
+    suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
+    return next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
 
 
 def _json(path: Place, place: str, first: list[str]) -> Recognised:
@@ -208,11 +226,13 @@ def _json(path: Place, place: str, first: list[str]) -> Recognised:
 def _form_of_list(path: Place, place: str) -> str:
     """The reader of a list, by its first entry that can be read; an empty list is a list of records.
 
-    Texts of one line are the steps of one program, other texts a plan each.
+    Texts of one line and actions are the steps of one program, other texts a plan each.
     """
     for _, value in entries(path, place):
         if isinstance(value, str):
             return TEXTS if "\n" in value.strip() or TITLE.match(value) else DOCUMENT
+        if is_only_action(value):
+            return DOCUMENT
         if not isinstance(value, Reject):
             return LISTED if isinstance(value, (dict, list)) else ""
     return LISTED

@@ -11,8 +11,10 @@ from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of
 from hearth.pipelines.readers.item import Item, refused
 from hearth.pipelines.readers.json_actions import is_action
 from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
-from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names
+from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names, plain_name
 from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
+from hearth.pipelines.readers.step_texts import SAID
+from hearth.pipelines.readers.table_heads import NUMBERED, begun
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
@@ -48,7 +50,7 @@ class Table(NamedTuple):
     @property
     def has_actions(self) -> bool:
         """Return whether a row is an action with its objects, in columns of their own."""
-        return not self.steps and is_action(dict.fromkeys(self.layout.columns, "x")) and "program" not in self.columns
+        return not self.steps and _is_action(self.layout, self.columns)
 
 
 class Row(dict[str, str]):
@@ -68,7 +70,7 @@ def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
 def table_of(path: Place, given: FieldColumns) -> Table:
     """What the columns of a table hold: as given, by their names, or by the cells of its first rows."""
     rows = Rows(path)
-    first, layout = _begun(rows)
+    first, layout, is_row = begun(rows, given)
     names = layout.columns
     good = (cells for _, _, cells in rows.parsed(layout) if cells and len(cells) == len(names))
     sample = list(itertools.islice(good, _SAMPLE))
@@ -84,11 +86,12 @@ def table_of(path: Place, given: FieldColumns) -> Table:
         found["program"], found.note = " ".join(steps), "A column is a step."
     elif "program" not in found and "program" not in given:
         _guess_program(table, {name: cells[name] for name in texts})
+    found.note = f"{NUMBERED} {found.note}".strip() if is_row else found.note
     if "title" not in found and "title" not in given and found:
         title = next((name for name in texts if name not in found.values() and _is_title(cells[name])), "")
         found.update({"title": title} if title else {})
     if not (table.number or steps) and _is_by_title(sample, layout, found):
-        found.note = _ROWS_ARE_STEPS
+        found.note = f"{found.note} {_ROWS_ARE_STEPS}".strip()
         return table._replace(by_title=True)
     return table
 
@@ -97,18 +100,30 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
     """The column that counts steps: one whose name says so, else one that goes up by one while the task stays."""
     names = dict.fromkeys(counts, "1")
     sure, may = number_of(names), number_of(names, any_number=True)
-    if sure or not may or "title" not in found:
+    if sure or not may or not ("title" in found or _row_is_step(layout, found)):
         return sure
-    title, number, program = (layout.columns.index(each) for each in (found["title"], may, found.get("program", may)))
-    rows = [(row[title], row[number], row[program]) for row in sample if is_count(row[number])]
+    title, number, program = (layout.columns.index(found.get(each, may)) for each in ("title", "", "program"))
+    rows = [("title" in found and row[title], row[number], row[program]) for row in sample if is_count(row[number])]
     follows = [one[0] == two[0] and int(two[1]) == int(one[1]) + 1 for one, two in itertools.pairwise(rows)]
     begins = all(goes_on or row[1].strip() in ("0", "1") for goes_on, row in zip([False, *follows], rows, strict=True))
     single = "program" not in found or all(is_one_step(step) for _, _, step in rows if step.strip())
     return may if any(follows) and begins and single else ""
 
 
+def _row_is_step(layout: Layout, found: FieldColumns) -> bool:
+    """Whether the names of columns say that a row is a step: it is an action, or has one `step`."""
+    return _is_action(layout, found) or plain_name(found.get("program", "")) in ("step", "action")
+
+
+def _is_action(layout: Layout, found: FieldColumns) -> bool:
+    return "program" not in found and is_action(dict.fromkeys(layout.columns, "x"))
+
+
 def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
     """Whether most rows hold one step and stand beside another row of their title, which is nowhere else."""
+    if "title" not in found and "program" in found and _row_is_step(layout, found):
+        program = layout.columns.index(found["program"])
+        return len(sample) > 1 and all(is_one_step(row[program]) for row in sample if row[program])
     if not {"title", "program"} <= found.keys():
         return False
     title, program = (layout.columns.index(found[field]) for field in ("title", "program"))
@@ -129,28 +144,24 @@ def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:
         found.update({"program": found.pop("description", likeliest)} if likeliest else {})
         found.note = _ROWS_ARE_STEPS
     else:
-        program = column_of_steps({name: texts for name, texts in cells.items() if name not in found.values()})
+        others = {name: texts for name, texts in cells.items() if name not in found.values()}
+        about = found.get("description", "")
+        if cells.get(about) and all(map(SAID.match, cells[about])) and column_of_steps({about: cells[about]}):
+            others = {about: cells[found.pop("description")]}
+        program = column_of_steps(others)
         found.update({"program": program} if program else {})
         found.note = _BY_CELLS if program else ""
+        rest = {name: texts for name, texts in others.items() if name != program}
+        if program and (other := column_of_steps(rest)):
+            found.rivals["program"] = [*found.rivals.get("program", ()), other]
 
 
-_WORDS = re.compile(r"[^\d_]{2,}")
+_WORDS = re.compile(r"(?!@)[^\d_]{2,}")
 
 
 def _is_title(cells: Sequence[str]) -> bool:
-    """Whether cells are words, as names of tasks are, and ids such as `w_12` are not."""
+    """Whether cells are words, as names of tasks are, and ids such as `w_12` and `@kim` are not."""
     return bool(cells) and 2 * sum(bool(_WORDS.fullmatch(cell.strip())) for cell in cells) >= len(cells)
-
-
-def _begun(rows: Rows) -> tuple[int, Layout]:
-    """The number and layout of the first line with text; Excel's `sep=;` before it names the delimiter."""
-    delimiter = ""
-    for number, line in rows:
-        if line.lower().startswith("sep=") and len(line) == len("sep=;"):
-            delimiter = line[-1]
-        elif line.strip():
-            return number, layout_of(line, delimiter)
-    return 1, Layout((), ",")
 
 
 def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
@@ -159,7 +170,7 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
     columns, layout, first = table.columns, table.layout, table.first
     if not {"program", "description"} & columns.keys() and not table.has_actions:
         rows = Rows(path)
-        _begun(rows)
+        begun(rows, given)
         yield refused(place, _unnamed(rows, first, layout, place, given))
         return
     names = dict.fromkeys(layout.columns)
@@ -167,7 +178,7 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
         if name not in names:
             yield refused(place, lacks(field, name, names, place, first), f"{place}~{name}")
     empty = True
-    for value, line, name in joined(_rows(path, place, table), _reader_of(table)):
+    for value, line, name in joined(_rows(path, place, table, given), _reader_of(table)):
         empty = False
         if isinstance(value, Reject):
             yield refused(place, value, line=line)
@@ -184,10 +195,10 @@ def _reader_of(table: Table) -> Callable[[Any], StepRow | None]:
     return row_of_table(table.columns, table.number) if are_steps else lambda _: None
 
 
-def _rows(path: Place, place: str, table: Table) -> Iterator[Entry]:
+def _rows(path: Place, place: str, table: Table, given: FieldColumns) -> Iterator[Entry]:
     """Each row with text, by its columns; a fault for one that can't be read."""
     rows, layout = Rows(path), table.layout
-    _begun(rows)
+    begun(rows, given)
     for line, raw, cells in rows.parsed(layout):
         full = cells and [*cells, *[""] * (len(layout.columns) - len(cells))]
         wrong = row_fault(line, raw, full, layout, place)

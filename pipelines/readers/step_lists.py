@@ -136,12 +136,13 @@ def _under_numbers(value: dict[str, Any]) -> list[Any] | None:
 def _of_objects(parts: list[Any], is_named: bool) -> list[Any] | None:
     """Return steps that are texts, actions, or objects with a text each; None if any of them is something else."""
     found = []
+    are_pairs = _are_pairs(parts)
     for part in parts:
         if isinstance(part, str) or is_action(part):
             found.append(part)
-        elif isinstance(part, list) and 0 < len(part) <= 4 and all(map(_is_text, part)) and is_known(part[0]):
+        elif isinstance(part, list) and are_pairs:
             found.append({"action": part[0], "args": part[1:]})
-        elif isinstance(part, dict) and len(part) == 1 and _is_action_name(key := next(iter(part))):
+        elif isinstance(part, dict) and len(part) == 1 and _is_action_name(key := next(iter(part)), part[key]):
             found.append({"action": key, "args": part[key]})
         elif isinstance(part, dict) and (text := text_of(part, is_named)) is not None:
             found.append(text)
@@ -150,9 +151,22 @@ def _of_objects(parts: list[Any], is_named: bool) -> list[Any] | None:
     return found
 
 
+def _are_pairs(parts: Iterable[Any]) -> bool:
+    """Return whether the lists among some steps are each an action with its objects.
+
+    One of the actions is known, and each other is a single word: a list of sentences is a plan of its own.
+    """
+    lists = [part for part in parts if isinstance(part, list)]
+    if not all(0 < len(part) <= 4 and all(map(_is_text, part)) for part in lists):
+        return False
+    known = [part for part in lists if is_known(part[0], part[1:])]
+    return bool(known) and all(part in known or len(part[0].split()) == 1 for part in lists)
+
+
 def _is_text(value: Any) -> bool:
     return isinstance(value, str)
 
 
-def _is_action_name(key: str) -> bool:
-    return plain_name(key) not in TEXTS and is_known(key)
+def _is_action_name(key: str, value: Any) -> bool:
+    objects = [value] if isinstance(value, str) else value if isinstance(value, list) else []
+    return plain_name(key) not in TEXTS and is_known(key, objects)

@@ -13,6 +13,9 @@ Places = list[list[int]] | None
 IN_LINE = re.compile(r"\s*(?:plan|steps|answer)\s*:\s*1[.)]\s+\S.*\s2[.)]\s", re.IGNORECASE)
 """A whole plan on a line, as `Plan: 1. walk to kitchen 2. find milk`."""
 
+SAID = re.compile(r"\s*(?:[\w'’]+\s+){0,3}(?:plan|steps|routine|actions)\s*:\s*(?=\S)", re.IGNORECASE)
+"""What is said before a plan on its line, as in `my plan: wake up, drink coffee`."""
+
 _NUMBERS = re.compile(r"(?<!\S)\d{1,3}[.)]\s+")
 _ENDS = frozenset({"done", "end", "stop", ""})
 _QUOTED = re.compile(r"""'((?:[^'\\]|\\.)*+)'|"((?:[^"\\]|\\.)*+)\"""")
@@ -39,7 +42,8 @@ def steps_of(text: str) -> list[str]:
         return pieces_of(text, text.split("\n"))
     if lines[0].startswith(('["', "['")):
         return pieces_of(text, [re.sub(r"\\(.)", r"\1", one or other) for one, other in _QUOTED.findall(lines[0])])
-    return pieces_of(text, [step for step in _IN_ONE_LINE.split(lines[0]) if step.strip()])
+    said = SAID.match(lines[0])
+    return pieces_of(text, [step for step in _IN_ONE_LINE.split(lines[0][said.end() if said else 0 :]) if step.strip()])
 
 
 def numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[str, Places]:

@@ -8,6 +8,9 @@ import pytest
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
+from hearth.pipelines.readers import spreadsheets
+from hearth.pipelines.readers.delimited import Rows
+from hearth.pipelines.readers.table_heads import begun
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
@@ -195,7 +198,148 @@ def test_an_unknown_action_among_known_ones_is_a_fault_and_no_title(write, key):
     assert "tickle" not in programs[0][0]
 
 
-@pytest.mark.parametrize(("text", "line"), [('[\n{"title": "A", "steps": ["Sleep"]},\n{"title": "B",}\n]', 3),
+CUP = ["[Walk] <kitchen> (1)", "[Grab] <cup> (1)", "[PutBack] <cup> (1) <table> (1)", "[SwitchOn] <lamp> (1)"]
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        [["goto", "kitchen"], ["pickup", "cup"], ["PLACE", "cup", "table"], ["turnon", "lamp"]],
+        [{"action": "GoTo", "object": "kitchen"}, {"action": "PickUp", "object": "cup"},
+         {"action": "put", "object": "cup", "target": "table"}, {"action": "toggle_on", "object": "lamp"}],
+        [{"skill": "navigate", "params": {"to": "kitchen"}}, {"skill": "pick", "params": {"object": "cup"}},
+         {"skill": "place", "params": ["cup", "table"]}, {"skill": "switch on", "params": {"object": "the lamp"}}],
+        [{"goto": "kitchen"}, {"pick": "cup"}, {"place": ["cup", "table"]}, {"turn_on": "lamp"}],
+        [{"verb": "goto", "noun": "kitchen"}, {"verb": "take", "noun": "cup", "from": "fridge"},
+         {"verb": "put", "noun": "cup", "on": "table"}, {"verb": "activate", "noun": "lamps"}],
+    ],
+)  # fmt: skip
+def test_actions_as_programs_name_them(write, steps):
+    programs, faults = read(write("a.json", json.dumps({"title": "A", "plan": steps})))
+    assert [[step for _, step in steps] for _, steps in programs] == [CUP] and not faults
+
+
+@pytest.mark.parametrize(("place", "step"), [("fridge", "PutIn"), ("table", "PutBack"), ("bowl", "PutIn")])
+def test_what_is_put_goes_in_what_is_hollow_and_on_what_is_flat(write, place, step):
+    value = {"title": "A", "plan": [{"action": "put", "args": ["milk", place]}, {"action": "put", "object": "cup"}]}
+    programs, faults = read(write("a.json", json.dumps(value, indent=1)))
+    assert [line for _, line in programs[0][1]] == [f"[{step}] <milk> (1) <{place}> (1)"]
+    assert [code for code, _ in faults] == ["NOT_UNDERSTOOD"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.csv", ",step\n0,walk to kitchen\n1,grab the cup\n2,put the cup on the table\n3,turn on the lamp\n"),
+        ("a.csv", "action\nwalk to kitchen\ngrab the cup\nput the cup on the table\nturn on the lamp\n"),
+        ("a.tsv", "id\tverb\tobject\ttarget\n1\tgoto\tkitchen\t\n2\tpick\tcup\t\n3\tput\tcup\ttable\n"
+                  "4\tturnon\tlamp\t\n"),
+    ],
+)  # fmt: skip
+def test_rows_of_one_step_without_a_task_are_one_program(write, name, text):
+    programs, faults = read(write(name, text))
+    assert [[step for _, step in steps] for _, steps in programs] == [CUP] and not faults
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ('0,Light,"walk to lamp, switch on lamp"\n1,Nap,"lie on bed, sleep"\n', [("Light", [1, 1]), ("Nap", [2, 2])]),
+        ('1,Light,"1. walk to lamp\n2. switch on lamp"\n2,Nap,"1. sleep"\n', [("Light", [1, 2]), ("Nap", [3])]),
+        ("Light;walk to lamp -> switch on lamp\nNap;lie on bed -> sleep\n", [("Light", [1, 1]), ("Nap", [2, 2])]),
+        ("walk,lamp\nswitchon,lamp\n", [("", [1, 2])]),
+    ],
+)
+def test_a_table_without_names_of_columns_loses_no_row(write, text, found):
+    programs, faults = read(write("a.csv", text))
+    assert [(title, [line for line, _ in steps]) for title, steps in programs] == found and not faults
+    assert [step for _, step in programs[0][1]] == LINES
+
+
+def test_a_plan_after_the_words_that_say_so_is_a_plan(write):
+    text = 'user,text\n@ann,"my plan: walk to lamp, switch on lamp"\n@bob,"Todays plan: sleep, rule the world, sleep"\n'
+    programs, faults = read(write("a.csv", text))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES, ["[Sleep]", "[Sleep]"]]
+    assert faults == [("NOT_UNDERSTOOD", 3)] and not any("@" in title for title, _ in programs)
+    prose = read(write("b.csv", "task,text\nLight,I walk to the lamp and switch on the lamp.\n"))
+    assert prose == ([], [])
+
+
+@pytest.mark.parametrize("first", ["open,close", "find,object", "1,2", "0,title", "walk,time"])
+def test_names_of_columns_that_are_like_actions_are_no_row(write, first):
+    assert [line for line, _, _ in table_lines(write("a.csv", f"{first}\nx,y\n"))] == [2]
+
+
+def table_lines(path):
+    rows = Rows(path)
+    _, layout, _ = begun(rows, {})
+    return list(rows.parsed(layout))
+
+
+def test_answers_in_lists_have_the_title_that_stands_above_them(write):
+    answers = [{"index": 0, "generated": "1. walk to lamp\n2. switch on lamp"}, {"index": 1, "generated": "1. sleep"}]
+    nested = {"model": "m", "data": [{"task": "Light", "outputs": answers}]}
+    listed = {"prompt": "Light", "outputs": [["walk to lamp", "switch on lamp"], ["lie on bed", "sleep"]]}
+    for value in (nested, listed):
+        programs, faults = read(write("a.json", json.dumps(value)))
+        assert [title for title, _ in programs] == ["Light", "Light"] and not faults
+        assert [step for _, step in programs[0][1]] == LINES
+    named = {"name": "my runs", "data": [{"steps": ["Sleep"]}, {"steps": ["Sleep"]}]}
+    assert "my runs" not in [title for title, _ in read(write("b.json", json.dumps(named)))[0]]
+
+
+def test_a_list_of_actions_is_one_program_with_the_name_of_its_file(write):
+    steps = [{"verb": "GoTo", "noun": "lamp"}, {"verb": "tickle", "noun": "lamp"}, {"verb": "turnon", "noun": "lamp"}]
+    programs, faults = read(write("night_light.json", json.dumps(steps, indent=1)))
+    assert [(title, [step for _, step in steps]) for title, steps in programs] == [("night light", LINES)]
+    assert faults == [("NOT_UNDERSTOOD", 7)]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "a.html",
+            "<!DOCTYPE html>\n<h1>Light</h1>\n<ul>\n<li>Walk to lamp</li><li>Switch on lamp</li>\n</ul>\n",
+        ),
+        (
+            "a.xml",
+            '<?xml version="1.0"?>\n<plan task="Light">\n<step>Walk to lamp</step>\n<step>Switch on lamp</step>',
+        ),
+    ],
+)
+def test_steps_that_html_and_xml_mark_are_read(write, name, text):
+    programs, faults = read(write(name, text))
+    assert [(title, [step for _, step in steps]) for title, steps in programs] == [("Light", LINES)] and not faults
+
+
+def test_an_object_of_plans_on_a_line_each_loses_none(write):
+    plans = {"light": "walk to lamp, switch on lamp", "nap": "lie on bed, sleep"}
+    for value in (plans, {"tasks": plans}):
+        programs, faults = read(write("a.json", json.dumps(value)))
+        assert [title for title, _ in programs] == ["light", "nap"] and not faults
+        assert [step for _, step in programs[0][1]] == LINES
+
+
+def test_another_column_that_reads_as_steps_is_said(write):
+    path = write("a.csv", 'name,morning,evening\nAnn,"walk to lamp, sleep","lie on bed, sleep"\n')
+    assert spreadsheets.table_of(path, {}).columns.rivals == {"program": ["evening"]}
+
+
+def test_comments_in_json_keep_the_places_of_steps(write):
+    text = '// "notes"\n{ // of\n"title": "A", /* the\n first */ "steps": ["Sleep", "tickle lamp",], // all\n}\n'
+    for given in (text, text.replace("{", "[{", 1).replace("\n}", "\n}]")):
+        programs, faults = read(write("a.json", given))
+        assert programs == [("A", [(4, "[Sleep]")])] and faults == [("NOT_UNDERSTOOD", 4)]
+
+
+def test_pairs_of_an_action_and_its_object_are_steps_also_beside_one_that_is_not_known(write):
+    value = {"title": "A", "llm_output": [["WALK", "lamp"], ["REBOOT", "lamp"], ["SWITCHON", "lamp"]]}
+    programs, faults = read(write("a.json", json.dumps(value, indent=1)))
+    assert [[step for _, step in steps] for _, steps in programs] == [LINES] and faults == [("NOT_UNDERSTOOD", 9)]
+
+
+@pytest.mark.parametrize(("text", "line"), [('[\n{"title": "A", "steps": ["Sleep"]},\n{"title": "B",,}\n]', 3),
                                             ('{"title": "A", "steps": ["Sleep"]}\n{"title": NaN}\n', 2)])  # fmt: skip
 def test_a_record_that_is_no_json_is_one_fault_at_its_place(write, text, line):
     programs, faults = read(write("a.json", text))

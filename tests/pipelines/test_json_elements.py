@@ -50,7 +50,7 @@ def test_a_list_under_a_key(tmp_path, cut, other, listed, order, size):
 
 @pytest.mark.parametrize(
     ("text", "good", "line"),
-    [("[1,2", [1], 1), ("[1,,2]", [1, 2], 1), ("[1,]", [1], 1), ("[1] x", [1], 1), ("x[1]", [], 1), ("[1}", [1], 1),
+    [("[1,2", [1], 1), ("[1,,2]", [1, 2], 1), ("[,]", [], 1), ("[1] x", [1], 1), ("x[1]", [], 1), ("[1}", [1], 1),
      ('["a', [], 1), ("\n\n[1,\n\nx]", [1], 5)],
 )  # fmt: skip
 def test_a_broken_document_is_reported_once_with_its_line(tmp_path, text, good, line):
@@ -60,6 +60,14 @@ def test_a_broken_document_is_reported_once_with_its_line(tmp_path, text, good, 
     (fault,) = (value.diagnostics[0] for value in found if isinstance(value, Reject))
     assert [value for value in found if not isinstance(value, Reject)] == good
     assert (fault.code, fault.line) == (Code.BAD_JSON, line)
+
+
+@pytest.mark.parametrize("size", [1, 3, 1 << 18])
+def test_comments_and_a_last_comma_mean_nothing(tmp_path, cut, size):
+    cut(size)
+    file = tmp_path / "a.json"
+    file.write_text('// it\'s "mine" [\n[1, // one {\n /* two\n ] */ {"a": "// no comment", "b": [2,],},\n] // end')
+    assert values(file) == [1, {"a": "// no comment", "b": [2]}]
 
 
 def test_an_entry_without_end_is_refused_and_not_kept(tmp_path, monkeypatch):

@@ -5,22 +5,38 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commands import COMMANDS
+from hearth.kb.language.forms.commented import COMMENTED
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
+from hearth.kb.language.forms.org_mode import ORG_MODE
+from hearth.kb.language.forms.outlines import OUTLINES
 from hearth.kb.language.forms.pairs import PAIRS
 from hearth.kb.language.forms.pddl_plans import PDDL
+from hearth.kb.language.forms.prompts import PROMPTS
 from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
+from hearth.kb.language.forms.speakers import SPEAKERS
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
+from hearth.kb.language.forms.tuples import TUPLES
+from hearth.kb.language.forms.yaml_lists import YAML
+
+__all__ = ["FORMS", "YAML", "form_of"]
 
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
+    "YAML": YAML,
+    "tuples": TUPLES,
     "SayCanPay": SAY_CAN_PAY,
     "ReAct": REACT,
     "ALFWorld": COMMANDS,
+    "prompts": PROMPTS,
     "PDDL": PDDL,
     "code": CODE,
+    "Org mode": ORG_MODE,
+    "speakers": SPEAKERS,
+    "outlines": OUTLINES,
+    "comments": COMMENTED,
     "titled lines": TITLED_LINES,
     "Markdown table": MARKDOWN_TABLE,
     "pairs": PAIRS,
@@ -28,7 +44,10 @@ FORMS: dict[str, Form] = {
 """Forms by name, in the order in which they are tried."""
 
 _HINT = re.compile(
-    r"\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]"
+    r".*(?:->|→|@)|\s*[A-Z][a-z]+[A-Z]|\s*(?:- )?(?:steps|plan|actions|program):|\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s"
+    r"|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:"
+    r"|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>"
+    r"|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|\s{2,}[a-z]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
     re.IGNORECASE,
 ).match

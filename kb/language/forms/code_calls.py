@@ -4,7 +4,8 @@ import ast
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.form import Form, Placed, note, step, title, written
+from hearth.kb.language.forms.composed import composed_step
+from hearth.kb.language.forms.form import Form, Placed, note, step, title
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
 _CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*;?\s*(?:#.*|//.*)?$")
@@ -62,12 +63,23 @@ def called(call: str) -> str:
     try:
         parsed = ast.parse(call, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return call
+        return _called_with_words(call)
     if not isinstance(parsed, ast.Call):
         return call
     name = parsed.func.attr if isinstance(parsed.func, ast.Attribute) else getattr(parsed.func, "id", "")
     arguments = [_name(each) for each in (*parsed.args, *(keyword.value for keyword in parsed.keywords))]
-    return written(name, [each for each in arguments if each]) if name and None not in arguments else call
+    relation = (parsed.keywords[-1].arg or "") if parsed.keywords else ""
+    objects = [each for each in arguments if each]
+    return composed_step(name, objects, relation) if name and None not in arguments else call
+
+
+_WITH_WORDS = re.compile(r"(?:\w+\.)*(\w+)\(\s*([A-Za-z][\w '-]*(?:,\s*[A-Za-z][\w '-]*)*)\)")
+
+
+def _called_with_words(call: str) -> str:
+    """Return the step of a call that is not Python, as its things have several words: `Walk(living room)`."""
+    found = _WITH_WORDS.fullmatch(call)
+    return composed_step(found[1], [each.strip() for each in found[2].split(",")]) if found else call
 
 
 def _name(argument: ast.expr) -> str | None:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Sequence
 
-from hearth.kb.language.forms.form import Form, Placed, step, written
+from hearth.kb.language.forms.form import Form, Placed, step, title, written
 
 _THING = r"([a-z]+(?: [a-z]+){0,2} \d{1,3})"
 _COMMANDS: dict[str, tuple[str, ...]] = {
@@ -48,6 +48,7 @@ _NAMES = {
 }
 """ALFWorld's names for what has another name here."""
 
+_RULED = re.compile(r"\s*={2,}\s*([^=]+?)\s*={2,}\s*")
 _OTHERS = re.compile(r"\s*(?:\d+[.)]|[-*•]|\[?step \d+\]?:?)\s+", re.IGNORECASE)
 
 
@@ -96,6 +97,8 @@ def read(lines: Sequence[str], words_of: Callable[[str], str]) -> list[Placed]:
         if words and (meant := command(words)):
             begun = True
             found.append(step(row, meant))
+        elif ruled := _RULED.fullmatch(raw[:200]):
+            found.append(title(row, ruled[1]))
         elif words and begun and not _NO_STEP.fullmatch(words):
             found.append(step(row, words.removeprefix(">")))
         elif not begun and not raw.lstrip().startswith(">"):
@@ -104,5 +107,8 @@ def read(lines: Sequence[str], words_of: Callable[[str], str]) -> list[Placed]:
 
 
 COMMANDS = Form(
-    _fits, _lines, lambda raw: bool(command(_words(raw))), re.compile(r"\s*(task\b|your task is to:)", re.IGNORECASE)
+    _fits,
+    _lines,
+    lambda raw: bool(command(_words(raw))),
+    re.compile(r"\s*(task\b|={2,}\s*\w[^=]*={2,}|your task is to:)", re.IGNORECASE),
 )

@@ -41,6 +41,11 @@ def note(row: int, text: str) -> Placed:
     return Placed(row, PlanLine(" ".join(text.split()), 0, 1))
 
 
+def remark(row: int, text: str) -> Placed:
+    """Return a line that is counted and never read as a step, as what a game answers."""
+    return Placed(row, PlanLine(" ".join(text.split()), None, 1))
+
+
 def title(row: int, text: str) -> Placed:
     """Return a title."""
     return Placed(row, PlanLine(f"Task: {text}", None, 0, heading=True))

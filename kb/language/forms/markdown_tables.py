@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 
+from hearth.kb.language.forms.composed import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
 
@@ -10,6 +11,10 @@ _ROW = re.compile(r"\s*\|(.*)\|\s*")
 _LINE = re.compile(r"\s*\|?(?:\s*:?-{2,}:?\s*\|)+(?:\s*:?-{2,}:?\s*)?\s*")
 _WORDS = re.compile(r"[^\W\d]")
 _NAMED = re.compile(r"(?:action|step|what|instruction|do|task|activity)s?", re.IGNORECASE)
+
+_THINGS = re.compile(
+    r"(?:objects?|targets?|things?|items?|receptacle|location|arg(?:ument)?s?)(?: ?\d)?", re.IGNORECASE
+)
 
 
 def _cells(raw: str) -> list[str]:
@@ -26,7 +31,7 @@ def _fits(lines: Sequence[str]) -> bool:
 def _lines(lines: Sequence[str]) -> list[Placed]:
     """Return the rows below a line of dashes as steps: the cell below `Action` or `Step`, else the first of words."""
     found: list[Placed] = []
-    column = -1
+    column, things = -1, list[int]()
     for row, raw in enumerate(lines):
         cells = _cells(raw)
         if not cells:
@@ -35,8 +40,13 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
         elif _LINE.fullmatch(raw[:1000]):
             head = _cells(lines[row - 1]) if row else []
             column = next((n for n in range(len(head) - 1, -1, -1) if _NAMED.fullmatch(head[n]) and n), 0)
+            things = [n for n, name in enumerate(head) if _THINGS.fullmatch(name)]
         elif column >= 0:
             words = cells[column] if column < len(cells) else ""
+            objects = [cells[n] for n in things if n < len(cells) and _WORDS.search(cells[n])]
+            if objects and words:
+                found.append(step(row, composed_step(words, objects)))
+                continue
             words = words if _WORDS.search(words) else next((cell for cell in cells if _WORDS.search(cell)), "")
             found += [step(row, words)] if words else []
     return found

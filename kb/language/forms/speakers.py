@@ -1,0 +1,114 @@
+"""Logs and talks: steps behind the time, the level and the name of a robot that takes them, `Robot: walk to desk`."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from hearth.kb.language.forms.form import Form, Placed, remark, step, title
+from hearth.kb.language.plan_lines import PlanLine, is_said_around, plan_line
+from hearth.kb.language.unmarked_lines import is_like_step
+
+_CLOCK = r"\d{1,2}:\d\d(?::\d\d(?:[.,]\d{1,9})?)?(?:\s?[ap]m)?"
+_STAMP = rf"(?:\d{{9,13}}(?:\.\d{{1,9}})?|[\[(]?(?:\d{{4}}[-/]\d\d[-/]\d\d[ T])?{_CLOCK}Z?[\])]?)"
+_LEVEL = r"\[?(?:INFO|DEBUG|WARN(?:ING)?|ERROR|TRACE|FATAL)\]?"
+_LINE = re.compile(
+    rf"\s*(?P<time>{_STAMP}\s+)?(?:[-–]\s+)?(?P<level>{_LEVEL}:?\s+)?\**(?P<who>[A-Za-z][\w.-]{{0,20}})\**\s*:\**\s+(?P<said>\S.*)",
+)
+_TIMED = re.compile(
+    rf"\s*(?:{_STAMP}\s+(?:[-–]\s+)?(?P<level>{_LEVEL}|ACTION|EXEC|STEP)|(?P<only>\[(?:{_LEVEL}|ACTION|EXEC)\])):?\s+(?P<said>\S.*)"
+)
+_ACTS = re.compile(r"\W*(?:INFO|DEBUG|ACTION|EXEC|STEP)\W*")
+_QUESTION = re.compile(r"\s*\**\s*Q(?:uestion)?\s*\d*\s*:\s*(?P<said>[^*]*)\**\s*")
+_ROBOTS = re.compile(
+    r"(?:robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}", re.IGNORECASE
+)
+"""Names of those that do what they say; `A` answers where a question stands above."""
+
+_PEOPLE = re.compile(r"(?:human|person|operator|owner)\d{0,2}", re.IGNORECASE)
+_TASK = re.compile(r"(?:task|goal)\s*[=:]\s*[\"']?([^\"']+)[\"']?")
+_JOINT = re.compile(r"\s*(?:->|=>|→|;)\s*|\s+>\s+")
+_NEXT = re.compile(r"(?:^|\s)[(\[]?\d{1,2}[.):\]]\s+")
+_IT = re.compile(r"^(?:it|he|she|the robot)\s+(?=[a-z])", re.IGNORECASE)
+_SHARE = 0.6
+_MOST = 1_000
+
+
+class _Said(NamedTuple):
+    who: str
+    text: str
+    is_step: bool
+
+
+def _said(raw: str) -> _Said | None:
+    """Return a line's speaker and words; None where it has neither a speaker nor a level."""
+    if len(raw) > _MOST:
+        return None
+    asked = _QUESTION.fullmatch(raw)
+    if asked:
+        return _Said("q", asked["said"], False)
+    found = _LINE.fullmatch(raw)
+    if not found:
+        timed = _TIMED.fullmatch(raw)
+        level = (timed["level"] or timed["only"]) if timed else ""
+        is_step = timed is not None and _ACTS.fullmatch(level) is not None and is_like_step(timed["said"])
+        return _Said("", timed["said"], is_step) if timed else None
+    return _Said(found["who"].lower(), found["said"], _ROBOTS.fullmatch(found["who"]) is not None)
+
+
+def _fits(lines: Sequence[str]) -> bool:
+    """Return whether most lines have a speaker, and a robot says steps, or answers a question."""
+    texts = [line for line in lines if line.strip()]
+    said = [each for each in map(_said, texts) if each]
+    if len(said) < _SHARE * len(texts) or not any(each.is_step for each in said):
+        return False
+    who = {each.who for each in said}
+    if len({each.who for each in said if each.is_step}) > 1:
+        return False  # Each of several robots has a plan of its own.
+    if who & {"a", "answer"}:
+        return "q" in who or "question" in who
+    steps = [each for each in said if each.is_step]
+    return sum(_is_step(each.text) for each in steps) > (0 if len(who) > 1 else 1)
+
+
+def _is_step(text: str) -> bool:
+    read = plan_line(text)
+    return read.number is not None or is_like_step(read.text)
+
+
+def _lines(lines: Sequence[str]) -> list[Placed]:
+    return [each for row, raw in enumerate(lines) for each in _of_line(row, raw)]
+
+
+def _of_line(row: int, raw: str) -> Iterator[Placed]:
+    said = _said(raw)
+    if said is None:
+        yield Placed(row, plan_line(raw)._replace(number=None, numbered=False))
+    elif said.is_step:
+        read = plan_line(said.text)
+        if not read.text.endswith(":") and not (read.number is None and is_said_around(read.text)):
+            yield from (step(row, part.strip(" ,")) for part in _parts(read, said.text) if part.strip(" ,."))
+    elif task := _TASK.search(said.text):
+        yield title(row, task[1])
+    elif said.who == "q" or _PEOPLE.fullmatch(said.who):
+        yield Placed(row, plan_line(said.text)._replace(number=None, numbered=False, heading=True))
+    else:
+        yield remark(row, said.text)
+
+
+def _parts(read: PlanLine, text: str) -> list[str]:
+    """Return the steps of a robot's words, which may be numbered: `1. find a cup, 2. pick up the cup`."""
+    if read.bracketed:
+        return [read.text]
+    numbered = _NEXT.split(text)
+    return numbered if len(numbered) > 2 else _JOINT.split(_IT.sub("", read.text, count=1))
+
+
+SPEAKERS = Form(
+    _fits,
+    _lines,
+    lambda raw: (said := _said(raw)) is not None and said.is_step,
+    re.compile(
+        rf"\s*(?:(?:human|person|operator|owner)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{_STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
+        re.IGNORECASE,
+    ),
+)

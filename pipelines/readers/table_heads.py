@@ -1,0 +1,43 @@
+"""The first line of a table: names of columns, or the first row of a table that has none."""
+
+from collections.abc import Sequence
+
+from hearth.pipelines.readers.columns import FieldColumns
+from hearth.pipelines.readers.delimited import Layout, Rows, layout_of
+from hearth.pipelines.readers.json_actions import is_known, is_thing
+from hearth.pipelines.readers.program_columns import reading_of
+
+NUMBERED = "Its first line is a row: its columns are known by their numbers."
+
+
+def begun(rows: Rows, given: FieldColumns) -> tuple[int, Layout, bool]:
+    """The number and layout of the first line with text, and whether it is a row; the row is read again.
+
+    Excel's `sep=;` before it names the delimiter.
+    """
+    delimiter = ""
+    for number, line in rows:
+        if line.lower().startswith("sep=") and len(line) == len("sep=;"):
+            delimiter = line[-1]
+        elif line.strip():
+            layout = layout_of(line, delimiter)
+            names = () if set(given.values()) & set(layout.columns) else _names(layout.columns)
+            if names:
+                rows.put_back(number, line)
+            return number, Layout(names or layout.columns, layout.delimiter), bool(names)
+    return 1, Layout((), ","), False
+
+
+def _names(cells: Sequence[str]) -> tuple[str, ...]:
+    """What the columns of a table are called whose first line is a row; none if the line names them itself."""
+    first, *rest = cells or ("",)
+    things = [cell for cell in rest if cell.strip()]
+    if things and len(rest) < _MOST_OBJECTS and is_known(first, things) and all(map(is_thing, things)):
+        return ("action", *(f"object{number}" for number in range(1, len(cells))))
+    readings = [reading_of([cell]) for cell in cells]
+    is_counted = first.strip() in ("0", "1") and any(each.understood for each in readings)
+    is_row = is_counted or any(each.are_steps for each in readings)
+    return tuple(f"column {number}" for number in range(1, len(cells) + 1)) if is_row else ()
+
+
+_MOST_OBJECTS = 4
