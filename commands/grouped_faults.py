@@ -8,6 +8,7 @@ from collections.abc import Callable, Hashable, Iterable
 from typing import TextIO
 
 from hearth.commands import output
+from hearth.kb.language.numbered_steps import TRANSLATE
 from hearth.schemas.diagnostics import Diagnostic
 
 PLACES = 5
@@ -23,8 +24,8 @@ def in_order(faults: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def equal(fault: Diagnostic) -> Hashable:
-    """Return what equal faults share, the words at fault among it."""
-    words = fault.source[max(0, fault.column - 1) :][: fault.length]
+    """Return what equal faults share, the words at fault among it; lines of another language are one fault."""
+    words = "" if fault.suggestion == TRANSLATE else fault.source[max(0, fault.column - 1) :][: fault.length]
     return fault.code, fault.message, fault.suggestion, words
 
 

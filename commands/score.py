@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import typer
 
@@ -189,19 +189,8 @@ def dataset(
     asked = "test" if split and part is None else part or ""
     with bar("shares scored") as seen:
         opened = Dataset.open(folder, failures)
-        scored = score_dataset(
-            opened,
-            file,
-            split,
-            asked,
-            how,
-            workers,
-            seen,
-            only_given=only_given,
-            originals=originals,
-            fuzzy=fuzzy,
-            rejects=rejects,
-        )
+        chosen: Any = {"only_given": only_given, "originals": originals, "fuzzy": fuzzy}
+        scored = score_dataset(opened, file, split, asked, how, workers, seen, rejects=rejects, **chosen)
     score_output.show(scored, how, by, rejects, as_json)
     score_output.warn_missing(scored)
     score_output.end(rejects)

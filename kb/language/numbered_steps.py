@@ -70,16 +70,17 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuz
     return ParsedSteps(program, tuple(parser.faults), (*parser.warnings, *parser.explained()))
 
 
+TRANSLATE = "translate it into English"
+"""The remedy of every line of a plan in another language, which is one fault for people."""
+
+
 def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
     """The faults; those of lines name the language where most are not understood, as they are not English."""
     lines = [fault for fault in faults if fault.code == Code.NOT_UNDERSTOOD]
     if len(lines) <= understood or not (language := foreign_language([fault.found for fault in lines])):
         return faults
     message = f"the plan is in {language}; only English is read"
-    return [
-        replace(fault, message=message, suggestion="translate it into English") if fault in lines else fault
-        for fault in faults
-    ]
+    return [replace(fault, message=message, suggestion=TRANSLATE) if fault in lines else fault for fault in faults]
 
 
 _ORDINAL = re.compile(

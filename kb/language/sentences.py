@@ -295,6 +295,7 @@ def _referred(known: Knowledge, words: str, said: Sequence[Mentioned]) -> Iterat
 
 
 def _spoken_of(said: Sequence[Mentioned], *, is_closed: bool) -> tuple[str, ...]:
-    """The things of steps, the last first; what was opened comes before others where something is closed."""
+    """The things of steps, the last first; what was opened, or holds another, comes first where something is closed."""
     opened = [name for action, names in said if is_closed and action == "Open" for name in names]
-    return tuple(dict.fromkeys((*opened, *(name for _, names in said for name in names))))
+    places = [names[1] for _, names in said if is_closed and len(names) > 1]
+    return tuple(dict.fromkeys((*opened, *places, *(name for _, names in said for name in names))))

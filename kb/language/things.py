@@ -7,7 +7,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import noun_lemmas
 
 _DETERMINERS = re.compile(
-    r"(?:(?:all|the|a|an|one|some|any|my|your|his|her|our|their|its|this|that|these|those|one['’]s)\s+(?:of\s+)?)+"
+    r"(?:(?:the|a|an|one|some|any|my|your|his|her|our|their|its|this|that|these|those|one['’]s)\s+(?:of\s+)?)+"
 )
 _PARTITIVE = re.compile(
     r"(?:\d+(?:[.,/]\d+)? ?(?:k?g|m?l|cl|dl|oz|lbs?|grams?|kilos?|lit(?:er|re)s?|ounces?|pounds?)\b"
@@ -17,9 +17,8 @@ _PARTITIVE = re.compile(
 """Amounts, parts and numbers of a thing that are the thing itself; a cup of tea is not, as a cup is a thing as well."""
 
 _POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
-_PLACED = re.compile(
-    r"\s+(?:out of|out from|off of|off|from|inside of|inside|in|on top of|on|under|behind|next to|near|at)\s+"
-)
+_SOURCE = re.compile(r"\s+(?:out of|out from|off of|off|from|from inside|from under|from behind)\s+")
+"""Before the place from which a thing is taken; a step has no such place, as its world says where the thing is."""
 _PARTS = re.compile(r"(?: door| doors| lid)$")
 _OPENED = "CAN_OPEN"
 
@@ -28,13 +27,13 @@ _OPENED = "CAN_OPEN"
 def thing_of(known: Knowledge, words: str) -> str | None:
     """Return the class that some words mean; None where they mean none.
 
-    The thing may be in the plural, after an article or a possessive, and before the known place where it is; the door
-    of what opens is the thing itself.
+    The thing may be in the plural, after an article or a possessive, and before the known place from which it is taken;
+    the door of what opens is the thing itself.
     """
     name = _named(known, words)
     if name is not None:
         return name
-    for place in _PLACED.finditer(words):
+    for place in _SOURCE.finditer(words):
         name = _named(known, words[: place.start()])
         if name is not None and thing_of(known, words[place.end() :]) is not None:
             return name

@@ -51,6 +51,10 @@ _ASLEEP = re.compile(r"((?:fall|falls|fell|falling) asleep|sleep|sleeps|slept|na
 _POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
 
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
+_ALL = re.compile(r"\ball (?:of )?(?=\S)")
+"""A step is about one thing, so that its other instances are left out."""
+
+_PLACE = re.compile(r"\s+(?:inside of|inside|in|on top of|on|under|behind|next to|near|at)\s+(.+)$")
 _TOOL = re.compile(r"\s+(?:with|using) (.+)$")
 _BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
 _WORKED = frozenset(
@@ -93,7 +97,22 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
             yield text[: match.start()], text[match.start() :].strip()
     if (match := _TOOL.search(text)) and _WORKED.intersection(_verbs(text)) and _is_tool(known, match[1]):
         yield text[: match.start()], match[0].strip()
+    for match in reversed(list(_ALL.finditer(text))):
+        yield text[: match.start()] + text[match.end() :], "all"
+    yield from _without_place(known, text)
     yield from without_adjective(known, text)
+
+
+def _without_place(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
+    """Yield a clause without the known place at its end, where a thing is said to be: `the book on the desk`.
+
+    Of two places either may be that of the step, unless the last is a room.
+    """
+    for start in reversed([match.start() for match in re.finditer(r"\s+(?=\S)", text)]):
+        match = _PLACE.match(text, start)
+        place = thing_of(known, match[1]) if match else None
+        if match and place and (known.is_room(place) or not _PLACE.search(text[:start])):
+            yield text[:start], match[0].strip()
 
 
 def _without_manner(text: str) -> Iterator[tuple[str, str]]:

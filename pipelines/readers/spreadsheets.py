@@ -151,8 +151,8 @@ def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:
         program = column_of_steps(others)
         found.update({"program": program} if program else {})
         found.note = _BY_CELLS if program else ""
-        rest = {name: texts for name, texts in others.items() if name != program}
-        if program and (other := column_of_steps(rest)):
+        remaining = {name: texts for name, texts in others.items() if name != program}
+        if program and (other := column_of_steps(remaining)):
             found.rivals["program"] = [*found.rivals.get("program", ()), other]
 
 

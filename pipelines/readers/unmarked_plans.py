@@ -6,7 +6,7 @@ from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_as
 from hearth.kb.language.unmarked_lines import chained, is_like_step, is_title
 from hearth.schemas.blocks import is_sentence
 
-Lines = list[tuple[int, str]]
+NumberedLines = list[tuple[int, str]]
 
 
 def unmarked_blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
@@ -16,7 +16,7 @@ def unmarked_blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> 
     program has steps, or a title and a description.
     """
     block = _Block()
-    before: Lines = []
+    before: NumberedLines = []
     for part in _parts(lines, most):
         if before and block.ends_before(before, part):
             yield block.taken()
@@ -29,9 +29,9 @@ def unmarked_blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> 
         yield block.taken()
 
 
-def _parts(lines: Iterator[tuple[int, str]], most: int) -> Iterator[Lines]:
+def _parts(lines: Iterator[tuple[int, str]], most: int) -> Iterator[NumberedLines]:
     """Part a text before each paragraph, heading and rule."""
-    part: Lines = []
+    part: NumberedLines = []
     size, is_apart = 0, False
     for number, raw in lines:
         is_blank = not raw.strip()
@@ -50,11 +50,11 @@ class _Block:
     """The parts of a program so far."""
 
     def __init__(self) -> None:
-        self.lines: Lines = []
+        self.lines: NumberedLines = []
         self._has_steps = self._has_title = self._has_description = False
         self._level = 0
 
-    def add(self, part: Lines) -> None:
+    def add(self, part: NumberedLines) -> None:
         """Add a part, without the blank lines above the first."""
         read = [plan_line(raw) for _, raw in part]
         texts = [line for line in read if line.text]
@@ -71,7 +71,7 @@ class _Block:
         self._has_description = self._has_description or bool(plain and not steps and not is_name)
         self._has_title = self._has_title or bool(named) or is_name
 
-    def ends_before(self, part: Lines, below: Lines) -> bool:
+    def ends_before(self, part: NumberedLines, below: NumberedLines) -> bool:
         """Return whether a part begins the next program."""
         if not any(raw.strip() for _, raw in self.lines):
             return False
