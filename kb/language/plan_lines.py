@@ -316,4 +316,6 @@ def is_plan(lines: Sequence[str]) -> bool:
     if written:
         return all(map(LOOSE.fullmatch, written)) or any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
     steps = sum(line.number is not None for line in found)
-    return steps > 1 or (steps == 1 and TITLE.match(lines[0]) is not None)
+    last = next((line for line in reversed(found) if line.text), None)
+    is_titled = TITLE.match(lines[0]) is not None or (last is not None and last.numbered and found[0].number is None)
+    return steps > 1 or (steps == 1 and is_titled)

@@ -224,7 +224,7 @@ def _marked(placed: list[Placed]) -> list[Placed]:
         top, texts = plain[0], [placed[n].line.text for n in plain]
         is_apart = top + 1 < len(placed) and not placed[top + 1].line.text
         is_titled = is_title(texts[0], texts[1:], is_apart) and not (texts[1:] and goes_on(texts[0], texts[1]))
-        plain = plain[1:] if is_titled else plain
+        plain = _without_description(placed, plain[1:]) if is_titled else plain
     prose = [(n, placed[n].line.text) for n in plain]
     if is_prose(prose):
         return _as_sentences(placed, plain, sentences_of(prose))
@@ -233,6 +233,15 @@ def _marked(placed: list[Placed]) -> list[Placed]:
         return placed
     steps = {n for n, text in zip(plain, texts, strict=True) if is_like_step(text) or chained(text)}
     return [part for n, each in enumerate(placed) for part in (_steps_on(each) if n in steps else [each])]
+
+
+def _without_description(placed: list[Placed], plain: list[int]) -> list[int]:
+    """Leave out sentences between a title and a blank line, where the lines below that are none: they describe."""
+    gaps = (n for n in range(1, len(plain)) if any(not placed[k].line.text for k in range(plain[n - 1], plain[n])))
+    gap = next(gaps, 0)
+    above, below = ([placed[n].line.text for n in part] for part in (plain[:gap], plain[gap:]))
+    describes = len(below) > 1 and all(map(is_sentence, above)) and not any(map(is_sentence, below))
+    return plain[gap:] if describes else plain
 
 
 def _without_greetings(placed: list[Placed], plain: list[int]) -> list[int]:

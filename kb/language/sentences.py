@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.adjectives import without_adjective
 from hearth.kb.language.fuzzy import Fuzzy
-from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.lexicon import is_verb, noun_lemmas
 from hearth.kb.language.openings import verb_phrase
 from hearth.kb.language.things import thing_of
 from hearth.kb.language.trailing import changes_act, shortened
@@ -189,6 +189,8 @@ def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tu
     if not start or not end:
         return ()
     verb, tail = " ".join(first[:start]), " ".join(last[end:])
+    if len(last) == 1 and is_verb(last[0].lower()) and not _are_of_a_kind(known, " ".join(first[start:]), last[0]):
+        return ()  # `walk to the kitchen, fly` asks for another act
     found: list[Asked] = []
     for each in (" ".join(first[start:]), *middle, " ".join(last[:end])):
         read = _clause(known, f"{verb} {each} {tail}".strip(), said, Fuzzy.OFF)
@@ -196,6 +198,12 @@ def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tu
             return ()
         found += read
     return tuple(found)
+
+
+def _are_of_a_kind(known: Knowledge, one: str, other: str) -> bool:
+    """Return whether two things are of one category."""
+    names = (thing_of(known, _uncounted(words.split())) for words in (one, other))
+    return len({known.objects[name].category if name else "" for name in names}) == 1
 
 
 def _is_bare(known: Knowledge, words: str) -> bool:

@@ -3,6 +3,7 @@
 import pytest
 from test_forms_of_text import BOOK, MILK, programs
 
+from hearth.commands.inputs import read_programs
 from hearth.kb.language import program_lines
 from hearth.kb.language.program_lines import PLAIN, header, lines_of_program
 
@@ -108,3 +109,29 @@ def test_the_short_way_for_plain_plans_reads_what_the_long_way_reads(text, monke
     short = lines_of_program(text), header(text)
     monkeypatch.setattr(program_lines, "PLAIN", program_lines.re.compile("(?!)"))
     assert (lines_of_program(text), header(text)) == short
+
+
+@pytest.mark.parametrize(
+    ("text", "description", "steps"),
+    [
+        ("Breakfast\nWalk to the fridge and drink the milk.\n\nWalk to the kitchen\nOpen the fridge\n",
+         "Walk to the fridge and drink the milk.", 2),
+        ("Breakfast\n\n1. Walk to the fridge\n", "", 1),
+    ],
+)  # fmt: skip
+def test_what_stands_above_a_blank_line_describes_and_one_number_is_a_plan(
+    knowledge, tmp_path, text, description, steps
+):
+    file = tmp_path / "a.txt"
+    file.write_text(text)
+    (found,) = read_programs(file, knowledge, "a.txt")
+    assert (found.program.title, found.program.description) == ("Breakfast", description)
+    assert len(found.program.steps) == steps and not found.faults
+
+
+def test_a_word_that_is_a_verb_continues_no_list_of_other_things(knowledge, tmp_path):
+    file = tmp_path / "a.txt"
+    file.write_text("T\n\n1. Walk to kitchen, fly\n2. Grab the cup and plate\n")
+    (found,) = read_programs(file, knowledge, "a.txt")
+    assert [step.objects[0].name for step in found.program.steps] == ["kitchen", "cup", "plate"]
+    assert [fault.line for fault in found.faults] == [3]
