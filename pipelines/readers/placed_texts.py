@@ -41,12 +41,26 @@ class Text(str):
         """
         if self.raw == self and "\n" not in self:
             return [[skip, self.line, self.column]]
+        if self._has_breaks_alone():
+            return list(self._starts(skip))
         offsets, found, start = self._offsets(), [], 0
         for line in self.split("\n"):
             ends = offsets[start : start + len(line) + 1]
             found.append([each for place in self._jumps(ends, skip) for each in place])
             start, skip = start + len(line) + 1, 0
         return found
+
+    def _has_breaks_alone(self) -> bool:
+        """Return whether this is a string of JSON whose only escapes are line breaks, as most are."""
+        is_json = _unit(self.unit) is JSON_UNIT and "\n" not in self.raw
+        return is_json and self.raw.replace("\\n", "\n") == self
+
+    def _starts(self, skip: int) -> Iterator[list[int]]:
+        """Yield the places of lines between which the file has two characters, a backslash and `n`."""
+        column = self.column
+        for line in self.split("\n"):
+            yield [skip, self.line, column]
+            column, skip = column + len(line) + 2, 0
 
     def _jumps(self, ends: Sequence[int], skip: int) -> Iterator[tuple[int, int, int]]:
         """The first character of a line, and each that does not stand right after the one before it."""

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
+from hearth.pipelines.readers.placed_texts import Text, text_at
 from hearth.storage.rejects import Reject
 
 BAD = ("Fly to moon", "[Fly] <bed> (1)", "[Walk] <piano-forte-x> (1)", "[Walk <bed> (1)", 'Say "qua" to é zzyx\tnow')
@@ -93,3 +94,12 @@ def test_a_line_that_is_not_json_is_placed_in_the_file(write):
 def test_a_cell_of_several_lines_has_the_lines_of_the_file(write):
     file = write("d.csv", 'Task,Plan\nA,"1. Walk to kitchen\n2. Fly to moon"\nB,Fly to moon\n')
     assert [(f.line, f.column) for f in faults_of(file)] == [(3, 4), (4, 3)]
+
+
+@pytest.mark.parametrize("value", ["a\nbc\n\nd", "one line", "\n", "tab\there\nand \\ there"])
+@pytest.mark.parametrize("skip", [0, 8])
+def test_lines_that_only_breaks_part_have_the_places_of_any_escape(monkeypatch, value, skip):
+    text = text_at(value, 3, 5, json.dumps(value)[1:-1])
+    quick = text.places(skip)
+    monkeypatch.setattr(Text, "_has_breaks_alone", lambda _: False)
+    assert text.places(skip) == quick
