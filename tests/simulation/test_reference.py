@@ -13,16 +13,16 @@ from small_worlds import random_graph, random_step
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
 from hearth.simulation.engine import act
-from hearth.simulation.rules import DEFAULT, EVOLVING_GRAPH, REPLAY
+from hearth.simulation.rules import DEFAULT, EVOLVING_GRAPH, REPLAY, Rules
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 
-def agree(seed: int, steps: int = 30) -> int:
+def agree(seed: int, steps: int = 30, choices: tuple[Rules, ...] = (DEFAULT, REPLAY)) -> int:
     """Do random steps in both, in a random home; how many could be done."""
     rng = random.Random(seed)
     graph = random_graph(rng)
-    rules = rng.choice((DEFAULT, REPLAY, EVOLVING_GRAPH))
+    rules = rng.choice(choices)
     today = rules.near == "evolving_graph"
     options = Options(rules.doors, rules.watch_needs_on, rules.made_bed, rules.near_hands, today, rules.one_grip)
     world, plain = World.start(Home.from_graph(graph, "", default())), PlainWorld(graph, rules.origin == "release")
@@ -44,7 +44,13 @@ def agree(seed: int, steps: int = 30) -> int:
 @pytest.mark.parametrize("block", range(10))
 def test_the_engine_does_what_the_table_says_on_random_programs(block):
     done = sum(agree(seed) for seed in range(block * 100, block * 100 + 100))
-    assert done > 450  # after a walk into a room little can be done by `evolving_graph`
+    assert done > 490  # one of the ten blocks does 500: hands make nothing near in another room
+
+
+@pytest.mark.parametrize("block", range(3))
+def test_so_do_the_rules_of_virtualhome_2(block):
+    done = sum(agree(seed, choices=(EVOLVING_GRAPH,)) for seed in range(block * 100, block * 100 + 100))
+    assert done > 250  # after a walk into a room little can be done
 
 
 @pytest.mark.slow
