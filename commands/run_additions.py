@@ -1,4 +1,4 @@
-"""What was added to a home, and changed in it, before a program ran there."""
+"""Additions to a home, and changes in it, before a program ran there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `score program` reads: rows of predictions, or programs in any form that `check` reads."""
+"""Inputs of `score program`: rows of predictions, or programs in any form that `check` reads."""
 
 from __future__ import annotations
 

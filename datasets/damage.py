@@ -52,11 +52,11 @@ _UNKNOWN = re.compile(
     r"(?i:column) (?:named )?\"?(?P<column>[^\"\s]+)\"?(?: not found|$)"
     r"|(?P<kind>Table|View|[\w ]*Function|Table) with name \"?(?P<name>[^\"\s]+)\"? does not exist"
 )
-"""How DuckDB says that there is no column, table or function of a name."""
+"""Messages of DuckDB for a column, table or function that does not exist."""
 
 
 def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) -> HearthError:
-    """What is said of a question that DuckDB did not answer: it, or a table of the folder, is at fault.
+    """Return the error of a question that DuckDB did not answer: it, or a table of the folder, is at fault.
 
     Args:
         error: what DuckDB raised.

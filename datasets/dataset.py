@@ -240,7 +240,7 @@ class Dataset:
         return Entry(found[0], tuple(map(self.run_of, runs)), tuple(repairs), tuple(sketches))
 
     def _unknown(self, program_id: str) -> str:
-        """What is said of an id that no program has: which have ids like it, or where ids are found."""
+        """Return the message for an id that no program has: ids like it, or where ids are found."""
         query = "SELECT program_id FROM programs ORDER BY jaro_winkler_similarity(program_id, $id) DESC, 1 LIMIT 3"
         near = ", ".join(f"`{row['program_id']}`" for row in self._rows(query, str(program_id)))
         return f"no program `{cut(str(program_id), 80)}` among {len(self):,}; the nearest ids are {near or 'none'}"

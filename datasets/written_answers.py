@@ -106,7 +106,7 @@ WRITERS: dict[str, Callable[[Dataset, str, Path], int]] = {
     ".json": _json,
     ".parquet": _parquet,
 }
-"""What writes an answer into a file, by the ending of its name, and returns how many rows it has."""
+"""Writers of answers by the ending of a file's name; each returns the number of rows."""
 
 _ENDINGS = f"let the file end in {', '.join(WRITERS)}"
 
