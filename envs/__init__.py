@@ -1,1 +1,1 @@
-"""Environments for learners and language models: observations, action codes, rewards, and the interfaces of libraries."""
+"""Environments for learners and language models: observations, action codes, rewards; Gymnasium and PettingZoo."""

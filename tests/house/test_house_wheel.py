@@ -15,7 +15,8 @@ from hearth.kb.loading.load import default
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
-    "pipelines", "models", "agents", "envs", "challenges", "interop", "analysis", "studies", "web", "commands", "data_raw",
+    "pipelines", "models", "agents", "envs", "challenges", "interop", "analysis", "studies", "web", "commands",
+    "data_raw",
 )  # fmt: skip
 APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out", "node_modules", "fetched")
 ENDINGS = {".py", ".yaml", ".csv", ".sql"}
