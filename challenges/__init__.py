@@ -1,1 +1,1 @@
-"""What agents are asked to do, and how they did: tasks, goals, episodes, metrics, results; agents in other languages."""
+"""What agents are asked to do, and how they did: tasks, goals, episodes, metrics, results; wire protocol."""

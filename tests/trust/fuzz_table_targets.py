@@ -9,10 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-try:
-    from benchmarks.fuzzed_files import One, Room, _by_file
-except ImportError:
-    from fuzzed_files import One, Room, _by_file
+from fuzz_file_targets import One, Room, _by_file
 
 FAST = ("entries", "tensors", "release", "code", "pddl", "jsonl", "figures", "mine", "score")
 """What is asked of tables with another value: what takes less than a second."""
