@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from hearth.agents.agent_locations import note_others
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.subgoals import Missing, Subgoal
-from hearth.agents.whereabouts import note_others
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal

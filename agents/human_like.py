@@ -9,7 +9,7 @@ from random import Random
 from hearth.agents.belief import Belief, Extent
 from hearth.agents.distances import Distances
 from hearth.agents.mcts import PUBLISHED, Search, Tree
-from hearth.agents.regression import Regression
+from hearth.agents.regression_planning import Regression
 from hearth.agents.subgoals import HELD, Aims, Missing, Subgoal
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, Literal

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from hearth.agents.faults import Faults, Faulty
 from hearth.agents.goal_space import GoalsIn
+from hearth.agents.human_faults import Faults, Faulty
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal, Name
 from hearth.schemas.program import Step

@@ -17,7 +17,7 @@ from pathlib import Path
 import plain
 from measuring import Figure, Passes, as_line, finish, parser, passes, rate
 
-from hearth.analysis.augment_figures import GIVEN_UP
+from hearth.analysis.augmentation_results import GIVEN_UP
 from hearth.analysis.coverage import Script, scripts
 from hearth.grounding.environments.default_state import prepared
 from hearth.homes import library

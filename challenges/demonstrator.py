@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import reduce
 from operator import or_
 
-from hearth.agents.errands import Errand
+from hearth.agents.distractions import Errand
 from hearth.agents.human_like import HumanLike
 from hearth.challenges.definition import Challenge
 from hearth.challenges.goal_grammar import instance, wanted_things

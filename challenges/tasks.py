@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from random import Random
 
 from hearth.challenges.definition import Challenge, challenge
-from hearth.challenges.starts import start
+from hearth.challenges.start_worlds import start
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

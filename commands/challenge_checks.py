@@ -46,7 +46,7 @@ def solvable(
     """
     from hearth.challenges.definition import challenge
     from hearth.challenges.published_tasks import tasks
-    from hearth.challenges.solvable import solved
+    from hearth.challenges.solvability import solved
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 

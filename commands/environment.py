@@ -73,8 +73,8 @@ def rules(source: Path, limit: int | None = None, as_json: bool = False) -> None
     """
     from itertools import islice
 
-    from hearth.analysis.agreement import agreement
     from hearth.analysis.coverage import scripts
+    from hearth.analysis.precondition_agreement import agreement
 
     known = inputs.read_knowledge(None)
     found = agreement(islice(scripts([str(source)], known), limit), known)
@@ -147,7 +147,7 @@ def realism(
     Example:
       python cli.py environment realism release.zip --out realism
     """
-    from hearth.analysis import distribution as report
+    from hearth.analysis import object_distribution as report
 
     found = _homes(home, homes)
     theirs, their_states = report.observed(source, found.knowledge, limit)
@@ -183,7 +183,7 @@ def diversity(
     Example:
       python cli.py environment diversity watch_tv.txt --home maple --samples 1000
     """
-    from hearth.analysis import distribution as report
+    from hearth.analysis import object_distribution as report
 
     found = _homes([home], homes)
     found.names()
@@ -210,7 +210,7 @@ def preconditions(
       python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
       python cli.py environment preconditions release.zip --drawing bars.svg
     """
-    from hearth.analysis import distribution as report
+    from hearth.analysis import object_distribution as report
 
     names = classes or ["cup", "sauce_pan"]
     groups = {"programs": report.of_programs(source, inputs.read_knowledge(None), names, limit)}

@@ -287,7 +287,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
     """Executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
     from itertools import islice
 
-    from hearth.analysis.filmed_pairs import pairs
+    from hearth.analysis.program_home_pairs import pairs
     from hearth.rendering.cameras.visibility import tick_visibilities
     from hearth.rendering.film.snapshots import trajectory_of
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from small_tasks import play, start, target, wanted
 
-from hearth.agents.demonstrations import READERS, Question, agreement
-from hearth.agents.faults import Faults, Faulty
+from hearth.agents.demonstration_goals import READERS, Question, agreement
+from hearth.agents.human_faults import Faults, Faulty
 from hearth.agents.human_like import HumanLike
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal

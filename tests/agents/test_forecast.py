@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from small_tasks import ALLOWED, start, wanted
 
+from hearth.agents.completion_forecast import MOST, Forecast, Stop
 from hearth.agents.distances import Distances
-from hearth.agents.expected_time import ExpectedTime
-from hearth.agents.forecast import MOST, Forecast, Stop
+from hearth.agents.expected_time_helper import ExpectedTime
 from hearth.agents.goal_space import GoalSpace, Scene
-from hearth.agents.heaps import HELPER, Situation
 from hearth.agents.human_like import HumanLike
-from hearth.challenges.play import Player, play
+from hearth.agents.object_groups import HELPER, Situation
+from hearth.challenges.episode_loop import Player, play
 from hearth.simulation.observation.views import pose
 
 

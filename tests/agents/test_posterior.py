@@ -8,9 +8,9 @@ from online_tasks import COUNTS, goals_of, holding, play
 from oracles.posterior import Plain
 from small_tasks import start, target, wanted
 
+from hearth.agents.goal_posterior import ActionModel, Posterior
 from hearth.agents.goal_space import GoalSpace
 from hearth.agents.human_like import HumanLike
-from hearth.agents.posterior import ActionModel, Posterior
 from hearth.schemas.program import Step
 from hearth.simulation.observation.views import LastAction, pose
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from small_tasks import ALLOWED, start, wanted
 
-from hearth.agents.expected_time import ExpectedTime
+from hearth.agents.communication import Answering, Asking
+from hearth.agents.expected_time_helper import ExpectedTime
+from hearth.agents.goal_posterior import Posterior
 from hearth.agents.goal_space import GoalSpace
 from hearth.agents.human_like import HumanLike
-from hearth.agents.posterior import Posterior
-from hearth.agents.talking import Answering, Asking
-from hearth.challenges.play import Player, play
+from hearth.challenges.episode_loop import Player, play
 from hearth.schemas.agent_messages import Message, read
 from hearth.schemas.literals import Literal
 from hearth.simulation.observation.views import pose

@@ -6,7 +6,7 @@ import pytest
 from small_tasks import play, scrambled, standing, start, target, wanted
 
 from hearth.agents.human_like import HumanLike
-from hearth.agents.watchful import NEAR, Watchful, Watching
+from hearth.agents.partial_view_helper import NEAR, Watchful, Watching
 from hearth.simulation.env import Env
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.edit import edit

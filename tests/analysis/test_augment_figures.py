@@ -6,7 +6,7 @@ import shutil
 
 import pytest
 
-from hearth.analysis.augment_figures import GIVEN_UP, THESIS, figures, outcome
+from hearth.analysis.augmentation_results import GIVEN_UP, THESIS, figures, outcome
 from hearth.repair.strengths import strength
 from hearth.schemas.diagnostics import HearthError
 
@@ -52,7 +52,7 @@ def test_pairs_are_spread_over_executions_to_reach_a_target(built, inputs):
 
 
 def test_figures_are_drawn_the_same_each_time(made, tmp_path):
-    from hearth.analysis.augment_pictures import draw
+    from hearth.analysis.augmentation_charts import draw
 
     found = figures(made.out / "publish")
     first, second = (draw(found, tmp_path / name) for name in ("a", "b"))

@@ -3,7 +3,7 @@
 from collections import Counter
 from xml.etree import ElementTree
 
-from hearth.analysis.distribution import bar_chart, heat_map
+from hearth.analysis.object_distribution import bar_chart, heat_map
 
 EVIL = "<script>&x"
 

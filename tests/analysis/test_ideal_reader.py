@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hearth.analysis import synthesis, synthesis_splits
-from hearth.analysis.ideal_reader import Reading, figures, ideal, mean_lcs, unsaid
+from hearth.analysis.description_information import Reading, figures, ideal, mean_lcs, unsaid
 from hearth.analysis.synthesis import Part, Weighted
 
 
@@ -91,7 +91,7 @@ def test_the_likeliest_is_the_first_with_the_greatest_weight():
 def test_other_thresholds_are_not_better(drawn, grammar, monkeypatch, other):
     asked = [Reading(one, 0) for one in drawn]
     usual = mean_lcs(asked, grammar)
-    monkeypatch.setattr("hearth.analysis.ideal_reader.LIKELY", other)
+    monkeypatch.setattr("hearth.analysis.description_information.LIKELY", other)
     assert mean_lcs(asked, grammar) < usual + 0.01
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from hearth import cli
-from hearth.analysis.kept_circumstances import _longest, _seats, measure
+from hearth.analysis.context_preservation import _longest, _seats, measure
 from hearth.grounding.binding import bind
 from hearth.repair import variants
 from hearth.repair.handlers.common import RepairContext

@@ -8,8 +8,8 @@ import io
 import pytest
 from typer.testing import CliRunner
 
-from hearth.analysis import ratings
-from hearth.analysis.ratings import Completeness
+from hearth.analysis import completeness_ratings
+from hearth.analysis.completeness_ratings import Completeness
 from hearth.cli import app
 from hearth.kb import grammar
 from hearth.schemas.diagnostics import HearthError
@@ -28,12 +28,12 @@ from hearth.schemas.syntax import parse_program
 )
 def test_the_estimate_is_what_has_to_be_inserted(knowledge, maple, steps, expected):
     program = grammar.check(parse_program(f"{steps}\n")[0], knowledge)[0]
-    assert ratings.estimate(program, maple, knowledge, 0) == expected
+    assert completeness_ratings.estimate(program, maple, knowledge, 0) == expected
 
 
 def test_a_sheet_has_every_program_for_every_rater():
     program = parse_program("Nap\nOn it.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n")[0]
-    rows = list(csv.reader(io.StringIO(ratings.sheet([("p1", program), ("p2", Program("T"))], 3))))
+    rows = list(csv.reader(io.StringIO(completeness_ratings.sheet([("p1", program), ("p2", Program("T"))], 3))))
     assert len(rows) == 1 + 6
     assert rows[1] == ["p1", "Nap", "On it.", "[Walk] <sofa> (1)\n[Sit] <sofa> (1)", "rater 1", ""]
     assert "3 something crucial" in rows[0][-1]
@@ -43,10 +43,10 @@ def test_answers_are_read_back_and_medians_taken(tmp_path):
     file = tmp_path / "a.csv"
     rows = "".join(f"p1,,,,r{n},{answer}\n" for n, answer in enumerate("11323"))
     file.write_text(f"program_id,title,description,program,rater,rating (1)\n{rows}p2,,,,r1,2\np3,,,,r1,\n")
-    medians = ratings.medians(ratings.read_sheets([file]))
+    medians = completeness_ratings.medians(completeness_ratings.read_sheets([file]))
     assert medians == {"p1": Completeness.MINOR, "p2": Completeness.MINOR}
-    assert ratings.agreement(medians, {"p1": Completeness.MINOR, "p2": Completeness.CRUCIAL}) == 0.5
-    assert ratings.shares(medians.values())[Completeness.MINOR] == 1
+    assert completeness_ratings.agreement(medians, {"p1": Completeness.MINOR, "p2": Completeness.CRUCIAL}) == 0.5
+    assert completeness_ratings.shares(medians.values())[Completeness.MINOR] == 1
 
 
 def test_answers_that_are_no_ratings_are_told_by_line(tmp_path):
@@ -54,7 +54,7 @@ def test_answers_that_are_no_ratings_are_told_by_line(tmp_path):
     file.write_text("program_id,rating\np1,4\np2,fine\np3,1\n")
     other.write_text("program,rating\n")
     with pytest.raises(HearthError) as caught:
-        ratings.read_sheets([file, other])
+        completeness_ratings.read_sheets([file, other])
     assert [(fault.code, fault.line) for fault in caught.value.diagnostics] == [("BAD_TABLE", n) for n in (2, 3, 1)]
 
 
@@ -74,5 +74,5 @@ def test_the_commands(tmp_path):
 def test_of_many_rows_that_are_no_ratings_some_are_reported(tmp_path):
     (tmp_path / "a.csv").write_text("program_id,rating\n" + "p1,9\n" * 5_000)
     with pytest.raises(HearthError) as caught:
-        ratings.read_sheets([tmp_path / "a.csv"])
-    assert len(caught.value.diagnostics) == ratings.MOST_FAULTS
+        completeness_ratings.read_sheets([tmp_path / "a.csv"])
+    assert len(caught.value.diagnostics) == completeness_ratings.MOST_FAULTS

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.analysis import synthesis, synthesis_splits, synthesis_wording
-from hearth.analysis.described import described
+from hearth.analysis.written_descriptions import described
 from hearth.cli import app
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.near_duplicates import near_texts

@@ -12,10 +12,10 @@ import pytest
 from scrambled import hiding_places
 
 from hearth.challenges.definition import challenge
+from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.learning_to_watch import examples, goals_of_tests
-from hearth.challenges.playing_demonstrations import Wish, demonstrate
 from hearth.challenges.published_tasks import tasks
-from hearth.challenges.watching import bound, inferred
+from hearth.challenges.watch_stage import bound, inferred
 from hearth.kb.loading.load import default
 from hearth.models.interface import Training
 from hearth.models.watching.goal_decoding import PossibleGoals, possible_goals

@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import pytest
 
-from hearth.challenges.guard import AgentError, Guarded
+from hearth.challenges.agent_guard import AgentError, Guarded
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

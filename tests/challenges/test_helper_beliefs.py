@@ -15,9 +15,9 @@ from hearth.analysis.goal_belief_drawing import drawn
 from hearth.analysis.online_inference import calibration, inference
 from hearth.challenges.challenge_tables import ChallengeData, publish
 from hearth.challenges.definition import challenge
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.helper_beliefs import Beliefs, Moment, beliefs
 from hearth.challenges.learning_to_propose import Wish, episode
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
 from hearth.kb.loading.load import default

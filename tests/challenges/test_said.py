@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from hearth.challenges.channels import ProcessChannel
-from hearth.challenges.play import Player, play
-from hearth.challenges.wire import WireAgent
+from hearth.challenges.episode_loop import Player, play
+from hearth.challenges.wire_protocol import WireAgent
 from hearth.envs.answers import by_words
 from hearth.envs.observations import observation
 from hearth.envs.text_protocol import TextAgent

@@ -6,7 +6,7 @@ import pytest
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.published_tasks import tasks
-from hearth.challenges.solvable import Solved, solved
+from hearth.challenges.solvability import Solved, solved
 from hearth.kb.loading.load import default
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.goal_grammar import wanted_things
-from hearth.challenges.starts import site_of
+from hearth.challenges.start_worlds import site_of
 from hearth.challenges.tasks import task
 from hearth.homes.library import names
 from hearth.schemas.diagnostics import HearthError

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.agents.demonstrations import agreement
+from hearth.agents.demonstration_goals import agreement
 from hearth.challenges.challenge_tables import TABLES, ChallengeData, publish
-from hearth.challenges.playing_demonstrations import Wish, demonstrate
+from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.published_tasks import tasks
-from hearth.challenges.watching import inferred
+from hearth.challenges.watch_stage import inferred
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.goals import Progress

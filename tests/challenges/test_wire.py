@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from hearth.challenges.channels import LONGEST_LINE, Channel, Listener, ProcessChannel
-from hearth.challenges.play import Player, play
-from hearth.challenges.wire import PROTOCOL, WireAgent
+from hearth.challenges.episode_loop import Player, play
+from hearth.challenges.wire_protocol import PROTOCOL, WireAgent
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.env import Env

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth import cli
-from hearth.analysis.augment_figures import figures
+from hearth.analysis.augmentation_results import figures
 from hearth.datasets.graph_sizes import graph_sizes
 from hearth.models.data import requests
 from hearth.models.fit_model import fit

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.challenges.definition import challenge
-from hearth.challenges.starts import site_of
+from hearth.challenges.start_worlds import site_of
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.sensor import CameraSensor

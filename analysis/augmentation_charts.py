@@ -16,7 +16,7 @@ COLOURS = {"before": "#9aa5b1", "after": "#b5651d"}
 
 
 def draw(found: Mapping[str, Any], folder: Path) -> list[Path]:
-    """Draw the result of `augment_figures.figures`, each chart as PNG and SVG; returns the files."""
+    """Draw the result of `augmentation_results.figures`, each chart as PNG and SVG; returns the files."""
     folder.mkdir(parents=True, exist_ok=True)
     files = saved(conditions(found["conditions"]), folder / "conditions")
     return files + saved(lengths(found["lengths"]), folder / "lengths")

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hearth.agents.expected_time import CERTAIN, PARTNER, ExpectedTime, Settings
+from hearth.agents.expected_time_helper import CERTAIN, PARTNER, ExpectedTime, Settings
+from hearth.agents.goal_posterior import ActionModel
 from hearth.agents.goal_space import GoalsIn
 from hearth.agents.human_like import HumanLike
-from hearth.agents.posterior import ActionModel
 from hearth.agents.protocol import Choice
 from hearth.agents.subgoals import Subgoal, Wanted
 from hearth.schemas.agent_messages import Message

@@ -8,8 +8,8 @@ from typing import Any
 
 from hearth.agents.population import PEOPLE
 from hearth.analysis.challenge_table import CONFIDENT
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Known
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.metrics import mean, of_tasks, speedups
 from hearth.challenges.result_files import Results
 from hearth.challenges.suite_runs import run

@@ -7,7 +7,7 @@ from collections import Counter
 from hearth.agents.goal_space import Counts, Edge, GoalsIn
 from hearth.agents.hierarchical import Hierarchical
 from hearth.agents.network_proposals import NetworkProposals
-from hearth.agents.online import OnlineHelper
+from hearth.agents.online_helper import OnlineHelper
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive

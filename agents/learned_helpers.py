@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from hearth.agents.agent_locations import note_others
 from hearth.agents.hierarchical import HELPING
 from hearth.agents.human_like import HumanLike
-from hearth.agents.scene_reading import SceneReader
+from hearth.agents.policy_observations import SceneReader
 from hearth.agents.subgoals import Missing, Subgoal
-from hearth.agents.whereabouts import note_others
 from hearth.models.helping.policy_inputs import Pair, Scene
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from hearth.agents.communication import Asking
 from hearth.agents.empowerment import Empowerment
-from hearth.agents.expected_time import ExpectedTime
+from hearth.agents.expected_time_helper import ExpectedTime
 from hearth.agents.goal_space import GoalsIn
 from hearth.agents.helping_plans import Weights
 from hearth.agents.nopa import Nopa, Settings
-from hearth.agents.proposed_plans import ProposedPlans
+from hearth.agents.partial_view_helper import Watchful, Watching
+from hearth.agents.proposal_helpers import ProposedPlans
 from hearth.agents.protocol import Agent
-from hearth.agents.talking import Asking
-from hearth.agents.watchful import Watchful, Watching
 
 
 @dataclass(frozen=True, slots=True)

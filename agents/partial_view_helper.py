@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hearth.agents.agent_locations import note_others
 from hearth.agents.belief import Place
-from hearth.agents.expected_time import CERTAIN, ExpectedTime, Settings
+from hearth.agents.expected_time_helper import CERTAIN, ExpectedTime, Settings
+from hearth.agents.goal_posterior import ActionModel
 from hearth.agents.goal_space import Edge, GoalsIn
-from hearth.agents.posterior import ActionModel
-from hearth.agents.regression import Regression
-from hearth.agents.whereabouts import note_others
+from hearth.agents.regression_planning import Regression
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step

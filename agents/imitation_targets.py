@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
-from hearth.agents.learned import Choice
-from hearth.agents.scene_reading import SceneReader
+from hearth.agents.learned_helpers import Choice
+from hearth.agents.policy_observations import SceneReader
 from hearth.agents.subgoals import Missing, Subgoal
 from hearth.models.helping.policy_inputs import Words
 from hearth.schemas.goals import Goal

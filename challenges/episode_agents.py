@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
-from hearth.agents.online_registry import ONLINE, PROPOSED
+from hearth.agents.online_helper_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
+from hearth.challenges.agent_guard import SECONDS, Guarded
 from hearth.challenges.definition import Challenge, challenge
-from hearth.challenges.guard import SECONDS, Guarded
-from hearth.challenges.play import Player
+from hearth.challenges.episode_loop import Player
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

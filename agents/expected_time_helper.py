@@ -1,7 +1,7 @@
 """A helper that does what lets its partner finish soonest, in expectation over the exact posterior.
 
 Beyond the thesis: NOPA (eq. 7.1) weighs one edge at a time by a few particles. Here each thing that could be done next
-is followed, under goals that stand for the posterior, until the goal is reached (see `forecast`): both hands are used,
+is followed, under goals that stand for the posterior, until the goal is reached (see `completion_forecast`): both hands are used,
 the work is shared, and what is of no use under some goals costs the time that it wastes. With a single goal that it is
 given it is the planner of HP_GT.
 """
@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hearth.agents.forecast import GIVE, HANDS, TAKE, Forecast, Stop
+from hearth.agents.completion_forecast import GIVE, HANDS, TAKE, Forecast, Stop
+from hearth.agents.goal_posterior import ActionModel
 from hearth.agents.goal_space import Edge, GoalsIn
-from hearth.agents.heaps import HELPER, Situation
-from hearth.agents.online import OnlineHelper
-from hearth.agents.posterior import ActionModel
+from hearth.agents.object_groups import HELPER, Situation
+from hearth.agents.online_helper import OnlineHelper
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from hearth.agents.protocol import Agent, Choice, Resigned
-from hearth.challenges.guard import AgentError
+from hearth.challenges.agent_guard import AgentError
 from hearth.envs.session import MOST_TICKS
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.goals import Goal

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.demonstrator import Demonstrator
+from hearth.challenges.episode_loop import Played, Player, play
 from hearth.challenges.episodes import Known, read_instruction, written
-from hearth.challenges.play import Played, Player, play
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.rng import derive

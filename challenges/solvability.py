@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, Known, played
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.tasks import Task
 from hearth.storage.parallel import Seen, spread, unseen
 

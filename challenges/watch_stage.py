@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from hearth.agents.demonstrations import READERS, Question, by_states
+from hearth.agents.demonstration_goals import READERS, Question, by_states
 from hearth.challenges.definition import challenge
+from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.episodes import Known
-from hearth.challenges.playing_demonstrations import Wish, demonstrate
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -50,7 +50,7 @@ def inferred(
         tasks: whose demonstrations are watched.
         reader: how, one of `READERS`.
         known: gives the knowledge.
-        rate: of habits (see `playing_demonstrations.Wish`).
+        rate: of habits (see `demonstration_episodes.Wish`).
         workers: processes.
         seen: called with the number done.
         model: the checkpoint that reads states, if not the one that comes with Hearth.

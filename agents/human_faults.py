@@ -10,9 +10,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
-from hearth.agents.errands import Errand
+from hearth.agents.distractions import Errand
 from hearth.agents.human_like import PLAIN, Habits, HumanLike
-from hearth.agents.regression import Regression
+from hearth.agents.regression_planning import Regression
 from hearth.agents.subgoals import Missing, Subgoal
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from hearth.agents.learned import Choice, Learned
+from hearth.agents.learned_helpers import Choice, Learned
 from hearth.agents.subgoals import Aims, Missing, Subgoal
 from hearth.challenges.definition import challenge
+from hearth.challenges.episode_loop import Played, Player, play
 from hearth.challenges.episodes import Known, start_of
-from hearth.challenges.play import Played, Player, play
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal
