@@ -14,9 +14,9 @@ from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
-from hearth.models.data import requests
 from hearth.models.interface import Request
-from hearth.models.showing import Beside, side_by_side
+from hearth.models.prediction_stages import Beside, side_by_side
+from hearth.models.text_examples import requests
 from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import print_step
 from hearth.scoring.evaluate import METRICS, Scored

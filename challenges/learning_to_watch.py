@@ -14,10 +14,10 @@ from hearth.challenges.task_files import suite
 from hearth.challenges.tasks import Task
 from hearth.challenges.watch_stage import bound
 from hearth.models.interface import Training
+from hearth.models.watching.demonstration_batches import Counts, Watched
 from hearth.models.watching.goal_decoding import possible_goals
 from hearth.models.watching.goal_inference import GoalInference
-from hearth.models.watching.sightings import sightings
-from hearth.models.watching.watched_batches import Counts, Watched
+from hearth.models.watching.object_sightings import sightings
 from hearth.storage.parallel import Seen, spread, unseen
 
 if TYPE_CHECKING:

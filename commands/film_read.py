@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.models.films.film_shown import FilmShown
+    from hearth.models.films.film_prediction import FilmShown
 
 MASKS = "masks"
 """The checkpoint that predicts the masks of videos, unless another is named."""
@@ -35,7 +35,7 @@ def show(
     from hearth.models.films.clip_tables import classifier
     from hearth.models.films.film_files import ARRAYS, film_file
     from hearth.models.films.film_input import read_masks, read_pictures
-    from hearth.models.films.film_shown import show_film
+    from hearth.models.films.film_prediction import show_film
     from hearth.models.films.predicted_masks import mask_predictor
     from hearth.simulation.world.home import Home
 

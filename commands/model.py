@@ -102,7 +102,7 @@ def predict(
       python cli.py model predict build/nearest data_out --part test --out predicted.jsonl
     """
     from hearth.commands.progress_line import bar
-    from hearth.models.predicting import predict_part
+    from hearth.models.prediction_files import predict_part
 
     with bar("executions") as seen:
         count = predict_part(
@@ -144,8 +144,8 @@ def score(
       python cli.py model score planned.jsonl release --unseen data_out
     """
     from hearth.datasets.dataset import Dataset
-    from hearth.models.data import of_new_titles
     from hearth.models.evaluation import means
+    from hearth.models.text_examples import of_new_titles
     from hearth.scoring.dataset_scores import score_given
 
     asked = Dataset.open(dataset)

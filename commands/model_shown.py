@@ -10,7 +10,7 @@ from hearth.commands import output
 
 if TYPE_CHECKING:
     from hearth.models.interface import Steps
-    from hearth.models.showing import Shown
+    from hearth.models.prediction_stages import Shown
     from hearth.schemas.program import Step
     from hearth.simulation.engine import Execution
 
@@ -38,7 +38,7 @@ def shown(
     from hearth.homes import library
     from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.model_registry import MODELS, restore
-    from hearth.models.showing import show_sketch, show_text
+    from hearth.models.prediction_stages import show_sketch, show_text
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
 
@@ -142,7 +142,7 @@ def _print_beside(found: Mapping[str, Shown]) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    from hearth.models.showing import side_by_side
+    from hearth.models.prediction_stages import side_by_side
 
     (one, left), (other, right) = found.items()
     console = Console(width=2 * WIDTH + 4, highlight=False)

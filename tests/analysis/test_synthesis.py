@@ -15,7 +15,7 @@ from hearth.datasets.format.near_duplicates import near_texts
 from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.grounding.environments.sampling import sample
 from hearth.kb import grammar as action_grammar
-from hearth.models.data import corpus
+from hearth.models.text_examples import corpus
 from hearth.pipelines.build import build
 from hearth.pipelines.checks.programs import contradictions
 from hearth.pipelines.readers.published import read, scan

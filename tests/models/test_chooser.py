@@ -11,21 +11,21 @@ import torch
 
 from hearth.grounding.binding import bind
 from hearth.models.checkpoint import load, save
-from hearth.models.data import corpus
-from hearth.models.decoding.options import Grammar
+from hearth.models.decoding.next_step_options import Grammar
 from hearth.models.interface import Request, Training
 from hearth.models.model_registry import restore
-from hearth.models.sketches import chooser
-from hearth.models.sketches.choices import Candidate, Choice, joined, packed
-from hearth.models.sketches.chooser import NO_HABITS, SIZES, Chooser, TrainedChooser
+from hearth.models.sketches import plan_chooser
+from hearth.models.sketches.candidate_choices import Candidate, Choice, joined, packed
+from hearth.models.sketches.candidate_ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.chooser_examples import step_choices
-from hearth.models.sketches.grounded import grounded
+from hearth.models.sketches.grounded_programs import grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import FEWEST, TOOLS, Habits
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
-from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
+from hearth.models.sketches.plan_chooser import NO_HABITS, SIZES, Chooser, TrainedChooser
 from hearth.models.sketches.sketch_progress import Progress, plain
 from hearth.models.sketches.step_features import Offer
+from hearth.models.text_examples import corpus
 from hearth.repair.sketch_plan import plan, planned_program
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph
@@ -90,8 +90,8 @@ def test_a_node_is_called_as_in_the_sketch_where_that_name_affords_what_is_done(
     sketch = sketch_of(("[Eat] <food_food> (1.7)",))
     eaten = sketch_of(("[Grab] <food_cereal> (1.7)", "[Eat] <food_cereal> (1.7)"))
     opened = (*sketch_of(("[Open] <food_cereal> (1.7)",)), *eaten)
-    assert [step.objects[0].name for step in chooser._named(eaten, sketch, knowledge)] == ["food_food"] * 2
-    assert chooser._named(opened, sketch, knowledge) == opened
+    assert [step.objects[0].name for step in plan_chooser._named(eaten, sketch, knowledge)] == ["food_food"] * 2
+    assert plan_chooser._named(opened, sketch, knowledge) == opened
 
 
 def test_a_plan_knows_which_of_its_steps_are_the_sketch(environments):
@@ -191,8 +191,8 @@ def test_training_and_a_round_trip(dataset, tmp_path, asked, monkeypatch):
     some = tuple(each for each in found.train if any(each.keep))[:12]
     found = dataclasses.replace(found, train=some, validation=some)
     budgets = []
-    train = chooser.train
-    monkeypatch.setattr(chooser, "train", lambda task, how, seen: budgets.append(how.minutes) or train(task, how))
+    train = plan_chooser.train
+    monkeypatch.setattr(plan_chooser, "train", lambda task, how, seen: budgets.append(how.minutes) or train(task, how))
     trained = Chooser(hidden=16, batch=32, programs=4).fit(found, Training(epochs=2, minutes=9))
     assert budgets == [9, 9], "as `model train --help` says"
     save(trained.checkpoint(), tmp_path)

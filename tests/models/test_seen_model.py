@@ -13,17 +13,17 @@ import hearth
 from hearth.commands import film_read
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
-from hearth.models.films import seen_model
+from hearth.models.films import mask_clip_model
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.film_input import read_masks
-from hearth.models.films.film_readings import reading
-from hearth.models.films.film_shown import cut, show_film
-from hearth.models.films.seen_classes import CROP, seen_film
-from hearth.models.films.seen_clips import CONTEXT, joined, offsets, seen_clips
-from hearth.models.films.seen_model import SeenModel, TrainedSeenModel, tensors
-from hearth.models.films.seen_network import loss_of
+from hearth.models.films.film_prediction import cut, show_film
+from hearth.models.films.instruction_scores import reading
+from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel, tensors
+from hearth.models.films.mask_clip_network import loss_of
+from hearth.models.films.mask_clips import CONTEXT, joined, offsets, seen_clips
+from hearth.models.films.mask_features import CROP, seen_film
 from hearth.models.films.step_order import START, StepOrder, programs_of
 from hearth.models.interface import Training
 from hearth.schemas.diagnostics import HearthError
@@ -80,9 +80,9 @@ def test_it_learns_from_predicted_masks_beside_true_ones(clips, monkeypatch):
         parts.append((model, part))
         return halves[1]
 
-    monkeypatch.setattr(seen_model, "predicted", predicted)
+    monkeypatch.setattr(mask_clip_model, "predicted", predicted)
     monkeypatch.setattr(Clips, "of", lambda dataset, part, films=0: halves[0])
-    monkeypatch.setattr(seen_model, "mask_predictor", lambda _: SimpleNamespace(network=torch.nn.Linear(1, 1)))
+    monkeypatch.setattr(mask_clip_model, "mask_predictor", lambda _: SimpleNamespace(network=torch.nn.Linear(1, 1)))
     data = SimpleNamespace(knowledge=default(), manifest={"files": {}})
     both = SeenModel(width=16, layers=1, masks="network").fit(data, Training(epochs=1))
     assert parts == [("network", "train"), ("network", "validation")]
@@ -245,11 +245,11 @@ def test_a_stopped_training_goes_on_with_its_own_dataset_alone(clips, monkeypatc
     """What was begun is known by the dataset's files and by the weights that predict masks."""
     tasks = []
     monkeypatch.setattr(Clips, "of", lambda dataset, part, films=0: clips)
-    monkeypatch.setattr(seen_model, "predicted", lambda *_: clips)
+    monkeypatch.setattr(mask_clip_model, "predicted", lambda *_: clips)
     networks = {name: SimpleNamespace(network=torch.nn.Linear(1, number)) for number, name in enumerate("ab", 1)}
-    monkeypatch.setattr(seen_model, "mask_predictor", networks.get)
+    monkeypatch.setattr(mask_clip_model, "mask_predictor", networks.get)
     monkeypatch.setattr(
-        seen_model, "train", lambda task, *_: tasks.append(task.identity) or SimpleNamespace(record=dict)
+        mask_clip_model, "train", lambda task, *_: tasks.append(task.identity) or SimpleNamespace(record=dict)
     )
     for files, masks in (("one", ""), ("other", ""), ("one", "a"), ("one", "b"), ("one", "")):
         data = SimpleNamespace(knowledge=default(), manifest={"files": {files: 1}})

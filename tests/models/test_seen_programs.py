@@ -11,12 +11,12 @@ import pytest
 
 import hearth
 from hearth.models.checkpoint import load, save
-from hearth.models.data import facts_of
 from hearth.models.fit_model import fit
 from hearth.models.model_registry import recorded
-from hearth.models.predicting import predict_part
+from hearth.models.prediction_files import predict_part
 from hearth.models.sketches import sketch_tables
 from hearth.models.text import text_tables
+from hearth.models.text_examples import facts_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

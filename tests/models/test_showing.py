@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth import cli
-from hearth.models.showing import side_by_side
+from hearth.models.prediction_stages import side_by_side
 from hearth.schemas.program import ObjectRef, Step
 from hearth.scoring.metrics.lcs import similarity
 

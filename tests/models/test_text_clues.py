@@ -7,14 +7,14 @@ from random import Random
 
 import torch
 
-from hearth.models.decoding.options import Grammar
+from hearth.models.decoding.next_step_options import Grammar
 from hearth.models.interface import Request
-from hearth.models.sketches.chooser import SIZES, Chooser, TrainedChooser
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import ROLES, Habits
+from hearth.models.sketches.plan_chooser import SIZES, Chooser, TrainedChooser
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, NO_NODE, Offer
-from hearth.models.sketches.text_clues import AROUND, NO_CLUES, Clues, TextState, frequent
+from hearth.models.sketches.text_features import AROUND, NO_CLUES, Clues, TextState, frequent
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import parse_steps
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import hearth
-from hearth.models.data import examples
-from hearth.models.tried_programs import Trial, trials
+from hearth.models.execution_trials import Trial, trials
+from hearth.models.text_examples import examples
 from hearth.schemas.program import Program
 from hearth.scoring.dataset_scores import score_steps
 from hearth.simulation.rules import DEFAULT, REPLAY

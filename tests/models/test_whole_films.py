@@ -10,9 +10,9 @@ import pytest
 
 from hearth.models.films.clip_data import Instruction
 from hearth.models.films.film_programs import even_moves
-from hearth.models.films.film_readings import Reading
+from hearth.models.films.film_smoothing import ClassWorth, named_in_films, posteriors
+from hearth.models.films.instruction_scores import Reading
 from hearth.models.films.step_order import StepOrder
-from hearth.models.films.whole_films import ClassWorth, named_in_films, posteriors
 
 WALK, GRAB, SIT = Instruction("Walk", ("bed",)), Instruction("Grab", ("cup",)), Instruction("Sit", ("bed",))
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hearth.models.data import facts_of
 from hearth.models.model_registry import recorded
+from hearth.models.text_examples import facts_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.models.interface import Request
 from hearth.models.sketches.name_numbers import Words
-from hearth.models.text.mentions import mentions, spellings
+from hearth.models.text.object_mentions import mentions, spellings
 from hearth.models.text.text_words import words_of
 
 FEWEST = 4

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from hearth.models.films.class_accuracy import MEASURED
 from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.film_programs import Moves, Scores
-from hearth.models.films.seen_model import TrainedSeenModel
+from hearth.models.films.mask_clip_model import TrainedSeenModel
 
 
 def named_in_films(trained: TrainedSeenModel, clips: Clips, learned: Sequence[Instruction]) -> list[Instruction]:

@@ -10,8 +10,8 @@ from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
-from hearth.models.data import Example
 from hearth.models.interface import Request, Steps
+from hearth.models.text_examples import Example
 from hearth.schemas.rng import derive
 from hearth.simulation.rules import RULES, Rules
 from hearth.simulation.world.world import World

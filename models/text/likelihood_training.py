@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 import torch
 
+from hearth.models.text.program_writer import Numbers, Writer, beam
 from hearth.models.text.text_batches import InputBatch, StepBatch, step_batch
-from hearth.models.text.writer import Numbers, Writer, beam
 from hearth.models.training import Task
 
 AT_ONCE = 64

@@ -10,8 +10,8 @@ from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
-from hearth.models.data import AT_ONCE
 from hearth.models.interface import Steps
+from hearth.models.text_examples import AT_ONCE
 from hearth.schemas.program import Program
 from hearth.scoring.metrics.executability import executability
 from hearth.simulation.rules import RULES, Rules

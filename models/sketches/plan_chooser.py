@@ -17,22 +17,22 @@ import torch
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.checkpoint import Checkpoint
-from hearth.models.data import Corpus, Example
+from hearth.models.checkpoint_weights import filled
 from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.devices import device
-from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.sketches.choices import Choice, Packed, joined, packed
+from hearth.models.sketches.candidate_choices import Choice, Packed, joined, packed
+from hearth.models.sketches.candidate_ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.chooser_examples import node_choices, step_choices
-from hearth.models.sketches.grounded import grounded
+from hearth.models.sketches.grounded_programs import grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import Habits
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
-from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Offer
-from hearth.models.sketches.text_clues import AROUND, NO_CLUES, Clues, frequent
+from hearth.models.sketches.text_features import AROUND, NO_CLUES, Clues, frequent
+from hearth.models.text_examples import Corpus, Example
 from hearth.models.training import Outcome, Task, train
 from hearth.repair.sketch_plan import bound_to_nearest, complete_steps
 from hearth.schemas.program import ObjectRef, Program, Step

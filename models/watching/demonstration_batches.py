@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from random import Random
 from typing import TYPE_CHECKING, NamedTuple
 
-from hearth.models.watching.sightings import Layout, Seen
+from hearth.models.watching.object_sightings import Layout, Seen
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,7 +24,7 @@ class Watched:
     """A demonstration with its goal.
 
     Attributes:
-        things: what was seen (see `sightings`).
+        things: what was seen (see `object_sightings`).
         counts: of the goal.
     """
 

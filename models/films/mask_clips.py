@@ -1,4 +1,4 @@
-"""Clips as what is seen of each class in their frames: the arrays that `seen_network` reads."""
+"""Clips as what is seen of each class in their frames: the arrays that `mask_clip_network` reads."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Clip, Clips
-from hearth.models.films.seen_classes import NUMBERS, SeenFilm, seen_film
+from hearth.models.films.mask_features import NUMBERS, SeenFilm, seen_film
 from hearth.storage.parallel import Seen, unseen
 
 MOST_SEEN = 40
@@ -26,7 +26,7 @@ class SeenClips(NamedTuple):
 
     Attributes:
         classes: (N, K) rows of the class table; 0 fills up.
-        numbers: (N, K, T, NUMBERS) of each class, see `seen_classes`; 0 before and after the film.
+        numbers: (N, K, T, NUMBERS) of each class, see `mask_features`; 0 before and after the film.
         people: (N, T, PEOPLE) of the person.
         crops: (N, F, CROP, CROP) rows of the class table around the person.
     """

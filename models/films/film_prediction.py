@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hearth.grounding.environments.sampling import sample
 from hearth.models.films.clip_data import Clip, Clips
 from hearth.models.films.film_programs import FilmProgram, described, followed
-from hearth.models.films.seen_model import TrainedSeenModel
+from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.films.step_order import START
 from hearth.models.interface import Steps
 from hearth.rendering.film.clips import FRAMES, RATE

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hearth.models.model_registry import MODELS, restore
-from hearth.models.seen_programs import refuse_seen_tests
 from hearth.models.text.text_models import TrainedTextModel
+from hearth.models.training_overlap import refuse_seen_tests
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
 STARTS = {"program": ("programs", "mle-composed"), "sketch": ("sketches", "desc2sketch")}
 """What is learned to be written, and the usual model to go on from."""

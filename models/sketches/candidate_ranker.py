@@ -8,7 +8,7 @@ import torch
 from torch import Tensor, nn
 
 from hearth.models.decoding.equal_scores import best_places
-from hearth.models.sketches.choices import Packed
+from hearth.models.sketches.candidate_choices import Packed
 
 
 class Ranker(nn.Module):

@@ -1,7 +1,7 @@
 """The thesis's network that infers goals (figure B-6): a transformer over the things of a moment, an LSTM over time,
 and a classifier for each predicate's count.
 
-`thing_network` asks of each thing whether it counts instead. `challenge learn wah --what goals-moments` trains it.
+`object_network` asks of each thing whether it counts instead. `challenge learn wah --what goals-moments` trains it.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from hearth.models.watching.sightings import Layout
-from hearth.models.watching.watched_batches import Packed
+from hearth.models.watching.demonstration_batches import Packed
+from hearth.models.watching.object_sightings import Layout
 
 MOMENTS = 12
 """Moments of a demonstration, at equal distances; the thesis has every tick."""

@@ -15,13 +15,13 @@ from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
-from hearth.models.data import AT_ONCE, requests
 from hearth.models.decoding.scorers import Scorer
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.interface import Steps
 from hearth.models.model_registry import MODELS, restore
 from hearth.models.protocols import Decoded, Trained
-from hearth.models.seen_programs import refuse_seen
+from hearth.models.text_examples import AT_ONCE, requests
+from hearth.models.training_overlap import refuse_seen
 from hearth.repair.completion import complete
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

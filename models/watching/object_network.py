@@ -10,8 +10,8 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from hearth.models.watching.sightings import Layout
-from hearth.models.watching.watched_batches import Packed
+from hearth.models.watching.demonstration_batches import Packed
+from hearth.models.watching.object_sightings import Layout
 
 LEAST = 1e-4
 """Probability of any number of things, whatever the network says."""

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from hearth.models.films.class_table import PLACES
-from hearth.models.films.seen_classes import NUMBERS, PEOPLE
+from hearth.models.films.mask_features import NUMBERS, PEOPLE
 
 FRAMES = 9
 LOOKED_AT = slice(0, FRAMES, 2)
