@@ -1,9 +1,9 @@
 """A helper that does what lets its partner finish soonest, in expectation over the exact posterior.
 
 Beyond the thesis: NOPA (eq. 7.1) weighs one edge at a time by a few particles. Here each thing that could be done next
-is followed, under goals that stand for the posterior, until the goal is reached (see `completion_forecast`): both hands are
-used, the work is shared, and what is of no use under some goals costs the time that it wastes. With a single goal that it
-is given it is the planner of HP_GT.
+is followed, under goals that stand for the posterior, until the goal is reached (see `completion_forecast`): both hands
+are used, the work is shared, and what is of no use under some goals costs the time that it wastes. With a single goal
+that it is given it is the planner of HP_GT.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from hearth.datasets.damage import reading
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.graph_sizes import graph_sizes
 from hearth.pipelines.augment import ORIGINAL
-from hearth.repair.strengths import MILD
+from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.manifest import TIMING, read_manifest

@@ -9,9 +9,9 @@ from statistics import median_low
 from hearth.analysis.spreadsheet_cells import original_cell, sheet_of
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.defaults import default_conditions
+from hearth.grounding.preconditions.default_conditions import default_conditions
 from hearth.kb.knowledge import Knowledge
-from hearth.repair.loop import repair
+from hearth.repair.repair_loop import repair
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program

@@ -16,7 +16,7 @@ from hearth.datasets.format.codecs import bindings_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.grounding.preconditions.postconditions import Postconditions, missing, nodes_of
-from hearth.repair.circumstances import circumstances
+from hearth.repair.step_context import circumstances
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import Execution

@@ -14,7 +14,7 @@ from typing import Any
 from hearth.analysis.coverage import Script, scripts
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.readers import release

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from hearth.analysis.coverage import Script
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.grounding.preconditions.release_rules import by_rules, compare
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure

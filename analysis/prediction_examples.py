@@ -20,7 +20,7 @@ from hearth.models.text_examples import requests
 from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import print_step
 from hearth.scoring.evaluate import METRICS, Scored
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
 

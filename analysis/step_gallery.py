@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from itertools import cycle, islice
 from typing import NamedTuple
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
-from hearth.homes.procedural.generate import generate
+from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.arrays import Image

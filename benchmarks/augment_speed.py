@@ -23,7 +23,7 @@ from hearth.grounding.environments.default_state import prepared
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.pipelines.build import corpus
-from hearth.repair.variants import Options, augment
+from hearth.repair.augmentation import Options, augment
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.world.home import Home
 from hearth.storage.rejects import Reject

@@ -18,10 +18,10 @@ from measuring import Figure, as_line, finish, parser, passes, rate, runs, secon
 
 from hearth.analysis.coverage import Script, scripts
 from hearth.grounding.environments.sampling import Size, sample
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library
 from hearth.homes.from_graph.graph_layout import lay_out
-from hearth.homes.procedural.generate import generate
+from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default
 from hearth.pipelines.engine.build_homes import Homes

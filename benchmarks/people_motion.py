@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from hearth.analysis.coverage import Script, scripts
 from hearth.commands import inputs
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import Trajectory, trajectory_of

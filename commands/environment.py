@@ -27,7 +27,7 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
     Example:
       python cli.py environment conditions watch_tv.txt
     """
-    from hearth.grounding.preconditions.infer import at_odds, infer
+    from hearth.grounding.preconditions.precondition_inference import at_odds, infer
     from hearth.grounding.preconditions.release_rules import compare
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
@@ -110,7 +110,7 @@ def sample_one(
       python cli.py environment sample --home birch --seed 7 --out any.json
     """
     from hearth.commands import sampled_environment
-    from hearth.homes import exporting
+    from hearth.homes import home_export
 
     known = inputs.read_knowledge(kb)
     place = inputs.read_home(home, None, homes, known)
@@ -118,7 +118,7 @@ def sample_one(
     drawn = sampled_environment.draw(program, goal or (), place, seed, nodes)
     graph = drawn.world.graph()
     if out is not None:
-        exporting.write_release(graph, out)
+        home_export.write_release(graph, out)
     nodes_found, edges = len(graph.nodes), len(graph.edges)
     if as_json:
         output.emit({"home": home, "seed": seed, "nodes": nodes_found, "edges": edges, "file": out, **drawn.facts})

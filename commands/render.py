@@ -297,7 +297,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
 
 
 def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
-    from hearth.grounding.trial import attempt
+    from hearth.grounding.grounded_run import attempt
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Failure
     from hearth.simulation.world.home import Home

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hearth.envs.action_codes import str_step
 from hearth.envs.session import Session
 from hearth.homes import drawing
-from hearth.homes.from_graph.measured import measured
+from hearth.homes.from_graph.layout_from_boxes import measured
 from hearth.homes.geometry import Rect
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

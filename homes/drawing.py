@@ -7,8 +7,8 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from hearth.homes.geometry import Rect, bottom, footprint
+from hearth.homes.plans.home_shell import Thing, before
 from hearth.homes.plans.layout import Layout
-from hearth.homes.plans.shell import Thing, before
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Spot

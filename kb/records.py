@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from hearth.kb.formula import Effect, Formula
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code
+from hearth.schemas.short_repr import brief
 
 
 @dataclass(frozen=True, slots=True)

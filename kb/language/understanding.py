@@ -16,7 +16,7 @@ from hearth.kb.language.things import thing_of
 from hearth.kb.language.typos import corrected, near_words
 from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 
 ACCEPTED = 0.75
 """The similarity from which the nearest valid instruction is accepted as the meaning where `fuzzy` is loose."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from hearth.pipelines.crowd.seen import SeenSet, digest
+from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.readers import crowd
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code

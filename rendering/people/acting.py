@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
 
-from hearth.homes.forms import form
+from hearth.homes.object_shapes import form
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import choice_of, recipe_of
 from hearth.rendering.people.body import Body

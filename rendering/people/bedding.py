@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import cos, pi, radians, sin
 
-from hearth.homes.forms import form
+from hearth.homes.object_shapes import form
 from hearth.rendering.models.drape import EMPTY
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.scene.free_poses import Pose

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 
-from hearth.homes.forms import form
+from hearth.homes.object_shapes import form
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.look import Look, Region
 from hearth.rendering.models.looks import recipe_of

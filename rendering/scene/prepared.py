@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, radians, sin
 
-from hearth.homes.forms import form
+from hearth.homes.object_shapes import form
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.look import Look, Size
 from hearth.rendering.models.looks import Model, choice_of, model_of

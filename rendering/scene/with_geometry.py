@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from hearth.homes.from_graph.graph_layout import lay_out
-from hearth.homes.from_graph.measured import has_geometry
+from hearth.homes.from_graph.layout_from_boxes import has_geometry
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import EnvironmentGraph
 

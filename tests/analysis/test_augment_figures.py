@@ -7,7 +7,7 @@ import shutil
 import pytest
 
 from hearth.analysis.augmentation_results import GIVEN_UP, THESIS, figures, outcome
-from hearth.repair.strengths import strength
+from hearth.repair.perturbation_strengths import strength
 from hearth.schemas.diagnostics import HearthError
 
 

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from hearth import cli
 from hearth.analysis.context_preservation import _longest, _seats, measure
 from hearth.grounding.binding import bind
-from hearth.repair import variants
+from hearth.repair import augmentation
 from hearth.repair.handlers.common import RepairContext
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
@@ -61,7 +61,7 @@ def test_every_program_keeps_the_circumstances(build_folder, tmp_path):
 
 
 def test_repairs_that_ignore_circumstances_are_found_out(build_folder, tmp_path, monkeypatch):
-    monkeypatch.setattr(variants, "circumstances", lambda execution: ())
+    monkeypatch.setattr(augmentation, "circumstances", lambda execution: ())
     monkeypatch.setattr(RepairContext, "seat_taken", lambda context: None)  # so that nothing is brought to the seat
     found = measure(dataset(build_folder, tmp_path))
     assert 0 < found["programs"]["share"] < 0.9 and found["steps"]["share"] < 1

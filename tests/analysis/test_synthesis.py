@@ -17,7 +17,7 @@ from hearth.grounding.environments.sampling import sample
 from hearth.kb import grammar as action_grammar
 from hearth.models.text_examples import corpus
 from hearth.pipelines.build import build
-from hearth.pipelines.checks.programs import contradictions
+from hearth.pipelines.checks.program_checks import contradictions
 from hearth.pipelines.readers.published import read, scan
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng

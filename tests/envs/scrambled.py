@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from hearth.homes.forms import form
+from hearth.homes.object_shapes import form
 from hearth.schemas.graph import Node
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.observation import reach

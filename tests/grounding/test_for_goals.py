@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.grounding.environments.for_goals import sample_for_goal
+from hearth.grounding.environments.goal_environments import sample_for_goal
 from hearth.homes.lint import lint
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

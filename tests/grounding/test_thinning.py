@@ -6,7 +6,7 @@ import pytest
 from hearth.datasets.format.cases import environment_of, home_of
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.sampling import Size, sample
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library
 from hearth.homes.lint import lint
 from hearth.kb.loading.load import default

@@ -15,7 +15,7 @@ from hearth.models.text_examples import examples
 from hearth.rendering.film import snapshots
 from hearth.scoring.dataset_scores import score_given
 from hearth.scoring.evaluate import Scored
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.metrics.lcs import LcsScore
 from hearth.scoring.predictions import Pair
 

@@ -10,7 +10,7 @@ import pytest
 import torch
 
 import hearth
-from hearth.commands import film_read
+from hearth.commands import film_output
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
 from hearth.models.films import mask_clip_model
@@ -198,12 +198,12 @@ def test_a_film_becomes_a_program_that_runs(model, clips, tmp_path):
 def test_the_command_prints_steps_with_times(model, clips, tmp_path, capsys):
     save(model.checkpoint(), tmp_path / "model")
     np.savez_compressed(tmp_path / "film.npz", class_ids=clips.films[0])
-    found = film_read.show(str(tmp_path / "model"), tmp_path / "film.npz", "maple", None, None, None)
+    found = film_output.show(str(tmp_path / "model"), tmp_path / "film.npz", "maple", None, None, None)
     assert found["steps"] == [{"time": 0.89, "step": "[Walk] <sofa> (1)"}] and found["executable"]
-    film_read.printed(found)
+    film_output.printed(found)
     assert "0.9 s  [Walk] <sofa> (1)" in capsys.readouterr().out
     with pytest.raises(HearthError, match="no film at"):
-        film_read.show(str(tmp_path / "model"), tmp_path / "film.webm", "maple", None, None, None)
+        film_output.show(str(tmp_path / "model"), tmp_path / "film.webm", "maple", None, None, None)
 
 
 def test_steps_follow_each_other_as_in_programs(clips):

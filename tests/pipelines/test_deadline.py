@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from hearth.pipelines.engine.deadline import Deadline, OverTime
+from hearth.pipelines.engine.record_deadline import Deadline, OverTime
 
 
 @pytest.fixture

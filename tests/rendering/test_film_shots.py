@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("open3d")
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at

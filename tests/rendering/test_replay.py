@@ -6,7 +6,7 @@ import zlib
 import numpy as np
 import pytest
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default
 from hearth.rendering.film.replay import home_shapes, run_shapes

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from hearth.grounding.preconditions.conditions import Condition
-from hearth.repair.causes import MATTERS, cause
-from hearth.repair.loop import Attempt
-from hearth.repair.perturb import _MATTER, Perturbation
+from hearth.repair.failure_causes import MATTERS, cause
+from hearth.repair.perturbation import _MATTER, Perturbation
+from hearth.repair.repair_loop import Attempt
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.program import ObjectRef, Program, Step

@@ -9,9 +9,9 @@ from repair_worlds import ROOMS, small_world, steps_of
 from test_variants import home, programs
 
 from hearth.grounding.preconditions.postconditions import achieved
-from hearth.repair.circumstances import circumstances
-from hearth.repair.loop import repair
-from hearth.repair.variants import Augmented, Options, augment
+from hearth.repair.augmentation import Augmented, Options, augment
+from hearth.repair.repair_loop import repair
+from hearth.repair.step_context import circumstances
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.syntax import print_step

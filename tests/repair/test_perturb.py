@@ -10,11 +10,11 @@ from repair_worlds import steps_of
 
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.sampling import Size, draw
-from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.condition_checks import unmet
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
-from hearth.grounding.preconditions.infer import infer
-from hearth.repair.perturb import PERTURBATIONS, Case, Chances, applied, candidates, distinct
-from hearth.repair.strengths import STRENGTHS_FILE, load_strengths, strength
+from hearth.grounding.preconditions.precondition_inference import infer
+from hearth.repair.perturbation import PERTURBATIONS, Case, Chances, applied, candidates, distinct
+from hearth.repair.perturbation_strengths import STRENGTHS_FILE, load_strengths, strength
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.rng import rng

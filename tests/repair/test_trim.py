@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from repair_worlds import ROOMS, small_world, steps_of
 
-from hearth.repair.trim import INSERTED, STAYING, resume, trim
+from hearth.repair.repair_trimming import INSERTED, STAYING, resume, trim
 from hearth.schemas.syntax import print_step
 from hearth.simulation.engine import run
 from hearth.simulation.rules import DEFAULT

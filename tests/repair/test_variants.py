@@ -19,10 +19,10 @@ from hearth.grounding.preconditions.postconditions import nodes_of, reached
 from hearth.homes import library
 from hearth.kb import grammar
 from hearth.kb.loading.load import default
-from hearth.repair.circumstances import circumstances, lost
-from hearth.repair.loop import TRIES, repair
-from hearth.repair.trim import STAYING
-from hearth.repair.variants import Augmented, Options, augment
+from hearth.repair.augmentation import Augmented, Options, augment
+from hearth.repair.repair_loop import TRIES, repair
+from hearth.repair.repair_trimming import STAYING
+from hearth.repair.step_context import circumstances, lost
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import Execution, run

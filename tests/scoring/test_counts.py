@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.metrics.counts import Match, matched
 from hearth.scoring.metrics.executability import _failed_step
+from hearth.scoring.metrics.precision_recall import Match, matched
 
 BAGS = st.dictionaries(st.sampled_from("abcd"), st.integers(1, 4))
 

@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 
 from hearth.datasets.report.drawn_plans import draw
-from hearth.grounding.trial import Trial, attempt
+from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from hearth.grounding.environments import violating
-from hearth.grounding.environments.partial import PartialEnvironment
+from hearth.grounding.environments import condition_violation
+from hearth.grounding.environments.partial_environment import PartialEnvironment
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Edge
@@ -156,11 +156,11 @@ FULFIL: dict[str, Fulfil] = {
     "occupied": _occupied,
     "sitting": _resting,
     "lying": _resting,
-    "not_near": violating.not_near,
-    "other_room": violating.other_room,
-    "in_closed_container": violating.in_closed_container,
-    "facing_away": violating.facing_away,
-    "full_hands": violating.full_hands,
-    "doors_closed": violating.doors_closed,
-    "pet": violating.pet,
+    "not_near": condition_violation.not_near,
+    "other_room": condition_violation.other_room,
+    "in_closed_container": condition_violation.in_closed_container,
+    "facing_away": condition_violation.facing_away,
+    "full_hands": condition_violation.full_hands,
+    "doors_closed": condition_violation.doors_closed,
+    "pet": condition_violation.pet,
 }

@@ -64,7 +64,7 @@ def _beside(
     import shutil
     from html import escape
 
-    from hearth.commands.model_shown import film_of
+    from hearth.commands.model_output import film_of
     from hearth.models.films.film_files import VIDEOS
     from hearth.rendering.film.clips import RATE
     from hearth.rendering.film.mask_film import write_masks

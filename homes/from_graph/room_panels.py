@@ -9,12 +9,12 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from hearth.homes.from_graph.parts import Parts
-from hearth.homes.from_graph.shown_relations import SHOWS, WEIGHTS
+from hearth.homes.from_graph.geometric_relations import SHOWS, WEIGHTS
+from hearth.homes.from_graph.graph_places import Parts
 from hearth.homes.geometry import DIRECTIONS, Rect, box_over, facing_from, footprint, front_of, top
+from hearth.homes.plans.home_shell import WALL, Shell, Thing, interior, span, strip
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import OUTSIDE, Plan, Room
-from hearth.homes.plans.shell import WALL, Shell, Thing, interior, span, strip
 
 THICK = 0.1
 """Metres of floor and ceiling."""

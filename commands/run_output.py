@@ -10,7 +10,7 @@ from hearth.commands import output
 from hearth.commands.run_additions import Additions, additions
 
 if TYPE_CHECKING:
-    from hearth.grounding.trial import Trial
+    from hearth.grounding.grounded_run import Trial
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program, Step
     from hearth.simulation.engine import Execution

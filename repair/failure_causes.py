@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from hearth.repair.loop import Attempt
-from hearth.repair.perturb import Perturbation
+from hearth.repair.perturbation import Perturbation
+from hearth.repair.repair_loop import Attempt
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import Program

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from hearth.homes.geometry import Rect
-from hearth.homes.plans.shell import shared_wall
+from hearth.homes.plans.home_shell import shared_wall
 
 DOOR_WALL = 1.2
 """Metres of wall that two rooms share at least for a door between them."""

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hearth.homes.forms import Form, form
-from hearth.homes.from_graph.parts import Parts
-from hearth.homes.from_graph.shown_relations import NEAR, gap, seen
+from hearth.homes.from_graph.geometric_relations import NEAR, gap, seen
+from hearth.homes.from_graph.graph_places import Parts
 from hearth.homes.geometry import DIRECTIONS, Rect, bottom, box_over, facing_from, footprint, top
 from hearth.homes.geometry import turned as extents
+from hearth.homes.object_shapes import Form, form
 from hearth.homes.plans import raster
 from hearth.homes.plans.floor import BODY, CELL, HEAD
+from hearth.homes.plans.home_shell import Shell, Thing, interior, span, strip
+from hearth.homes.plans.object_packing import contents
 from hearth.homes.plans.obstacles import Obstacles, Stand
-from hearth.homes.plans.packing import contents
 from hearth.homes.plans.plan import Room
-from hearth.homes.plans.shell import Shell, Thing, interior, span, strip
 from hearth.homes.relations import gaps
 from hearth.schemas.yaml_fields import Faults
 

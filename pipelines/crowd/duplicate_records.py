@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from hearth.pipelines.crowd.seen import SeenSet, digest
+from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.readers import crowd, ours, plans, text
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code

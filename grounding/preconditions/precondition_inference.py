@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
-from hearth.grounding.preconditions.defaults import default_conditions
+from hearth.grounding.preconditions.default_conditions import default_conditions
 from hearth.grounding.preconditions.minimal_home import SketchHome, sketch
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure

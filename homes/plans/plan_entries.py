@@ -6,7 +6,7 @@ from typing import Any
 from hearth.homes.geometry import DIRECTIONS, Rect
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Piece, Plan, Room, Window
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas import located
+from hearth.schemas import located_yaml
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -27,7 +27,7 @@ def or_middle(read: ReadValue) -> ReadValue:
     return lambda value: None if value == "middle" else read(value)
 
 
-number = reads("a number of metres", lambda it: isinstance(it, located.Number) and abs(it) < 1000, then=float)
+number = reads("a number of metres", lambda it: isinstance(it, located_yaml.Number) and abs(it) < 1000, then=float)
 length = reads("a length greater than 0", lambda metres: metres > 0, first=number)
 whole = reads(f"a whole number from 0 to {MOST}", lambda it: it == int(it) and 0 <= it <= MOST, first=number, then=int)
 yes_or_no = reads("true or false", lambda value: isinstance(value, bool))
@@ -80,8 +80,8 @@ def read_plan(text: str, file: str, knowledge: Knowledge, faults: Faults) -> Pla
     Raises:
         HearthError: the text is not a YAML mapping, or is of a home too large to be one.
     """
-    tree = located.read(text, file)
-    if not isinstance(tree, located.Mapping):
+    tree = located_yaml.read(text, file)
+    if not isinstance(tree, located_yaml.Mapping):
         raise HearthError.of(Code.SYNTAX, "a plan is a mapping", file=file, suggestion="home, rooms, doors")
     reader = _Reader(knowledge, faults)
     top = reader.fields(tree, PLAN_KEYS, "a plan", need=("home", "rooms"))
@@ -140,7 +140,7 @@ class _Reader:
         found = self.fields(entry, ROOM_KEYS, "a room", ("name", "at", "size"))
         if not {"name", "at", "size"} <= found.keys():
             return None
-        line = located.line_of(entry)
+        line = located_yaml.line_of(entry)
         name = found["name"]
         class_name = found.get("class", name)
         known = self.knowledge.objects.get(class_name)
@@ -162,12 +162,12 @@ class _Reader:
     def window(self, entry: Any) -> Window | None:
         """A window."""
         found = self.fields(entry, WINDOW_KEYS, "a window", ("wall",))
-        return Window(**{"at": None, **found}, line=located.line_of(entry)) if "wall" in found else None
+        return Window(**{"at": None, **found}, line=located_yaml.line_of(entry)) if "wall" in found else None
 
     def door(self, entry: Any) -> Doorway | None:
         """A doorway."""
         found = self.fields(entry, DOOR_KEYS, "a door", ("between",))
-        line = located.line_of(entry)
+        line = located_yaml.line_of(entry)
         rooms = found.pop("between", None)
         if rooms is None:
             return None
@@ -180,7 +180,7 @@ class _Reader:
     def pieces(self, entries: Any, furniture: bool = False) -> tuple[Piece, ...]:
         """Entries of a list: `plate*4`, or `- couch: {wall: south}`."""
         if not isinstance(entries, (list, tuple)):
-            self.faults.add(Code.SYNTAX, "things are a list", located.line_of(entries), "[cup, plate*4]")
+            self.faults.add(Code.SYNTAX, "things are a list", located_yaml.line_of(entries), "[cup, plate*4]")
             return ()
         self.entries += len(entries)
         if self.entries > MOST_ENTRIES:
@@ -189,12 +189,12 @@ class _Reader:
 
     def piece(self, entry: Any, furniture: bool) -> Piece | None:
         """One thing, or several alike."""
-        line = located.line_of(entry)
-        if isinstance(entry, located.Mapping) and len(entry) == 1:
+        line = located_yaml.line_of(entry)
+        if isinstance(entry, located_yaml.Mapping) and len(entry) == 1:
             ((text, fields),) = entry.items()
-            fields = located.Mapping(line) if fields is None else fields
+            fields = located_yaml.Mapping(line) if fields is None else fields
         elif isinstance(entry, str):
-            text, fields = entry, located.Mapping(line)
+            text, fields = entry, located_yaml.Mapping(line)
         else:
             hint = "`plate*4`, or `couch: {wall: south, at: 1.2}`"
             self.faults.add(Code.SYNTAX, f"`{shown(entry)}` is not an entry", line, hint)

@@ -9,11 +9,11 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from hearth.homes.forms import form
-from hearth.homes.from_graph.parts import Parts
+from hearth.homes.from_graph.graph_places import Parts
 from hearth.homes.geometry import Rect
+from hearth.homes.object_shapes import form
+from hearth.homes.plans.home_shell import Thing, interior
 from hearth.homes.plans.plan import Plan
-from hearth.homes.plans.shell import Thing, interior
 from hearth.schemas.graph import Box
 
 TURN = 5

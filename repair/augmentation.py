@@ -5,17 +5,17 @@ from dataclasses import dataclass, replace
 
 from hearth.grounding.environments.default_state import Base, prepared
 from hearth.grounding.environments.sampling import Environment, Size, draw, sample
-from hearth.grounding.preconditions.checking import unmet, unmet_failure
+from hearth.grounding.preconditions.condition_checks import unmet, unmet_failure
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.postconditions import Postconditions, achieved
-from hearth.repair.circumstances import circumstances
-from hearth.repair.loop import TRIES, Attempt, repair
-from hearth.repair.perturb import Case, Perturbation, Perturbed, distinct
-from hearth.repair.strengths import MILD, Strength, strength
-from hearth.schemas.brief import brief
+from hearth.repair.perturbation import Case, Perturbation, Perturbed, distinct
+from hearth.repair.perturbation_strengths import MILD, Strength, strength
+from hearth.repair.repair_loop import TRIES, Attempt, repair
+from hearth.repair.step_context import circumstances
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
+from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import Execution
 from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.home import Home

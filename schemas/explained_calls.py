@@ -24,7 +24,7 @@ def explained(function: Callable[P, T]) -> Callable[P, T]:
         try:
             return function(*args, **kwargs)
         except Exception as error:
-            from hearth.schemas.arguments import explain
+            from hearth.schemas.argument_faults import explain
 
             explain(function, args, kwargs, error)
             raise

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from itertools import islice
 from random import Random
 
+from hearth.grounding.environments.condition_violation import closes
 from hearth.grounding.environments.default_state import Base
-from hearth.grounding.environments.violating import closes
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import CHARACTER, STATE_OF, Key, Literal

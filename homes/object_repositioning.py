@@ -3,17 +3,17 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from hearth.homes.forms import form
-from hearth.homes.from_graph.arranging import FRONT, passable, spots
-from hearth.homes.from_graph.measured import measured
+from hearth.homes.from_graph.furniture_arrangement import FRONT, passable, spots
+from hearth.homes.from_graph.layout_from_boxes import measured
 from hearth.homes.geometry import bottom, box_over, footprint
+from hearth.homes.object_shapes import form
 from hearth.homes.plans.floor import HEAD
 from hearth.homes.plans.furniture import NoPlaceError
+from hearth.homes.plans.home_shell import Thing, interior, strip
 from hearth.homes.plans.layout import Layout
+from hearth.homes.plans.object_packing import FAR, local_of, stand, support_of
 from hearth.homes.plans.obstacles import Obstacles
-from hearth.homes.plans.packing import FAR, local_of, stand, support_of
 from hearth.homes.plans.plan import Piece
-from hearth.homes.plans.shell import Thing, interior, strip
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -5,9 +5,9 @@ from functools import reduce
 from operator import or_
 
 from hearth.grounding.environments.default_state import Base
-from hearth.grounding.environments.filling import fill
-from hearth.grounding.environments.partial import PartialEnvironment
-from hearth.grounding.environments.placing import put_where_it_belongs
+from hearth.grounding.environments.object_placement import put_where_it_belongs
+from hearth.grounding.environments.partial_environment import PartialEnvironment
+from hearth.grounding.environments.random_objects import fill
 from hearth.grounding.environments.sampling import TRIES, USUAL, Environment, Size, of_partial, settle_character
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.conditions import Preconditions

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets import dataset_homes, dataset_knowledge
-from hearth.pipelines.engine.context import knowledge_laid_over, knowledge_used
+from hearth.pipelines.engine.build_context import knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job
 

@@ -5,9 +5,9 @@ from math import cos, hypot, radians, sqrt
 
 import numpy as np
 
-from hearth.homes.from_graph.parts import SHELL, Parts
+from hearth.homes.from_graph.graph_places import SHELL, Parts
 from hearth.homes.geometry import bottom, footprint, top
-from hearth.homes.plans.shell import Thing
+from hearth.homes.plans.home_shell import Thing
 from hearth.homes.relations import CLOSE_WITHIN, VIEW, arrays, direction
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code

@@ -9,7 +9,7 @@ from typing import Any
 from hearth.repair.handlers.common import Handler
 from hearth.repair.handlers.posture import CLEARS
 from hearth.repair.handlers.registry import HANDLERS
-from hearth.repair.perturb import MOST, PERTURBATIONS, Chances
+from hearth.repair.perturbation import MOST, PERTURBATIONS, Chances
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.input_files import load_yaml

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hearth.homes.forms import Form, form
 from hearth.homes.geometry import OPPOSITE_WALL, Rect, bottom, box_over, footprint, top, wall_of
-from hearth.homes.plans.entries import ON_TOP
+from hearth.homes.object_shapes import Form, form
 from hearth.homes.plans.furniture import NoPlaceError, names_of, shape
+from hearth.homes.plans.home_shell import Thing, band, span
 from hearth.homes.plans.plan import Piece
-from hearth.homes.plans.shell import Thing, band, span
+from hearth.homes.plans.plan_entries import ON_TOP
 from hearth.homes.plans.table_setting import places, setting
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.checks import programs
+from hearth.pipelines.checks import program_checks
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_programs
@@ -65,8 +65,8 @@ def warnings_of(program: Program, knowledge: Knowledge, file: str, source: list[
     They are contradictions, actions that no simulation runs, objects out of reach, steps without an effect.
     """
     found = [
-        *programs.contradictions(program, knowledge),
-        *programs.never_executed(program, knowledge),
-        *programs.findings(program, knowledge),
+        *program_checks.contradictions(program, knowledge),
+        *program_checks.never_executed(program, knowledge),
+        *program_checks.findings(program, knowledge),
     ]
-    return [programs.diagnostic(each, program, file, source) for each in found]
+    return [program_checks.diagnostic(each, program, file, source) for each in found]

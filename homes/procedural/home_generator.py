@@ -3,10 +3,10 @@
 from dataclasses import replace
 from random import Random
 
-from hearth.homes.plans import checks, shell
+from hearth.homes.plans import home_shell, plan_checks
+from hearth.homes.plans.home_shell import Shell, Thing
 from hearth.homes.plans.layout import Layout, arrange
 from hearth.homes.plans.plan import Piece, Plan, Room
-from hearth.homes.plans.shell import Shell, Thing
 from hearth.homes.procedural.floorplans import LEAST_ROOMS, MOST_ROOMS, floor_plan
 from hearth.homes.procedural.furnishing import UnfurnishableError, furnish
 from hearth.kb.knowledge import Knowledge
@@ -52,8 +52,8 @@ def generate(rooms: int, seed: int, knowledge: Knowledge) -> Layout:
 def _attempt(name: str, rooms: int, knowledge: Knowledge, rng: Random) -> Layout | None:
     plan = floor_plan(name, rooms, rng)
     faults = Faults(name)
-    checks.check_rooms(plan, faults)
-    built = shell.build(plan, faults)
+    plan_checks.check_rooms(plan, faults)
+    built = home_shell.build(plan, faults)
     if faults:
         return None
     furnished = []
@@ -87,7 +87,7 @@ def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:
         if crowded:
             plan = _without(plan, crowded)
             continue
-        checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
+        plan_checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
         if not faults:
             return layout
         far = {fault.line for fault in faults if fault.code == Code.NO_PATH}

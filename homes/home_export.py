@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hearth.homes import drawing
 from hearth.homes.plans.layout import Layout
-from hearth.homes.plans.writing import plan_text
+from hearth.homes.plans.plan_writer import plan_text
 from hearth.homes.scene_graph import every_thing, node_ids, scene
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 from hearth.grounding.preconditions.postconditions import Postconditions, missing, nodes_of
 from hearth.kb.knowledge import Knowledge
-from hearth.repair import trim
-from hearth.repair.circumstances import Lost, lost
+from hearth.repair import repair_trimming
 from hearth.repair.handlers.common import Edit, Handler, RepairContext
 from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
-from hearth.schemas.brief import brief
+from hearth.repair.step_context import Lost, lost
 from hearth.schemas.failure_words import step_number
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
+from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
@@ -107,7 +107,7 @@ class _Task(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Revision:
-    """A program under repair; `sources` as in `trim.trim`."""
+    """A program under repair; `sources` as in `repair_trimming.trim`."""
 
     program: Program
     sources: tuple[int, ...]
@@ -144,7 +144,7 @@ def repair(
 
     Examples:
         >>> from hearth.grounding.preconditions.postconditions import achieved
-        >>> from hearth.repair.loop import repair
+        >>> from hearth.repair.repair_loop import repair
         >>> broken = execution.program.with_steps(execution.program.steps[1:])
         >>> found = repair(broken, world, achieved(execution), known)
         >>> found.failure, [attempt.handler for attempt in found.attempts], found.program == execution.program
@@ -172,7 +172,7 @@ def repair(
         seen.add(revision.program.steps)
     if not attempts or not canonical_only:
         return Repaired(revision.program, revision.execution, tuple(attempts), revision.sources)
-    trimmed, sources = trim.trim(program, revision.execution, revision.sources, goal, rules, task.keeps)
+    trimmed, sources = repair_trimming.trim(program, revision.execution, revision.sources, goal, rules, task.keeps)
     return Repaired(trimmed.program, trimmed, tuple(attempts), sources)
 
 
@@ -233,13 +233,16 @@ def _edited(revision: _Revision, edit: Edit, rules: Rules) -> _Revision:
     for splice in reversed(edit.splices):
         end = splice.at + splice.removed
         replaced = sources[splice.at : end]
-        new = [known.get(id(step), trim.STAYING if edit.stays else trim.INSERTED) for step in splice.inserted]
+        new = [
+            known.get(id(step), repair_trimming.STAYING if edit.stays else repair_trimming.INSERTED)
+            for step in splice.inserted
+        ]
         new[: len(replaced)] = replaced[: len(new)]
         steps[splice.at : end] = splice.inserted
         sources[splice.at : end] = new
     program = revision.program.with_steps(steps)
     first = min(splice.at for splice in edit.splices)
-    return _Revision(program, tuple(sources), trim.resume(revision.execution, program, first, rules))
+    return _Revision(program, tuple(sources), repair_trimming.resume(revision.execution, program, first, rules))
 
 
 def _attempt(attempts: Sequence[Attempt], context: RepairContext, name: str, after: tuple[Step, ...]) -> Attempt:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from random import Random
 from typing import Any
 
-from hearth.homes.forms import form
+from hearth.homes.object_shapes import form
 from hearth.homes.plans.plan import Piece
 from hearth.kb.knowledge import Knowledge
 

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 
-from hearth.homes.forms import form
+from hearth.homes.object_shapes import form
 from hearth.homes.plans.plan import Piece
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import EnvironmentGraph, Node
