@@ -17,7 +17,7 @@ from hearth.pipelines.build import build as build
 from hearth.rendering.film.snapshots import trajectory_of as trajectory_of
 from hearth.rendering.film.video import record as record
 from hearth.rendering.modalities import render as render
-from hearth.rendering.scene.prepared import scene_of as scene_of
+from hearth.rendering.scene.scene_preparation import scene_of as scene_of
 from hearth.repair.augmentation import augment as augment
 from hearth.repair.sketch import sketch as sketch
 from hearth.schemas.diagnostics import HearthError as HearthError

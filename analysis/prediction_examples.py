@@ -137,7 +137,7 @@ def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[t
     from hearth.analysis.step_gallery import picture_of
     from hearth.rendering.film.png import encode
     from hearth.rendering.film.snapshots import trajectory_of
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.home_geometry import with_geometry
 
     # Not the run's start graph: what the environment moves would be drawn where the home has it.
     graph = with_geometry(dataset.home(home), home, dataset.knowledge).graph

@@ -19,7 +19,7 @@ from hearth.rendering.cameras.visibility import seen_as
 from hearth.rendering.film.snapshots import Keyframe, Trajectory, named_nodes, trajectory_of
 from hearth.rendering.modalities import pictures_of
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.rays.camera_shot import shoot
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph

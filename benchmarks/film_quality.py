@@ -27,9 +27,9 @@ from hearth.challenges.result_files import read
 from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default
 from hearth.pipelines.build import corpus
-from hearth.rendering.film.quality import FilmQuality, film_quality
+from hearth.rendering.film.film_measures import FilmQuality, film_quality
+from hearth.rendering.film.film_walks import Walk, walks
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.film.walks import Walk, walks
 from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import print_step
 

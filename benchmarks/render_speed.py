@@ -26,17 +26,17 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import home_box, room_views
 from hearth.rendering.film.video_file import Writer
 from hearth.rendering.modalities import MODALITIES, pictures_of, render
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure as Person
 from hearth.rendering.people.figure import figure_mesh
-from hearth.rendering.people.variety import person
+from hearth.rendering.people.random_people import person
 from hearth.rendering.rays import threads
-from hearth.rendering.rays.incremental import incremental_frame
+from hearth.rendering.rays.incremental_pictures import incremental_frame
 from hearth.rendering.scene.instances import Thing, forget
-from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import scene_of
 from hearth.rendering.scene.triangles import StaticThings
 from hearth.schemas.graph import EnvironmentGraph, Node
 

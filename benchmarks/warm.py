@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.modalities import MODALITIES, render
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
-from hearth.rendering.rays.incremental import incremental_frame
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
+from hearth.rendering.rays.incremental_pictures import incremental_frame
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import Light
 from hearth.rendering.scene.scene import Scene

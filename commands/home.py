@@ -171,9 +171,9 @@ def export(
       python cli.py home export maple --format gltf
       python cli.py home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
     """
+    from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.rendering.scene.interchange import ENDINGS, write
-    from hearth.rendering.scene.prepared import PreparedScene
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.scene_preparation import PreparedScene
 
     known = read_knowledge(None)
     drawable = with_geometry(_graph(home, homes), home, known)

@@ -169,7 +169,7 @@ def film_of(execution: Execution, home: str, out: Path, homes: Path | None, kb: 
     from hearth.commands.inputs import read_knowledge
     from hearth.commands.render import Shooting, videos
     from hearth.homes import library
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.storage.names import inside
 
     known = read_knowledge(kb)

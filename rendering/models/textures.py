@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.models import pictures
-from hearth.rendering.models.weave import SIDE, blend, grid_lines, noise, squares
+from hearth.rendering.models.texture_patterns import SIDE, blend, grid_lines, noise, squares
 
 
 def _grey(values: Floats) -> Floats:

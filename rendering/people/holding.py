@@ -10,16 +10,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model, choice_of
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model, choice_of
 from hearth.rendering.models.mesh import rotation
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Held
+from hearth.rendering.people.headwear import WORN, on_head
 from hearth.rendering.people.rotations import Vector
-from hearth.rendering.people.worn import WORN, on_head
 from hearth.rendering.scene.instances import Thing, own_mesh, tilted
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import PreparedScene
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.graph import Box, Node, Point
 from hearth.schemas.yaml_extent import packaged
 

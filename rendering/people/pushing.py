@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import cos, hypot, radians, sin
 
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.scene.free_poses import Pose
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.solids import Solids
 from hearth.schemas.graph import Box, Node, Spot
 from hearth.schemas.program import Step

@@ -6,8 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from hearth.rendering.people.acting import Actor, dressed_for, reachable
-from hearth.rendering.people.aims import (
+from hearth.rendering.people.action_poses import Actor, dressed_for, reachable
+from hearth.rendering.people.clearance import at_rest
+from hearth.rendering.people.gestures import gesture_of
+from hearth.rendering.people.hand_gestures import gesturing
+from hearth.rendering.people.holding import hold_of_node
+from hearth.rendering.people.palm_targets import (
     SIDES,
     Aim,
     Aims,
@@ -19,11 +23,7 @@ from hearth.rendering.people.aims import (
     thing_aim,
     with_aims,
 )  # fmt: skip
-from hearth.rendering.people.clearance import at_rest
-from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.people.hand_gestures import gesturing
-from hearth.rendering.people.holding import hold_of_node
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import EnvironmentGraph, Point
 from hearth.schemas.program import Step
 

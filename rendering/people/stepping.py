@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import hypot, pi, sin
 
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Foot
 from hearth.rendering.people.gait import Place, angle, between, eased, in_world, local
 from hearth.rendering.people.skeleton import feet_of

@@ -1,6 +1,6 @@
 """First hits of a camera's rays by rasterising, several times as fast as casting them.
 
-Triangles and depths are those of `casting`, but where two triangles are equally near either may win.
+Triangles and depths are those of `ray_casting`, but where two triangles are equally near either may win.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.cameras.camera import NEAREST, Camera
 from hearth.rendering.rays import rasterising
-from hearth.rendering.rays.casting import Hits
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.ray_casting import Hits
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.threads import count, each
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from hearth.rendering.arrays import Floats, Ints
+from hearth.rendering.models.texture_patterns import SIDE
 from hearth.rendering.models.textures import LEVELS, OFFSETS, SLOTS
-from hearth.rendering.models.weave import SIDE
 from hearth.rendering.rays.kernels import (
     COLOR,
     DENSITY,

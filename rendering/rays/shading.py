@@ -18,10 +18,10 @@ from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.models.textures import decode, texels
 from hearth.rendering.rays import lamplight as loops
 from hearth.rendering.rays import light_rays
-from hearth.rendering.rays.casting import Hits
 from hearth.rendering.rays.kernels import COLUMNS, FLAT, gather_rows
 from hearth.rendering.rays.light_rays import OPEN
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.ray_casting import Hits
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.shadow_loops import own_groups
 from hearth.rendering.rays.shadow_maps import occluded
 from hearth.rendering.rays.threads import each

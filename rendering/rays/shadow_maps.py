@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.rays import shadow_loops as loops
-from hearth.rendering.rays.casting import Caster
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.ray_casting import Caster
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.threads import each
 from hearth.rendering.rays.unshaded_groups import unshaded_groups
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from hearth.rendering.cameras.camera import Camera
-from hearth.rendering.rays.shot import Shot, shoot, shoot_after
+from hearth.rendering.rays.camera_shot import Shot, shoot, shoot_after
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.triangles import Geometry, Part
 
@@ -20,7 +20,7 @@ class StillCameras:
         self.known: dict[Camera, Shot] = {}
 
     def shoot(self, scene: Scene, camera: Camera) -> Shot:
-        """What each of a camera's rays hits first; see `shot.shoot`."""
+        """What each of a camera's rays hits first; see `camera_shot.shoot`."""
         key = replace(camera, name="")
         known = self.known.pop(key, None)
         shot = shoot(scene, camera) if known is None else shoot_after(scene, replace(known, camera=camera))

@@ -9,8 +9,8 @@ pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.people.arrivals import FASTEST, LEAST, Arrivals
 from hearth.rendering.people.motion import frames
+from hearth.rendering.people.object_arrivals import FASTEST, LEAST, Arrivals
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program

@@ -5,13 +5,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.blends import Segment, blended
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, Held
 from hearth.rendering.people.gait import SWUNG, Place, turning, walking
 from hearth.rendering.people.holding import Hold
-from hearth.rendering.people.pacing import FASTEST, THINGS, paced
-from hearth.rendering.people.variety import person
+from hearth.rendering.people.motion_timing import FASTEST, THINGS, paced
+from hearth.rendering.people.pose_blends import Segment, blended
+from hearth.rendering.people.random_people import person
 from hearth.schemas.graph import Node
 
 BROOM = Hold("handle", (0.0, 1.2, 0.0), 0.0, (-1.0, 0.0, 0.1), (0.1, 0.6, 0.2), True)

@@ -10,10 +10,10 @@ import pytest
 import yaml
 
 from hearth.rendering.models import pictures, recipes
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model, draw
 from hearth.rendering.models.expressions import MATH, Scope, text_of
 from hearth.rendering.models.interpreter import Interpreter
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model, draw
 from hearth.rendering.models.mesh import join
 from hearth.rendering.models.primitives import KNOWN, names_of
 from hearth.rendering.models.recipes import ENTRY, FAMILIES, RECIPES

@@ -10,18 +10,18 @@ pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at
-from hearth.rendering.cameras.sight import AT_WORK, Obstacles, ahead, person, values
 from hearth.rendering.cameras.viewpoints import best_view
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.aims import with_aims
+from hearth.rendering.cameras.visibility_estimates import AT_WORK, Obstacles, ahead, person, values
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_places import at_body
 from hearth.rendering.people.body_pose import BodyPose
-from hearth.rendering.people.variety import person as body_of
+from hearth.rendering.people.palm_targets import with_aims
+from hearth.rendering.people.random_people import person as body_of
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import scene_of
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 
 ROOM = Node(9, "bathroom", "Rooms", (), (), None, Box((0, 1.3, 0), (6, 2.6, 6)))

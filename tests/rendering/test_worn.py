@@ -6,14 +6,14 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.headwear import WORN
 from hearth.rendering.people.holding import held_things
-from hearth.rendering.people.variety import person
-from hearth.rendering.people.worn import WORN
+from hearth.rendering.people.random_people import person
 from hearth.rendering.scene.instances import placed
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import PreparedScene
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 
 ME = Node(1, "character", "Characters", (), (), None)

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hearth.rendering.models.mesh import rotation
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.scene.instances import Thing, tilted
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import PreparedScene
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.graph import Node, Point
 from hearth.schemas.yaml_extent import packaged
 
@@ -38,7 +38,7 @@ def _read(fields: Mapping[str, Any]) -> Worn:
 
 
 WORN: Mapping[str, Worn] = {
-    name: _read(fields) for name, fields in packaged("hearth.rendering.people", "worn.yaml").items()
+    name: _read(fields) for name, fields in packaged("hearth.rendering.people", "headwear.yaml").items()
 }
 """By class; other garments are not drawn as things."""
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from hearth.rendering.people.body import BODIES, Body
-from hearth.rendering.people.shape import Shape, is_present
+from hearth.rendering.people.body_shape import Shape, is_present
 from hearth.schemas.rng import derive
 from hearth.schemas.yaml_extent import packaged
 

@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 from math import dist, pi
 from typing import TYPE_CHECKING
 
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.gait import eased
 from hearth.rendering.people.holding import held_things
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Point
 
 if TYPE_CHECKING:
-    from hearth.rendering.scene.prepared import PreparedScene
+    from hearth.rendering.scene.scene_preparation import PreparedScene
 
 FASTEST = 1.3
 """Metres per second at most."""

@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.blends import Segment
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.holding import Hold, hold_of_node
+from hearth.rendering.people.pose_blends import Segment
 from hearth.rendering.scene.instances import tilted
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 
 FASTEST, THINGS = 2.6, 1.5
 """Metres per second at most of heads and hands, and of held things, which may be on a way of their own besides."""

@@ -8,7 +8,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.rendering.film.snapshots import Keyframe, check_geometry, trajectory_of
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.packed_shapes import PackedShapes
-from hearth.rendering.scene.prepared import prepared_scene
+from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.simulation.engine import Execution
 

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from hearth.rendering.arrays import Floats, Image
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.rays import shading
-from hearth.rendering.rays.casting import Hits
 from hearth.rendering.rays.first_hits import drawable, moving_hits, static_hits
 from hearth.rendering.rays.kernels import taken
 from hearth.rendering.rays.mirrors import mirrored
+from hearth.rendering.rays.ray_casting import Hits
 from hearth.rendering.rays.shading import Setting
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.lights import from_above

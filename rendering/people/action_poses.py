@@ -5,16 +5,16 @@ from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
 
 from hearth.homes.object_shapes import form
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import choice_of, recipe_of
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import choice_of, recipe_of
 from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.people.variety import person
+from hearth.rendering.people.random_people import person
 from hearth.rendering.scene.free_poses import Pose
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import local_size
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.scene_preparation import local_size
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.program import Step

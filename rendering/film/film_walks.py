@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hearth.rendering.film.snapshots import Keyframe
 from hearth.rendering.people.motion import Frame
 from hearth.rendering.scene.floor_cells import HEADROOM, IGNORED
-from hearth.rendering.scene.prepared import PreparedScene
+from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.rendering.scene.solids import Solid, solids_of
 from hearth.schemas.graph import Spot
 

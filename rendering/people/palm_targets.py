@@ -9,15 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from hearth.kb.modifiers import value
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, Held
 from hearth.rendering.people.holding import Hold, grip_point, hold_of_node
 from hearth.rendering.people.rotations import unit
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, in_reach
 from hearth.rendering.scene.free_poses import Pose
 from hearth.rendering.scene.instances import own_mesh
-from hearth.rendering.scene.locations import HANDS
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.object_locations import HANDS
 from hearth.schemas.graph import EnvironmentGraph, Node, Point
 from hearth.schemas.program import Step
 

@@ -5,11 +5,11 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.cameras.camera import Camera
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.models.mesh import rotation
-from hearth.rendering.rays.maps import HORIZON, motion
+from hearth.rendering.rays.camera_shot import Shot, everywhere, shoot, shoot_after
+from hearth.rendering.rays.pixel_maps import HORIZON, motion
 from hearth.rendering.rays.shading import chunks
-from hearth.rendering.rays.shot import Shot, everywhere, shoot, shoot_after
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.rendering.scene.scene import Scene

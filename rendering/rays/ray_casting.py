@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.rays.memory import keep
+from hearth.rendering.rays.reused_arrays import keep
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hearth.kb.modifiers import SPEEDS, value
-from hearth.rendering.people.acting import Actor, open_side
+from hearth.rendering.people.action_poses import Actor, open_side
 from hearth.rendering.people.bedding import Remade
-from hearth.rendering.people.blends import HEADS, Segment, blended, effort_between, with_hands
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.clearance import arms_on_the_way
 from hearth.rendering.people.gait import Gait, Place, angle, between, eased, movements
 from hearth.rendering.people.gestures import Gesture, gesture_of
-from hearth.rendering.people.lying import lying_down, made_ready
-from hearth.rendering.people.pacing import holds_of, paced
+from hearth.rendering.people.lying_down import lying_down, made_ready
+from hearth.rendering.people.motion_timing import holds_of, paced
+from hearth.rendering.people.pose_blends import HEADS, Segment, blended, effort_between, with_hands
 from hearth.rendering.people.reaching import posed, reach_for
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, effort_of
 from hearth.rendering.people.stepping import planted, stepping

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Between, BodyPose, Hand, Held
 from hearth.rendering.people.gait import angle, between, eased
 from hearth.rendering.people.skeleton import effort_of

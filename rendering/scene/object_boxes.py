@@ -9,11 +9,11 @@ from types import MappingProxyType
 
 from hearth.homes.object_shapes import form
 from hearth.kb.knowledge import Knowledge
-from hearth.rendering.models.look import Look, Region
-from hearth.rendering.models.looks import recipe_of
+from hearth.rendering.models.appearance import Look, Region
+from hearth.rendering.models.class_appearance import recipe_of
 from hearth.rendering.scene.free_poses import Pose, best, lying_flat, overlap
-from hearth.rendering.scene.locations import BUILDING, HANDS, Location, locations_of, parents_first
-from hearth.rendering.scene.prepared import LIQUIDS, PreparedScene, liquid, local_size
+from hearth.rendering.scene.object_locations import BUILDING, HANDS, Location, locations_of, parents_first
+from hearth.rendering.scene.scene_preparation import LIQUIDS, PreparedScene, liquid, local_size
 from hearth.rendering.scene.solids import Solids, solids_of
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive

@@ -9,9 +9,9 @@ import numpy as np
 from hearth.rendering.arrays import Floats
 from hearth.rendering.scene.floor_cells import is_in_the_way
 from hearth.rendering.scene.instances import placed
-from hearth.rendering.scene.prepared import PreparedScene
 from hearth.rendering.scene.room_shell import DOORS
 from hearth.rendering.scene.routes import ways_of
+from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.rendering.scene.standing_places import FreeFloor, nothing
 from hearth.schemas.graph import Node
 

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import pi, sin
 
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.bedding import Remade, drawn, edge, glided
-from hearth.rendering.people.blends import Segment, blended, changed, effort_between, least_seconds
 from hearth.rendering.people.body_pose import BodyPose, Foot, Hand
 from hearth.rendering.people.gait import angle, between, eased
+from hearth.rendering.people.pose_blends import Segment, blended, changed, effort_between, least_seconds
 from hearth.rendering.people.skeleton import feet_of
 from hearth.schemas.graph import Point
 

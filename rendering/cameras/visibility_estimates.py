@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from hearth.rendering.arrays import Floats
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.recognition import CLOSE, OBJECT, PERSON
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.scene.instances import placed
 from hearth.rendering.scene.scene import Scene

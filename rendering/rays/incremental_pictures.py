@@ -19,9 +19,17 @@ from hearth.rendering.arrays import Bytes, Ints
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.modalities import pictures_of as others
 from hearth.rendering.rays import shading
+from hearth.rendering.rays.camera_shot import (
+    Shot,
+    camera_rays,
+    everywhere,
+    hits_on_static,
+    overlay,
+    prepare,
+    setting_of,
+)
 from hearth.rendering.rays.mirrors import mirrored, showing
 from hearth.rendering.rays.shading import Exposure, Setting
-from hearth.rendering.rays.shot import Shot, camera_rays, everywhere, hits_on_static, overlay, prepare, setting_of
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.triangles import Geometry

@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 
 from hearth.rendering.arrays import Bytes, Floats, Ints
-from hearth.rendering.rays import maps, shading
-from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays import pixel_maps, shading
+from hearth.rendering.rays.camera_shot import Shot, camera_rays, everywhere, prepare, setting_of
 from hearth.rendering.rays.mirrors import mirrored
+from hearth.rendering.rays.ray_casting import Hits
 from hearth.rendering.rays.shading import Setting
-from hearth.rendering.rays.shot import Shot, camera_rays, everywhere, prepare, setting_of
 from hearth.rendering.rays.threads import each
 
 SUBPIXELS = ((0.625, 0.125), (0.125, 0.375), (0.875, 0.625), (0.375, 0.875))
@@ -46,7 +46,7 @@ def fine(shot: Shot) -> Bytes:
     each(paint, chunks)
     mirrored(shot.rays, shot.hits, shot.geometry, setting_of(shot), out)
     rough = np.zeros(size, np.bool_)
-    maps.edges(out, shot.hits.triangle, shot.geometry.owners, camera.width, camera.height, STEP, rough)
+    pixel_maps.edges(out, shot.hits.triangle, shot.geometry.owners, camera.width, camera.height, STEP, rough)
     again = np.flatnonzero(rough).astype(np.int32)
     if len(again):
         out[again] = _mixed(shot, again, visibility)
@@ -81,7 +81,7 @@ def _smoothed(shot: Shot, visibility: LightVisibility) -> LightVisibility:
     smooth = seen.copy()
 
     def work(top: int) -> None:
-        maps.smoothed(seen, columns, flats, points, width, height, top, min(top + BAND, height), smooth)
+        pixel_maps.smoothed(seen, columns, flats, points, width, height, top, min(top + BAND, height), smooth)
 
     each(work, range(0, height, BAND))
     return LightVisibility(points, flats, smooth)
@@ -110,7 +110,7 @@ def _again(shot: Shot, pixels: Ints, visibility: LightVisibility, setting: Setti
         seen, rest = np.zeros((len(chunk), visibility.seen.shape[1]), np.uint8), np.empty(len(chunk), np.int32)
         size = (camera.width, camera.height)
         faces = (surface.flats, surface.points)
-        missing = maps.borrowed(
+        missing = pixel_maps.borrowed(
             pixels[part], *faces, *size, visibility.flats, visibility.points, visibility.seen, seen, rest
         )
         if missing:

@@ -7,8 +7,8 @@ from math import cos, radians, sin
 
 from hearth.homes.object_shapes import form
 from hearth.kb.knowledge import Knowledge
-from hearth.rendering.models.look import Look, Size
-from hearth.rendering.models.looks import Model, choice_of, model_of
+from hearth.rendering.models.appearance import Look, Size
+from hearth.rendering.models.class_appearance import Model, choice_of, model_of
 from hearth.rendering.models.paint import linear
 from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.people.figure import Figure

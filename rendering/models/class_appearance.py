@@ -5,7 +5,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.rendering.models.look import Look, Recipe, Size
+from hearth.rendering.models.appearance import Look, Recipe, Size
 from hearth.rendering.models.mesh import Mesh
 from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.models.textures import SLOTS

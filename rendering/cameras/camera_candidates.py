@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera, point_of
-from hearth.rendering.cameras.sight import ENOUGH, FILL, Obstacles, Target, ahead
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.cameras.visibility_estimates import ENOUGH, FILL, Obstacles, Target, ahead
+from hearth.rendering.people.action_poses import Actor
 from hearth.schemas.graph import Box
 
 TURNS = tuple(range(-180, 180, 30))
