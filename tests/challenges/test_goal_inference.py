@@ -9,7 +9,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from scrambled import hiding_places
+from scrambled_worlds import hiding_places
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.demonstration_episodes import Wish, demonstrate

@@ -10,7 +10,7 @@ import orjson
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scrambled import scrambled
+from scrambled_worlds import scrambled
 
 from hearth.envs.answers import by_text
 from hearth.envs.observations import observation
