@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hearth.agents.distances import Distances
 from hearth.agents.goal_space import Flags, Floats, GoalSpace, Numbers, Places, Scene
+from hearth.agents.walk_distances import Distances
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
 from hearth.schemas.literals import HANDS, HOLDS

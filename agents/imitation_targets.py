@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
+from hearth.agents.hierarchical_helper import HELPING, Hierarchical, Partner
 from hearth.agents.learned_helpers import Choice
 from hearth.agents.policy_observations import SceneReader
 from hearth.agents.subgoals import Missing, Subgoal

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from hearth.agents.agent_locations import note_others
-from hearth.agents.hierarchical import HELPING
+from hearth.agents.hierarchical_helper import HELPING
 from hearth.agents.human_like import HumanLike
 from hearth.agents.policy_observations import SceneReader
 from hearth.agents.subgoals import Missing, Subgoal

@@ -7,8 +7,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 
-from hearth.agents.distances import Distances
 from hearth.agents.goal_space import GoalSpace, Scene
+from hearth.agents.walk_distances import Distances
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import Pose
 

@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from hearth.agents.belief import Belief, Place
-from hearth.agents.distances import Distances
 from hearth.agents.goal_posterior import USUAL_MODEL, ActionModel, Posterior
 from hearth.agents.goal_space import Counts, Edge, GoalsIn, GoalSpace, Places, Scene
 from hearth.agents.partner_plans import Planner
 from hearth.agents.protocol import Choice
 from hearth.agents.regression_planning import Regression
+from hearth.agents.walk_distances import Distances
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, HOLDS, Literal
 from hearth.schemas.program import Step

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hearth.agents.distances import Distances
 from hearth.agents.goal_space import Counts, Edge, Flags, GoalSpace, Scene
+from hearth.agents.walk_distances import Distances
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import Pose
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from hearth.agents.goal_space import Counts, Edge, GoalsIn
-from hearth.agents.hierarchical import Hierarchical
+from hearth.agents.hierarchical_helper import Hierarchical
 from hearth.agents.network_proposals import NetworkProposals
 from hearth.agents.online_helper import OnlineHelper
 from hearth.schemas.goals import Goal

@@ -14,7 +14,7 @@ from functools import lru_cache
 from hearth.agents.belief import Belief
 from hearth.kb.formula import And, Effect, Formula, Or, Term
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 from hearth.schemas.literals import HANDS, HOLDS, Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.vocabulary import OPPOSITE, STATE_ID

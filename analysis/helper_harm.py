@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from hearth.agents.population import PEOPLE
+from hearth.agents.human_population import PEOPLE
 from hearth.analysis.challenge_table import CONFIDENT
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Known

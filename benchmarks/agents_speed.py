@@ -15,7 +15,7 @@ from measuring import Figure, as_line, finish, parser
 
 from hearth.agents.agent_registry import HELPERS, MAIN
 from hearth.agents.protocol import Agent
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.tasks import task
 from hearth.kb.loading.load import default

@@ -16,7 +16,7 @@ from hearth.agents.agent_registry import MAIN
 from hearth.agents.goal_posterior import Posterior
 from hearth.agents.goal_space import Scene
 from hearth.agents.online_helper_registry import ONLINE
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.tasks import task
 from hearth.kb.loading.load import default

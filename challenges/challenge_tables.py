@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from hearth.agents.online_helper_registry import ONLINE
 from hearth.challenges import challenge_rows, published_tasks
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.demonstration_episodes import Demonstration, demonstrations
 from hearth.challenges.episodes import Known, Record
 from hearth.challenges.helper_beliefs import beliefs

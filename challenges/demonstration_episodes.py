@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.demonstrator import Demonstrator
 from hearth.challenges.episode_loop import Played, Player, play
 from hearth.challenges.episodes import Known, read_instruction, written

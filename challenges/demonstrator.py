@@ -13,7 +13,7 @@ from operator import or_
 
 from hearth.agents.distractions import Errand
 from hearth.agents.human_like import HumanLike
-from hearth.challenges.definition import Challenge
+from hearth.challenges.challenge_definition import Challenge
 from hearth.challenges.goal_grammar import instance, wanted_things
 from hearth.challenges.tasks import Task
 from hearth.schemas.goals import Goal

@@ -12,7 +12,7 @@ from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
 from hearth.agents.online_helper_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
 from hearth.challenges.agent_guard import SECONDS, Guarded
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_loop import Player
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

@@ -9,7 +9,7 @@ from typing import Any
 
 from hearth.agents.agent_registry import MainAgent
 from hearth.agents.protocol import Choice
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_loop import play
 from hearth.challenges.failure_analysis import analysed

@@ -21,7 +21,7 @@ from hearth.agents.human_like import HumanLike
 from hearth.agents.imitation_targets import ShownChoices
 from hearth.agents.learned_helpers import Choice, Hybrid
 from hearth.agents.policy_observations import vocabulary
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_loop import Played, Player, play
 from hearth.challenges.episodes import Known, start_of
 from hearth.challenges.practice_episodes import Practice, low_rewards, practised

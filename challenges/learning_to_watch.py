@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.episodes import Known
 from hearth.challenges.published_tasks import DEMONSTRATIONS

@@ -8,7 +8,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Job, Record, played, start_of
 from hearth.challenges.failure_analysis import Columns
 from hearth.challenges.metrics import outcome

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hearth.agents.learned_helpers import Choice, Learned
 from hearth.agents.subgoals import Aims, Missing, Subgoal
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_loop import Played, Player, play
 from hearth.challenges.episodes import Known, start_of
 from hearth.challenges.tasks import Task

@@ -10,7 +10,7 @@ from functools import lru_cache
 from random import Random
 from typing import NamedTuple
 
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.goal_grammar import instance, wanted_things
 from hearth.grounding.environments.default_state import Base, prepared
 from hearth.homes.library import load_graph

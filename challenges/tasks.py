@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from random import Random
 
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.start_worlds import start
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

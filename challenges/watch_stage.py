@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from hearth.agents.demonstration_goals import READERS, Question, by_states
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.episodes import Known
 from hearth.challenges.tasks import Task

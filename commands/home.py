@@ -58,9 +58,9 @@ def show(home: str, out: Path | None = None, homes: Path | None = None, as_json:
     """
     graph = _graph(home, homes)
     if out is not None:
-        from hearth.homes import drawing
+        from hearth.homes import floor_plan_drawing
 
-        drawing.write(_layout(home, homes), out)
+        floor_plan_drawing.write(_layout(home, homes), out)
     rooms = _rooms(graph)
     if as_json:
         output.emit({"home": home, **_figures(graph), "contents": rooms, "drawing": out})
@@ -255,9 +255,9 @@ def stats(
       python cli.py home stats --generated 1000
     """
     from hearth.homes import library
+    from hearth.homes.home_statistics import beside, of_homes, placement_distance, places
     from hearth.homes.procedural.home_generator import generate as generated_layout
     from hearth.homes.scene_graph import scene
-    from hearth.homes.statistics import beside, of_homes, placement_distance, places
 
     known, ours = read_knowledge(None), library.names()
     groups = {
@@ -318,7 +318,7 @@ def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
     """The mean placement distance of each home to all others."""
     from statistics import fmean
 
-    from hearth.homes.statistics import placement_distance, places
+    from hearth.homes.home_statistics import placement_distance, places
 
     known = read_knowledge(None)
     apart = [

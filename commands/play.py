@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from hearth.agents.protocol import Agent
-    from hearth.challenges.channels import Channel
+    from hearth.challenges.agent_channels import Channel
     from hearth.challenges.episode_loop import Played
 
 TEXT, WAIT, LISTEN, STDIO = "text", "wait", "listen", "stdio"
@@ -144,7 +144,7 @@ class Waiting:
 def _channel(seat: _Seat, how: _How, stack: ExitStack) -> Channel:
     import shlex
 
-    from hearth.challenges.channels import Listener, ProcessChannel, StandardChannel
+    from hearth.challenges.agent_channels import Listener, ProcessChannel, StandardChannel
 
     if seat.spec == STDIO:
         return StandardChannel()
@@ -179,7 +179,7 @@ def _asked_at_terminal(as_json: bool) -> Callable[[str], str]:
 
 
 def _transcript(path: Path | None, stack: ExitStack) -> Callable[[Mapping[str, Any]], None]:
-    from hearth.envs.answers import keep_nothing
+    from hearth.envs.agent_answers import keep_nothing
 
     if path is None:
         return keep_nothing

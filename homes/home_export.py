@@ -5,7 +5,7 @@ import io
 from dataclasses import replace
 from pathlib import Path
 
-from hearth.homes import drawing
+from hearth.homes import floor_plan_drawing
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan_writer import plan_text
 from hearth.homes.scene_graph import every_thing, node_ids, scene
@@ -28,7 +28,7 @@ def write(layout: Layout, path: Path, knowledge: Knowledge) -> None:
     elif path.suffix == ".yaml":
         path.write_text(plan_text(replace(layout.plan, name=path.stem)), encoding="utf-8")
     else:
-        drawing.write(layout, path)
+        floor_plan_drawing.write(layout, path)
 
 
 def write_release(graph: EnvironmentGraph, path: Path) -> int:

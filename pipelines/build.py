@@ -8,9 +8,9 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engine.build_estimates import forecast
 from hearth.pipelines.engine.build_homes import Homes, known_homes
 from hearth.pipelines.engine.engines import engine as make_engine
-from hearth.pipelines.engine.estimates import forecast
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings

@@ -10,7 +10,7 @@ from typing import Any
 
 from hearth.agents.agent_registry import HELPERS
 from hearth.agents.human_like import HumanLike
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.published_tasks import tasks as published
 from hearth.schemas import located_yaml

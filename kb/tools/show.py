@@ -3,7 +3,7 @@
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, ObjectClass, Placement
+from hearth.kb.knowledge_records import Action, ObjectClass, Placement
 from hearth.kb.tools.correction_reasons import Reasons
 
 

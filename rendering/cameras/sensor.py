@@ -12,7 +12,7 @@ from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
 from hearth.rendering.people.action_poses import Actor, initial_actors
 from hearth.rendering.people.bedding import turned_back
-from hearth.rendering.people.reaching import posed
+from hearth.rendering.people.hand_reach import posed
 from hearth.rendering.scene.added_furniture import furnished
 from hearth.rendering.scene.door_sweep import Floors
 from hearth.rendering.scene.object_boxes import Places

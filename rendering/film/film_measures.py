@@ -11,7 +11,7 @@ from hearth.rendering.cameras.visibility import objects_of
 from hearth.rendering.film.snapshots import AUTO, Trajectory
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.people.motion import frames
-from hearth.rendering.rays.still_cameras import StillCameras
+from hearth.rendering.rays.fixed_cameras import StillCameras
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 

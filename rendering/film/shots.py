@@ -27,7 +27,7 @@ from hearth.rendering.cameras.visibility_estimates import (
 from hearth.rendering.film.shot_sequence import Acts, States, Worths, best_cut
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
-from hearth.rendering.rays.still_cameras import StillCameras
+from hearth.rendering.rays.fixed_cameras import StillCameras
 from hearth.schemas.graph import Box, EnvironmentGraph, Spot
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY

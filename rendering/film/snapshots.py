@@ -16,9 +16,9 @@ from hearth.rendering.people.action_poses import Actor, elsewhere, initial_actor
 from hearth.rendering.people.bedding import turned_back
 from hearth.rendering.people.clearance import faults
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.people.holding import held_things
-from hearth.rendering.people.pushing import slid
-from hearth.rendering.people.reaching import posed, reach_for
+from hearth.rendering.people.hand_reach import posed, reach_for
+from hearth.rendering.people.held_objects import held_things
+from hearth.rendering.people.pushed_objects import slid
 from hearth.rendering.people.skeleton import effort_of
 from hearth.rendering.rays.camera_shot import Shot, shoot
 from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame

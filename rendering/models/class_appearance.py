@@ -7,7 +7,7 @@ from typing import Any
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.appearance import Look, Recipe, Size
 from hearth.rendering.models.mesh import Mesh
-from hearth.rendering.models.recipes import RECIPES
+from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.models.textures import SLOTS
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

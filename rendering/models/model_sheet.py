@@ -11,7 +11,7 @@ from hearth.rendering.cameras.camera import Camera, point_of
 from hearth.rendering.modalities import render
 from hearth.rendering.models.appearance import Look, Size
 from hearth.rendering.models.class_appearance import Model, draw
-from hearth.rendering.models.recipes import RECIPES
+from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import Daylight, Light
 from hearth.rendering.scene.scene import Scene

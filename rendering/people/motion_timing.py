@@ -10,7 +10,7 @@ import numpy as np
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.people.action_poses import Actor
-from hearth.rendering.people.holding import Hold, hold_of_node
+from hearth.rendering.people.held_objects import Hold, hold_of_node
 from hearth.rendering.people.pose_blends import Segment
 from hearth.rendering.scene.instances import tilted
 from hearth.rendering.scene.object_boxes import Places

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.gait import eased
-from hearth.rendering.people.holding import held_things
+from hearth.rendering.people.held_objects import held_things
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene import Scene

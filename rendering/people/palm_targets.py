@@ -11,7 +11,7 @@ import numpy as np
 from hearth.kb.modifiers import value
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, Held
-from hearth.rendering.people.holding import Hold, grip_point, hold_of_node
+from hearth.rendering.people.held_objects import Hold, grip_point, hold_of_node
 from hearth.rendering.people.rotations import unit
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, in_reach
 from hearth.rendering.scene.free_poses import Pose

@@ -9,8 +9,8 @@ from hearth.homes.object_shapes import form
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.appearance import Look, Size
 from hearth.rendering.models.class_appearance import Model, choice_of, model_of
+from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.models.paint import linear
-from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.scene.effects import light_point, shining
 from hearth.rendering.scene.instances import Thing

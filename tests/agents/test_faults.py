@@ -11,7 +11,7 @@ from small_tasks import play, start, wanted
 from hearth.agents.belief import usual_containers
 from hearth.agents.human_faults import Faults, Faulty
 from hearth.agents.human_like import HumanLike
-from hearth.agents.population import TURNS, ChangesGoal
+from hearth.agents.human_population import TURNS, ChangesGoal
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.world.states import OPEN
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scrambled_worlds import hiding_places
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.learning_to_watch import examples, goals_of_tests
 from hearth.challenges.published_tasks import tasks

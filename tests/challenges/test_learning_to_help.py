@@ -9,7 +9,7 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from hearth.agents.hierarchical import Hierarchical  # noqa: E402
+from hearth.agents.hierarchical_helper import Hierarchical  # noqa: E402
 from hearth.agents.human_like import HumanLike  # noqa: E402
 from hearth.agents.learned_helpers import Hybrid, Learned  # noqa: E402
 from hearth.agents.policy_observations import vocabulary  # noqa: E402

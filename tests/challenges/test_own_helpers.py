@@ -81,7 +81,7 @@ def test_what_is_not_seen_changes_nothing_that_a_helper_is_told_of_places(name, 
     """Under partial observation the network is shown where things are believed to be, not where they are."""
     pytest.importorskip("torch")
     from hearth.agents.online_helper_registry import ONLINE
-    from hearth.challenges.definition import challenge
+    from hearth.challenges.challenge_definition import challenge
     from hearth.simulation.env import Env
 
     which = challenge("owah_partial")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from hearth.challenges import episodes, parallel_episodes
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.episodes import Job, again, played

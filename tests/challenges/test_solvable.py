@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.solvability import Solved, solved
 from hearth.kb.loading.load import default

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.goal_grammar import wanted_things
 from hearth.challenges.start_worlds import site_of
 from hearth.challenges.tasks import task

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.challenges.channels import LONGEST_LINE, Channel, Listener, ProcessChannel
+from hearth.challenges.agent_channels import LONGEST_LINE, Channel, Listener, ProcessChannel
 from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.wire_protocol import PROTOCOL, WireAgent
 from hearth.kb.loading.load import default

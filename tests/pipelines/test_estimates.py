@@ -9,7 +9,7 @@ from collections import namedtuple
 import pytest
 
 from hearth.pipelines.build import build
-from hearth.pipelines.engine.estimates import estimate, forecast
+from hearth.pipelines.engine.build_estimates import estimate, forecast
 from hearth.pipelines.engine.progress import JsonLines
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.diagnostics import HearthError

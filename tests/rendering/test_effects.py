@@ -10,7 +10,7 @@ from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.modalities import render
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model, draw
-from hearth.rendering.models.recipes import RECIPES
+from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.scene.effects import EFFECTS, STEAM, at_time, changes, shining
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene

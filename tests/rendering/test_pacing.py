@@ -8,7 +8,7 @@ import pytest
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, Held
 from hearth.rendering.people.gait import SWUNG, Place, turning, walking
-from hearth.rendering.people.holding import Hold
+from hearth.rendering.people.held_objects import Hold
 from hearth.rendering.people.motion_timing import FASTEST, THINGS, paced
 from hearth.rendering.people.pose_blends import Segment, blended
 from hearth.rendering.people.random_people import person

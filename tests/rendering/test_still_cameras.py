@@ -11,7 +11,7 @@ from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.rays import camera_shot as shots
-from hearth.rendering.rays.still_cameras import KEPT, StillCameras
+from hearth.rendering.rays.fixed_cameras import KEPT, StillCameras
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.triangles import StaticThings

@@ -9,7 +9,7 @@ from hearth.kb.loading.load import default
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.headwear import WORN
-from hearth.rendering.people.holding import held_things
+from hearth.rendering.people.held_objects import held_things
 from hearth.rendering.people.random_people import person
 from hearth.rendering.scene.instances import placed
 from hearth.rendering.scene.object_boxes import Places

@@ -221,7 +221,7 @@ def clients() -> Iterator[Attack]:
 
 
 def _against(sent: bytes) -> Any:
-    from hearth.challenges.channels import Channel
+    from hearth.challenges.agent_channels import Channel
     from hearth.challenges.episode_loop import Player, play
     from hearth.challenges.episodes import start_of
     from hearth.challenges.wire_protocol import WireAgent

@@ -267,7 +267,7 @@ def _continued(scratch: Path) -> One:
 def _answers(scratch: Path) -> One:
     """A line of an agent, and the text in it, in the middle of nothing."""
     from hearth.challenges.wire_protocol import read_answer
-    from hearth.envs.answers import by_number, by_text
+    from hearth.envs.agent_answers import by_number, by_text
     from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.simulation.actions.legal import legal

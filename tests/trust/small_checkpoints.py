@@ -134,7 +134,7 @@ def _sketch(model: Any) -> Any:
 
 def _infer(model: Any) -> Any:
     """The goal of the published demonstration's predicates, where nothing happens."""
-    from hearth.challenges.definition import challenge
+    from hearth.challenges.challenge_definition import challenge
 
     grammar = challenge("wah").grammar
     return model.infer((), grammar.predicates, tuple(grammar.goals))

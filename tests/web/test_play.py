@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 from web.playing import Player, alone, begun, connected, session_of
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.result_files import read

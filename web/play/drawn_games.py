@@ -8,7 +8,7 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.start_worlds import site_of
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera

@@ -11,7 +11,7 @@ from hearth.challenges.agent_guard import AgentError, Guarded
 from hearth.challenges.episode_agents import partial_of
 from hearth.challenges.episode_loop import Playing
 from hearth.challenges.episodes import Record, measured, read_instruction, start_of, written
-from hearth.envs.answers import by_text
+from hearth.envs.agent_answers import by_text
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

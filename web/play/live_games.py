@@ -10,8 +10,8 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
+from hearth.challenges.agent_channels import Listener
 from hearth.challenges.agent_guard import AgentError
-from hearth.challenges.channels import Listener
 from hearth.challenges.wire_protocol import WireAgent
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

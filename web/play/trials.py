@@ -8,7 +8,7 @@ from typing import Any
 
 from hearth.agents.agent_registry import HELPERS
 from hearth.agents.online_helper_registry import ONLINE
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import GOALS, NOBODY, Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.suite_runs import INFERRED

@@ -10,7 +10,7 @@ from hearth.rendering.people.action_poses import Actor, dressed_for, reachable
 from hearth.rendering.people.clearance import at_rest
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.hand_gestures import gesturing
-from hearth.rendering.people.holding import hold_of_node
+from hearth.rendering.people.held_objects import hold_of_node
 from hearth.rendering.people.palm_targets import (
     SIDES,
     Aim,

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 
 from hearth.rendering.models.appearance import Look, Recipe, Region, Regions, nowhere, top
-from hearth.rendering.models.expressions import Expression, Node, Scope, Values, entries_of, shared_of, text_of
-from hearth.rendering.models.interpreter import Draw, Interpreter
+from hearth.rendering.models.model_expressions import Expression, Node, Scope, Values, entries_of, shared_of, text_of
+from hearth.rendering.models.model_interpreter import Draw, Interpreter
 from hearth.rendering.models.primitives import FUNCTIONS, KNOWN, names_of
 
 PACKAGE = "hearth.rendering.models"

@@ -8,8 +8,8 @@ An entry is read from top to bottom. `let` names quantities, paints and meshes; 
 from collections.abc import Callable, Sequence
 from typing import TypeAlias, cast
 
-from hearth.rendering.models.expressions import Node, Scope, Values
 from hearth.rendering.models.mesh import Mesh, empty, join, shift, stretch, turn
+from hearth.rendering.models.model_expressions import Node, Scope, Values
 from hearth.rendering.models.primitives import LINES, SHAPES
 
 Build: TypeAlias = Callable[[Values], Mesh]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Bytes, Floats
-from hearth.rendering.models.expressions import MATH, Scope, Values, entries_of, shared_of
+from hearth.rendering.models.model_expressions import MATH, Scope, Values, entries_of, shared_of
 from hearth.rendering.models.texture_patterns import SIDE, blend, noise
 
 Color = tuple[int, int, int]
