@@ -1,7 +1,7 @@
 """A human-like agent with faults: less than rational, forgetful, untidy, mistaken, changing its mind, distracted.
 
-Who gives the rates decides what for: `human_population` has people to be helped. Demonstrations have errands of their own,
-which depend on a challenge's goals (`challenges/demonstrator.py`).
+Who gives the rates decides what for: `human_population` has people to be helped. Demonstrations have errands of their
+own, which depend on a challenge's goals (`challenges/demonstrator.py`).
 """
 
 from __future__ import annotations
