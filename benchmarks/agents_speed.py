@@ -11,7 +11,7 @@ from collections.abc import Callable
 from statistics import mean
 from time import process_time
 
-from measuring import Figure, as_line, finish, parser
+from measurement import Figure, as_line, finish, parser
 
 from hearth.agents.agent_registry import HELPERS, MAIN
 from hearth.agents.protocol import Agent

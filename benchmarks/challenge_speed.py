@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from time import process_time
 
-from measuring import RUNS, Figure, as_line, finish, parser, rate, spread
+from measurement import RUNS, Figure, as_line, finish, parser, rate, spread
 
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.result_files import read

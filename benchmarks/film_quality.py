@@ -18,7 +18,7 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
-from measuring import Figure, as_line, finish, parser
+from measurement import Figure, as_line, finish, parser
 
 from hearth.analysis.episode_drawing import ticks_of
 from hearth.analysis.program_home_pairs import FilmedPair, pairs

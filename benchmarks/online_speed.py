@@ -10,7 +10,7 @@ from __future__ import annotations
 from time import process_time
 
 from agents_speed import Timed, figures
-from measuring import as_line, finish, parser
+from measurement import as_line, finish, parser
 
 from hearth.agents.agent_registry import MAIN
 from hearth.agents.goal_posterior import Posterior

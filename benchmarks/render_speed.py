@@ -16,9 +16,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import plain
-from measuring import Figure, as_line, finish, parser, rate, seconds
-from warm import warm
+import plain_reference
+from measurement import Figure, as_line, finish, parser, rate, seconds
+from warm_up import warm
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
@@ -75,7 +75,11 @@ def room_of(graph: EnvironmentGraph) -> Node:
 
 
 def measured(
-    name: str, target: float | None, films: list[Scene], make: Callable[[], Picture], yardstick: plain.Yardstick
+    name: str,
+    target: float | None,
+    films: list[Scene],
+    make: Callable[[], Picture],
+    yardstick: plain_reference.Yardstick,
 ) -> Figure:
     """Frames per second over all scenes; the first picture prepares the home's cached data.
 
@@ -158,7 +162,7 @@ class Stayed:
         return {"rgb": self.last.picture, **pictures_of(self.last.shot, self.modalities)}
 
 
-def film_written(graph: EnvironmentGraph, camera: Camera, yardstick: plain.Yardstick) -> Figure:
+def film_written(graph: EnvironmentGraph, camera: Camera, yardstick: plain_reference.Yardstick) -> Figure:
     """Frames per second of a film that is drawn and written as VP80, until its file is complete.
 
     No pose is seen twice. The codec works while the next picture is drawn, so that single pictures cannot be timed.
@@ -222,8 +226,8 @@ def main() -> None:
     above = top_view(home_box(graph), "top", *SMALL)
     every, few = tuple(MODALITIES), films[:5]
     corners = films[0].geometry.static.mesh.corners
-    large, small = plain.z_buffer(corners, corner), plain.z_buffer(corners, above)
-    work: list[tuple[str, float | None, list[Scene], Callable[[], Picture], plain.Yardstick]] = [
+    large, small = plain_reference.z_buffer(corners, corner), plain_reference.z_buffer(corners, above)
+    work: list[tuple[str, float | None, list[Scene], Callable[[], Picture], plain_reference.Yardstick]] = [
         (f"640x480 draft, all {len(every)} modalities", 12, films, lambda: whole(films, corner, every, "draft"), large),
         ("640x480 draft, whole, rgb", None, films, lambda: whole(films, corner, ("rgb",), "draft"), large),
         (f"640x480 fine, all {len(every)} modalities", 3, few, lambda: whole(films, corner, every, "fine"), large),

@@ -1,4 +1,4 @@
-"""Linearity of cost and memory: `python benchmarks/scale.py [--sizes 3000 30000] [--workers 2]`.
+"""Linearity of cost and memory: `python benchmarks/build_scale.py [--sizes 3000 30000] [--workers 2]`.
 
 Builds datasets of the given numbers of augmented programs, from sampling to publishing, from the embedded corpus and
 synthetic programs, and prints for each: wall and processor seconds per program, the largest process, bytes on disk, and
@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from measuring import Figure, as_line, finish
+from measurement import Figure, as_line, finish
 
 CLI = Path(__file__).resolve().parents[1] / "cli.py"
 EACH = 6

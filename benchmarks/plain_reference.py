@@ -18,10 +18,10 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
-import cases
+import benchmark_cases
 import numpy as np
 import yaml
-from measuring import Taken, least, passes
+from measurement import Taken, least, passes
 from numpy.typing import NDArray
 from oracles import engine as reference
 from oracles.world import Options
@@ -61,13 +61,13 @@ def measured(units: float, work: Callable[[Any], object], items: Sequence[Any], 
 
 def sampled_runs() -> Yardstick:
     """Environments built as dicts of sets, and a program of twelve steps run in each."""
-    items = cases.own()
+    items = benchmark_cases.own()
     return measured(len(items), lambda item: reference.run(PlainWorld(item[0]), item[1], Options()), items)
 
 
 def written_home() -> Yardstick:
     """Homes' nodes and edges written to JSON and read back."""
-    graphs = [as_dicts(graph) for graph, _ in cases.own()[::2]]
+    graphs = [as_dicts(graph) for graph, _ in benchmark_cases.own()[::2]]
     return measured(len(graphs), lambda graph: json.loads(json.dumps(graph)), graphs)
 
 

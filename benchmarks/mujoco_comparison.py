@@ -1,4 +1,4 @@
-"""Compare with MuJoCo's software renderer: `python benchmarks/beside_mujoco.py [--home NAME] [--frames N]`.
+"""Compare with MuJoCo's software renderer: `python benchmarks/mujoco_comparison.py [--home NAME] [--frames N]`.
 
 It needs the wheel `mujoco`, which nothing else here needs, and Mesa's software EGL. The scenario is that of
 `render_speed`: a person walks through the largest room, and ten things move; MuJoCo gets the same triangles, with one
@@ -17,9 +17,9 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-from measuring import Figure, as_line, finish, parser
+from measurement import Figure, as_line, finish, parser
 from render_speed import SIZE, Stayed, room_of, scenes, whole
-from warm import warm
+from warm_up import warm
 
 from hearth.homes import library
 from hearth.kb.loading.load import default

@@ -1,4 +1,4 @@
-"""`kill -9` at random moments of a long job: `python benchmarks/kills.py [--job build] [--times 200] [--chain 5]`.
+"""`kill -9` during a long job: `python benchmarks/killed_builds.py [--job build] [--times 200] [--chain 5]`.
 
 Does the job undisturbed, then again and again in another folder, each time killing all of its processes at a random
 moment; the same command goes on from what is there. Whenever one gets to its end its bytes are compared with those of

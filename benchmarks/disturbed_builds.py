@@ -1,8 +1,9 @@
-"""Builds on full disks, by two writers at once, and under readers: `python benchmarks/disturbed.py [--times 8]`.
+"""Builds on full disks, by two writers at once, and under readers: `python benchmarks/disturbed_builds.py [--times 8]`.
 
-Each build is compared byte for byte with an undisturbed one; `kills.py` does the same for builds that are killed. Disks
-are small file systems in memory, or, where this user may not mount any, limits on the size of a file. The status is 1
-if a file differs, a build fails without saying why, no writer gets to its end, or a reader finds no dataset.
+Each build is compared byte for byte with an undisturbed one; `killed_builds.py` does the same for builds that are
+killed. Disks are small file systems in memory, or, where this user may not mount any, limits on the size of a file. The
+status is 1 if a file differs, a build fails without saying why, no writer gets to its end, or a reader finds no
+dataset.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from kills import CLI, contents, differing
+from killed_builds import CLI, contents, differing
 
 INPUT = CLI.parent / "tests/golden/pipelines/input"
 SOURCES = [str(INPUT / name) for name in ("crowd", "programs/evening.txt", "release")]

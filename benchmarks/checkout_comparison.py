@@ -1,6 +1,7 @@
 """Two checkouts measured by turns, so that a machine that slows down slows both: is any row of the new one worse?
 
-    python benchmarks/alternate.py OLD NEW [--times 5] [--only kb --only homes] [--quick] [--dataset DIR] [--json FILE]
+    python benchmarks/checkout_comparison.py OLD NEW [--times 5] [--only kb --only homes] [--quick]
+        [--dataset DIR] [--json FILE]
 
 OLD and NEW are folders of checkouts with a `.venv` each. Each `*_speed.py` that both have is run by the checkout's own
 python in its own folder: old, new, old, new. A row's figure is its `undisturbed` one, else its ratio to the plain
@@ -25,10 +26,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
 
-try:
-    from benchmarks.measuring import spread, stalls
-except ImportError:
-    from measuring import spread, stalls
+from measurement import spread, stalls
 
 TOLERANCE = 0.1
 """By what part a row may be worse, besides its spread."""
