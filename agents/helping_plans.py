@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 
 from hearth.agents.belief import Place
 from hearth.agents.goal_space import Counts, Edge, GoalSpace, Scene
-from hearth.agents.prospects import Prospect
+from hearth.agents.partner_plans import Prospect
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
 
@@ -62,7 +62,7 @@ class Helper(Protocol):
         """The set of what the partner holds."""
 
     def arrivals(self, view: View, stops: Iterable[tuple[int, int]]) -> list[float]:
-        """Ticks until each of some stops is done (see `online.OnlineHelper`)."""
+        """Ticks until each of some stops is done (see `online_helper.OnlineHelper`)."""
 
     def taking(self, place: Place) -> tuple[int, int]:
         """The stop at which something is taken."""

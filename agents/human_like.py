@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from random import Random
 
 from hearth.agents.belief import Belief, Extent
-from hearth.agents.distances import Distances
 from hearth.agents.mcts import PUBLISHED, Search, Tree
-from hearth.agents.regression import Regression
+from hearth.agents.regression_planning import Regression
 from hearth.agents.subgoals import HELD, Aims, Missing, Subgoal
+from hearth.agents.walk_distances import Distances
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, Literal
 from hearth.schemas.program import Step

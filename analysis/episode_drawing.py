@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Record, replayed, start_of
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
-from hearth.homes.drawing import Trail
+from hearth.homes.floor_plan_drawing import Trail
 from hearth.homes.plan_panels import Panel
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

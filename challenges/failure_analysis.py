@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields
 from functools import reduce
 from operator import or_
 
-from hearth.challenges.definition import Challenge
+from hearth.challenges.challenge_definition import Challenge
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, overload
 
-from hearth.challenges.definition import Challenge
+from hearth.challenges.challenge_definition import Challenge
 from hearth.challenges.failure_analysis import NAMES, Columns
 
 PER_TICK = 0.004

@@ -9,8 +9,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Record
-from hearth.challenges.lineup import NOBODY, Lineup
 from hearth.challenges.metrics import METRICS, Outcomes, by_task
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError

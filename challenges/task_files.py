@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.challenges import published_tasks
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Job, Known, Record, again, played
 from hearth.challenges.result_files import Results, read
 from hearth.challenges.tasks import Task

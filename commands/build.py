@@ -187,7 +187,7 @@ def augment(
     if not as_json:
         _run(context, "augment", chosen)
         return
-    from hearth.analysis.augment_figures import outcome
+    from hearth.analysis.augmentation_results import outcome
 
     found = _built("augment", chosen)
     output.emit(outcome(out / "augment"))

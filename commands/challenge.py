@@ -95,8 +95,8 @@ def run_tasks(
       python cli.py challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
       python cli.py challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
     """
-    from hearth.challenges.episode_spread import spread_over
-    from hearth.challenges.lineup import Lineup
+    from hearth.challenges.episode_agents import Lineup
+    from hearth.challenges.parallel_episodes import spread_over
     from hearth.challenges.suite_runs import run
     from hearth.challenges.task_files import read
     from hearth.commands.progress_line import bar

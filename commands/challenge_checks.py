@@ -44,9 +44,9 @@ def solvable(
       python cli.py challenge solvable wah
       python cli.py challenge solvable owah --split test
     """
-    from hearth.challenges.definition import challenge
+    from hearth.challenges.challenge_definition import challenge
     from hearth.challenges.published_tasks import tasks
-    from hearth.challenges.solvable import solved
+    from hearth.challenges.solvability import solved
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 

@@ -24,10 +24,10 @@ def watch(
       python cli.py challenge watch test-1.json --from last-frame
       python cli.py challenge watch test-1.json --rate 0   (clean demonstrations)
     """
-    from hearth.agents.demonstrations import agreement
+    from hearth.agents.demonstration_goals import agreement
     from hearth.challenges.metrics import mean
     from hearth.challenges.task_files import read
-    from hearth.challenges.watching import inferred
+    from hearth.challenges.watch_stage import inferred
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 

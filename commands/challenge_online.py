@@ -54,7 +54,7 @@ def people(
     Example:
       python cli.py challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
     """
-    from hearth.analysis.helped_people import helped_people
+    from hearth.analysis.helper_harm import helped_people
     from hearth.challenges.task_files import suite
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default

@@ -15,7 +15,7 @@ def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None
       python cli.py challenge stats test-1.json --out figures
     """
     from hearth.analysis.challenge_starts import starts
-    from hearth.analysis.distribution import heat_map
+    from hearth.analysis.object_distribution import heat_map
     from hearth.challenges.task_files import read
     from hearth.kb.loading.load import default
     from hearth.storage.names import inside

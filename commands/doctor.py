@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hearth.commands import output
-from hearth.rendering.film.quiet import quiet
+from hearth.rendering.film.stderr_suppression import quiet
 from hearth.schemas.libraries import lacking, remedy
 
 LIBRARIES = {

@@ -105,7 +105,7 @@ def path(first: str, second: str, kb: Path | None = None, as_json: bool = False)
       python cli.py kb path spectacles book
     """
     from hearth.kb.tools.find import unknown
-    from hearth.kb.tools.paths import path as chain
+    from hearth.kb.tools.relation_paths import path as chain
 
     known = read_knowledge(kb)
     try:
@@ -175,8 +175,8 @@ def mine(dataset: Path, least: int = 3, confidence: float = 0.3, kb: Path | None
       python cli.py kb mine data_out
     """
     from hearth.datasets.published_programs import programs
-    from hearth.kb.tools.mine import as_lines
-    from hearth.kb.tools.mine import mine as propose
+    from hearth.kb.tools.fact_mining import as_lines
+    from hearth.kb.tools.fact_mining import mine as propose
 
     found = propose(programs(dataset), read_knowledge(kb), least, confidence)
     if as_json:

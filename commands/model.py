@@ -102,7 +102,7 @@ def predict(
       python cli.py model predict build/nearest data_out --part test --out predicted.jsonl
     """
     from hearth.commands.progress_line import bar
-    from hearth.models.predicting import predict_part
+    from hearth.models.prediction_files import predict_part
 
     with bar("executions") as seen:
         count = predict_part(
@@ -144,8 +144,8 @@ def score(
       python cli.py model score planned.jsonl release --unseen data_out
     """
     from hearth.datasets.dataset import Dataset
-    from hearth.models.data import of_new_titles
     from hearth.models.evaluation import means
+    from hearth.models.text_examples import of_new_titles
     from hearth.scoring.dataset_scores import score_given
 
     asked = Dataset.open(dataset)
@@ -288,25 +288,25 @@ def show(
       python cli.py model show clips-seen film.webm --film shown
       python cli.py model show build/demo2sketch data_out/demos/publish/frames/FOLDER --writer chooser --home maple
     """
-    from hearth.commands import model_shown
+    from hearth.commands import model_output
     from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.films.film_files import is_film
 
     if is_film(text) and not is_demonstration(text):
-        from hearth.commands import film_read
+        from hearth.commands import film_output
 
-        found = film_read.show(model, Path(text), (home or ["maple"])[0], homes, kb, film, masks)
-        output.emit(found) if as_json else film_read.printed(found)
+        found = film_output.show(model, Path(text), (home or ["maple"])[0], homes, kb, film, masks)
+        output.emit(found) if as_json else film_output.printed(found)
         output.status(int(not found["executable"]), strict=True)
         return
-    shown = model_shown.shown(model, text, sketch, writer, home or ["maple"], homes, kb, beam)
-    films = model_shown.filmed(shown, film, homes, kb) if film else {}
+    shown = model_output.shown(model, text, sketch, writer, home or ["maple"], homes, kb, beam)
+    films = model_output.filmed(shown, film, homes, kb) if film else {}
     if as_json:
-        documents = [model_shown.document(each) | films.get(name, {}) for name, each in shown.items()]
+        documents = [model_output.document(each) | films.get(name, {}) for name, each in shown.items()]
         named = [{"home": name, **each} for name, each in zip(shown, documents, strict=True)]
         output.emit(documents[0] if len(named) == 1 else {"homes": named})
     else:
-        model_shown.printed(shown)
+        model_output.printed(shown)
         for name, made in films.items():
             print(f"Film in {name}: {', '.join(made['pages'])}")
     output.status(sum(each.failure is not None for each in shown.values()), strict=True)

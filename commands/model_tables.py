@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.models.scored_rows import Row
+    from hearth.models.method_scores import Row
 
 FILMS = ("4.2", "4.3", "4.3b", "4.6")
 """Tables of clips and films."""
@@ -111,7 +111,7 @@ def _print_films(number: str, rows: Sequence[Any]) -> None:
 
 def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketches: str, as_json: bool) -> None:
     """Sketches from demonstrations beside those from descriptions (A.4)."""
-    from hearth.models.demonstrations.kinds_compared import compared
+    from hearth.models.demonstrations.demonstration_comparison import compared
 
     found = compared(dataset, split, models, beam, sketches)
     if as_json:

@@ -45,10 +45,10 @@ def lcs(
     """
     from hearth.scoring.bootstrap import intervals
     from hearth.scoring.evaluate import METRICS, Scored, lcs_of
-    from hearth.scoring.first_faults import FirstFaults
     from hearth.scoring.line_reader import LineReader
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
+    from hearth.scoring.refused_rows import FirstFaults
 
     rejects = FirstFaults()
     pairs = read_pairs(file, references, LineReader(inputs.read_knowledge(None), fuzzy), rejects=rejects)
@@ -127,7 +127,7 @@ def program(
     from hearth.homes.library import names
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
-    from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.refused_rows import FirstFaults
     from hearth.simulation.rules import CHOICES
 
     known, rejects = inputs.read_knowledge(None, "", graph), FirstFaults()
@@ -178,7 +178,7 @@ def dataset(
     from hearth.datasets.dataset import Dataset
     from hearth.scoring.dataset_scores import score_dataset
     from hearth.scoring.evaluate import Options
-    from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.refused_rows import FirstFaults
 
     if failures and split:
         raise typer.BadParameter("splits have no failing executions", param_hint="--failures")

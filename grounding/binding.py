@@ -11,10 +11,10 @@ from itertools import product
 from operator import and_, or_
 
 from hearth.grounding.node_ids import by_number, classes_of
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
+from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import act, ready, together, unfit
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import rows

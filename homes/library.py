@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from hearth.homes.from_graph.graph_layout import GraphLayout, lay_out
-from hearth.homes.from_graph.measured import has_geometry, measured
-from hearth.homes.left_out import filled
+from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
+from hearth.homes.node_defaults import filled
 from hearth.homes.plans.layout import Layout, read
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge

@@ -4,11 +4,11 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from functools import cached_property
 
-from hearth.homes.forms import form
-from hearth.homes.from_graph.measured import has_geometry, measured
-from hearth.homes.left_out import CATEGORIES
-from hearth.homes.plans.checks import joined
+from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
+from hearth.homes.node_defaults import CATEGORIES
+from hearth.homes.object_shapes import form
 from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.plan_checks import joined
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code

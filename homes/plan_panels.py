@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.sax.saxutils import escape
 
-from hearth.homes.drawing import PERSON, SCALE, Shape, Trail, bounds, paint, shapes, svg_shape, svg_trail
+from hearth.homes.floor_plan_drawing import PERSON, SCALE, Shape, Trail, bounds, paint, shapes, svg_shape, svg_trail
 from hearth.homes.geometry import Rect
 from hearth.homes.plans.layout import Layout
 from hearth.schemas.diagnostics import HearthError

@@ -5,7 +5,7 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from hearth.homes.plans.shell import Thing
+from hearth.homes.plans.home_shell import Thing
 from hearth.schemas.graph import Box, Edge
 from hearth.schemas.vocabulary import RELATION_ID, RELATIONS
 

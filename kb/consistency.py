@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import ObjectClass, Placement
+from hearth.kb.knowledge_records import ObjectClass, Placement
 
 TOO_LARGE_TO_CARRY = 2.1
 """Metres: the longest edge of a thing that can be grabbed (a ladder is 2)."""

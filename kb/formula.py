@@ -25,8 +25,8 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-from hearth.schemas.brief import brief
 from hearth.schemas.literals import Literal
+from hearth.schemas.short_repr import brief
 from hearth.schemas.tokens import Tokens
 
 FUNCTIONS = frozenset({"room", "origin", "place"})

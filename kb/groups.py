@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 
 from hearth.kb.formula import TRUE, And, Effect, Some
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import OPPOSITE

@@ -7,11 +7,11 @@ from typing import TypeVar
 
 from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.groups import groups, relation_of, state_of, tool_of
-from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
+from hearth.kb.knowledge_records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
 from hearth.kb.spelling import key_of, near_names
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATES
 
 K = TypeVar("K")

@@ -65,10 +65,10 @@ MODELS: dict[str, Entry] = {
         )
     },
     "chooser": Entry(
-        "sketches.chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
+        "sketches.plan_chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
     ),
     "chooser-text": Entry(
-        "sketches.chooser:Chooser",
+        "sketches.plan_chooser:Chooser",
         "sketch",
         "The same; it reads the description beside the sketch.",
         "ours",
@@ -82,20 +82,20 @@ MODELS: dict[str, Entry] = {
         "thesis 4.3.3",
     ),
     "clips-seen": Entry(
-        "films.seen_model:SeenModel",
+        "films.mask_clip_model:SeenModel",
         "film",
         "Names it by what each class of the masks does beside the person; it points at the objects.",
         "ours",
     ),
     "clips-context": Entry(
-        "films.seen_model:SeenModel",
+        "films.mask_clip_model:SeenModel",
         "film",
         "The same; it looks at seven seconds before and after each clip, too.",
         "ours",
         {"context": True},
     ),
     "clips-predicted": Entry(
-        "films.seen_model:SeenModel",
+        "films.mask_clip_model:SeenModel",
         "film",
         "The same; it learns from masks as a network predicts them (--set masks=FOLDER), too.",
         "ours",
@@ -108,13 +108,13 @@ MODELS: dict[str, Entry] = {
         "thesis 4.3.3",
     ),
     "films-pg-lcs": Entry(
-        "films.film_critical:FilmCritical",
+        "films.film_self_critical:FilmCritical",
         "film",
         "A trained `films-mle` (--set start=FOLDER) trained on by LCS.",
         "thesis 4.3.1",
     ),
     "films-pg-lcs-sim": Entry(
-        "films.film_critical:FilmCritical",
+        "films.film_self_critical:FilmCritical",
         "film",
         "A trained `films-pg-lcs` trained on by LCS and a tenth for programs that run.",
         "thesis 4.3.1",

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from hearth.grounding.binding import nearest
 from hearth.kb.knowledge import Knowledge
-from hearth.repair.loop import repair
+from hearth.repair.repair_loop import repair
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import Execution

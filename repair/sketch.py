@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 from hearth.grounding.environments.sampling import Size, sample
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.infer import infer
 from hearth.grounding.preconditions.postconditions import Postconditions, achieved, nodes_of
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.kb.knowledge import Knowledge
-from hearth.repair.gist import asked, meant, milestones, replaceable
+from hearth.repair.activity_steps import asked, meant, milestones, replaceable
 from hearth.repair.handlers.common import Handler
 from hearth.repair.handlers.registry import HANDLERS
-from hearth.repair.loop import repair
+from hearth.repair.repair_loop import repair
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program

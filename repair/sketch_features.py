@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.repair.gist import action_phrases, asked, clauses, names_in_text, stems, takes_back
+from hearth.repair.activity_steps import action_phrases, asked, clauses, names_in_text, stems, takes_back
 from hearth.schemas.program import Program, Step
 
 MOST = 4

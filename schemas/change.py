@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
-from hearth.schemas.brief import brief
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATE_ID
 
 State = tuple[int, str]

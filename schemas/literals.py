@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Generic, NamedTuple, TypeVar
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 
 Key = tuple[str, int]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 
 MOST_OBJECTS = 2
 """Objects that an action takes at most."""

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
+from hearth.schemas.short_repr import brief
 from hearth.simulation.actions.metres import followed
 from hearth.simulation.actions.modified import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any, overload
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal

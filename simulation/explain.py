@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from hearth.kb.formula import And, Formula, Or, Some, Term, free
-from hearth.kb.records import Condition
+from hearth.kb.knowledge_records import Condition
 from hearth.schemas.failures import Failure
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from operator import is_
 
-from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.program import Step
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import RELATIONS, STATE_ID
 from hearth.simulation.engine import Execution
 from hearth.simulation.goal_trace import Trace, acts, by_agent

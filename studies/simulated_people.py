@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any
 
-from hearth.agents.faults import Faults, Faulty
+from hearth.agents.human_faults import Faults, Faulty
 from hearth.schemas.rng import rng
 from hearth.studies.study import Question
 

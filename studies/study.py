@@ -82,7 +82,8 @@ class Condition:
     Attributes:
         name: in tables.
         title: in reports.
-        helper, goal: who helps, and what it is asked to do (see `challenges.lineup.Lineup`); nobody where `none`.
+        helper, goal: who helps, and what it is asked to do (see `challenges.episode_agents.Lineup`); nobody where
+            `none`.
         actor: whose episodes films show: `person` or `agent`; "" where people play.
     """
 

@@ -35,7 +35,7 @@ ENTRY_POINTS = {
     ),
     "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth:read_goal", "hearth.simulation.explain:checks"),
     "Environments and variants": (
-        "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.loop:repair", "hearth:sketch",
+        "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.repair_loop:repair", "hearth:sketch",
     ),
     "Pictures": ("hearth:render", "hearth:record"),
     "Scores": (

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hearth.grounding.environments.condition_satisfaction import fulfil
 from hearth.grounding.environments.default_state import Base, prepared
-from hearth.grounding.environments.filling import fill
-from hearth.grounding.environments.partial import PartialEnvironment
-from hearth.grounding.environments.placing import bind, requirements_of
-from hearth.grounding.environments.satisfying import fulfil
+from hearth.grounding.environments.object_placement import bind, requirements_of
+from hearth.grounding.environments.partial_environment import PartialEnvironment
+from hearth.grounding.environments.random_objects import fill
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for
-from hearth.grounding.preconditions.checking import unmet, unmet_failure
+from hearth.grounding.preconditions.condition_checks import unmet, unmet_failure
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.infer import infer
-from hearth.schemas.brief import brief
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import CHARACTER, HANDS, Key
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
+from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.bits import indices

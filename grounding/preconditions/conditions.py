@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from hearth.schemas.brief import brief
 from hearth.schemas.literals import Key, Literal
+from hearth.schemas.short_repr import brief
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ import numpy as np
 
 from hearth.homes.geometry import Rect, bottom, footprint
 from hearth.homes.plans import raster
+from hearth.homes.plans.home_shell import WALL, Shell, Thing, interior, strip
 from hearth.homes.plans.plan import Plan
-from hearth.homes.plans.shell import WALL, Shell, Thing, interior, strip
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from hearth.homes.forms import Form, scaled
 from hearth.homes.geometry import (
     DIRECTIONS,
     OPPOSITE_WALL,
@@ -17,8 +16,9 @@ from hearth.homes.geometry import (
     turned,
     wall_of,
 )  # fmt: skip
+from hearth.homes.object_shapes import Form, scaled
+from hearth.homes.plans.home_shell import Thing, interior, span, strip
 from hearth.homes.plans.plan import Piece, Room
-from hearth.homes.plans.shell import Thing, interior, span, strip
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_fields import Faults

@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from hearth.homes.forms import form
 from hearth.homes.geometry import EPSILON, Rect, box_over, facing_from, footprint
-from hearth.homes.plans import checks, raster, shell
-from hearth.homes.plans.entries import read_plan
+from hearth.homes.object_shapes import form
+from hearth.homes.plans import home_shell, plan_checks, raster
 from hearth.homes.plans.floor import CELL, Floor, grid
 from hearth.homes.plans.furniture import Furnishing, furnish
-from hearth.homes.plans.packing import contents
+from hearth.homes.plans.home_shell import Shell, Thing, interior, span, strip
+from hearth.homes.plans.object_packing import contents
 from hearth.homes.plans.plan import Plan, Room
-from hearth.homes.plans.shell import Shell, Thing, interior, span, strip
+from hearth.homes.plans.plan_entries import read_plan
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box
@@ -65,11 +65,11 @@ def read(text: str, file: str, knowledge: Knowledge) -> Layout:
     """
     faults = Faults(file)
     plan = read_plan(text, file, knowledge, faults)
-    checks.check_rooms(plan, faults)
+    plan_checks.check_rooms(plan, faults)
     if faults and not plan.rooms:
         raise HearthError(faults.underlined(text))
     layout = arrange(plan, knowledge, faults)
-    checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
+    plan_checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
     if faults:
         raise HearthError(faults.underlined(text))
     return layout
@@ -87,7 +87,7 @@ def arrange(
         known: rooms arranged before by their `id`, with their things, which are taken as they are; rooms without
             faults are added.
     """
-    built = shell.build(plan, faults)
+    built = home_shell.build(plan, faults)
     things = list(built.things)
     for room in plan.rooms:
         before = len(faults)
@@ -171,7 +171,7 @@ def _switch(room: Room, built: Shell, knowledge: Knowledge) -> Thing | None:
     return None
 
 
-def _pierced(built: Shell, beside: shell.Opening, start: float, end: float) -> bool:
+def _pierced(built: Shell, beside: home_shell.Opening, start: float, end: float) -> bool:
     return any(
         (o.room, o.wall) == (beside.room, beside.wall) and o is not beside and o.start < end and start < o.end
         for o in built.openings

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hearth.homes.forms import Form
 from hearth.homes.geometry import Rect, bottom, facing_from, footprint, top
+from hearth.homes.object_shapes import Form
 from hearth.homes.plans.floor import HEAD
+from hearth.homes.plans.home_shell import Opening, Thing, before, interior, strip
 from hearth.homes.plans.plan import Room
-from hearth.homes.plans.shell import Opening, Thing, before, interior, strip
 
 Stand = tuple[Rect, float, float]
 """Where a thing may stand: the floor under it, its yaw, its underside."""

@@ -1,6 +1,6 @@
 """Floor plans as people write them in YAML (README of data_raw/homes), read into records.
 
-Single entries are checked here: names, keys, numbers. Entries together are checked in `checks`.
+Single entries are checked here: names, keys, numbers. Entries together are checked in `plan_checks`.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Piece:
         class_name: of the knowledge.
         name: what other entries call it.
         count: how many there are.
-        place: how it is placed: key -> value, as `entries.PLACE_KEYS` reads them.
+        place: how it is placed: key -> value, as `plan_entries.PLACE_KEYS` reads them.
         size: width, height and depth as far as the plan says so.
         on, inside: what stands on it and in it.
         lay: the table setting of each seat.

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hearth.homes.geometry import OPPOSITE_WALL, Rect, along_x, footprint, front_of
-from hearth.homes.plans.shell import Thing, band, span
+from hearth.homes.plans.home_shell import Thing, band, span
 
 AT_TABLE = 0.35
 """A chair no further than this from a table's edge stands at it."""

@@ -9,14 +9,14 @@ from random import Random
 from typing import Any
 
 from hearth.homes.geometry import DIRECTIONS, Rect, along_x, bottom, facing_from, footprint, front_of, wall_of
-from hearth.homes.plans.entries import PLACE_KEYS, SIZE_KEYS, read_piece
 from hearth.homes.plans.furniture import GAP, Furnishing, NoPlaceError, Placed, shape, stand, underside
+from hearth.homes.plans.home_shell import Opening, Shell, Thing, interior, span, strip
 from hearth.homes.plans.obstacles import Obstacles
 from hearth.homes.plans.plan import Piece, Room
-from hearth.homes.plans.shell import Opening, Shell, Thing, interior, span, strip
-from hearth.homes.procedural.stocking import stock
+from hearth.homes.plans.plan_entries import PLACE_KEYS, SIZE_KEYS, read_piece
+from hearth.homes.procedural.furniture_contents import stock
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas import located
+from hearth.schemas import located_yaml
 from hearth.schemas.yaml_fields import Faults
 
 TRIES = 8
@@ -100,7 +100,7 @@ def recipes() -> Mapping[str, Sequence[Recipe]]:
     """What each class of room holds."""
     text = (files("hearth.data_raw") / "furnishing.yaml").read_text(encoding="utf-8")
     # Not by yaml.load: to it, the key `on` is the truth value.
-    found: Mapping[str, Sequence[Any]] = located.read(text, "furnishing.yaml")
+    found: Mapping[str, Sequence[Any]] = located_yaml.read(text, "furnishing.yaml")
     return {room: [_recipe(entry) for entry in entries] for room, entries in found.items()}
 
 
@@ -144,8 +144,8 @@ def _done(suite: Suite, recipe: Recipe) -> bool:
 def _piece(suite: Suite, recipe: Recipe) -> Piece:
     """A recipe's entry with everything drawn, stocked by the knowledge."""
     keys = {key: _drawn(value, suite.rng, key in SIZE_KEYS) for key, value in recipe.fields.items()}
-    entry = located.Mapping(0)
-    entry[_drawn(recipe.text, suite.rng)] = located.Mapping(0)
+    entry = located_yaml.Mapping(0)
+    entry[_drawn(recipe.text, suite.rng)] = located_yaml.Mapping(0)
     next(iter(entry.values())).update(keys)
     piece = read_piece(entry, suite.furnishing.knowledge)
     place = {key: _drawn(value, suite.rng, True) if key == "gap" else value for key, value in recipe.place.items()}
@@ -157,18 +157,18 @@ def _drawn(value: Any, rng: Random, metres: bool = False) -> Any:
     """A value as in a plan: one of `a|b`, a number of `cup*1-3`, metres between two; what is drawn 0 times is gone."""
     if isinstance(value, list):
         if metres:
-            return located.Number(round(rng.uniform(*value), 2))
+            return located_yaml.Number(round(rng.uniform(*value), 2))
         drawn = (_drawn(item, rng) for item in value)
-        return located.Sequence(item for item in drawn if not str(item).endswith("*0"))
+        return located_yaml.Sequence(item for item in drawn if not str(item).endswith("*0"))
     if isinstance(value, Mapping):
-        found = located.Mapping(0)
+        found = located_yaml.Mapping(0)
         found.update((_drawn(key, rng), _drawn(item, rng, key in SIZE_KEYS)) for key, item in value.items())
         return found
     if not isinstance(value, str):
         return value
     one = rng.choice(value.split("|"))
     if metres:
-        return located.Number(one)
+        return located_yaml.Number(one)
     text, _, amount = one.partition("*")
     least, _, most = amount.partition("-")
     return f"{text}*{rng.randint(int(least), int(most))}" if most else one

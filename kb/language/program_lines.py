@@ -21,7 +21,7 @@ from hearth.kb.language.unmarked_lines import (
     is_title,
     sentences,
 )
-from hearth.schemas.blocks import is_sentence
+from hearth.schemas.program_blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
 _END = re.compile(

@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 
 from hearth.kb.formula import OPTION, And, Count, Formula, Or, Term, free
+from hearth.kb.knowledge_records import Action
 from hearth.kb.loading.source_files import Entry, Faults
-from hearth.kb.records import Action
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS
 

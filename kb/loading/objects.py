@@ -3,10 +3,10 @@
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
+from hearth.kb.knowledge_records import EDGES, Association, Kind, ObjectClass, Placement, StateGroup
 from hearth.kb.loading.entry_shapes import NAMES, parts
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, csv_rows, cycles, yaml_entries
 from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
-from hearth.kb.records import EDGES, Association, Kind, ObjectClass, Placement, StateGroup
 from hearth.schemas.failures import Code
 
 OBJECT_FILES = (

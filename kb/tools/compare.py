@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import load
-from hearth.kb.tools.reasons import FIELDS, Reasons, root_of
+from hearth.kb.tools.correction_reasons import FIELDS, Reasons, root_of
 from hearth.kb.tools.release_facts import Fact, is_release, read_release
 
 

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import ObjectClass
-from hearth.schemas.brief import brief
+from hearth.kb.knowledge_records import ObjectClass
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import PROPERTIES
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.tools.reasons import Reasons
+from hearth.kb.tools.correction_reasons import Reasons
 from hearth.schemas.row_types import Row
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from itertools import combinations
 
 from hearth.kb.formula import OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, Requirement
+from hearth.kb.knowledge_records import Action, Requirement
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS, STATES
 

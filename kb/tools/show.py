@@ -3,8 +3,8 @@
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, ObjectClass, Placement
-from hearth.kb.tools.reasons import Reasons
+from hearth.kb.knowledge_records import Action, ObjectClass, Placement
+from hearth.kb.tools.correction_reasons import Reasons
 
 
 def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from hearth.storage.names import inside
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
-    from hearth.models.data import Example
+    from hearth.models.text_examples import Example
 
 FILE = "above.npz"
 """Name of a demonstration's arrays in its folder."""

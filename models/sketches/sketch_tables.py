@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.format.sketch_choice import ANNOTATED
-from hearth.models.data import requests
 from hearth.models.demonstrations.demo_sketches import demonstrated
 from hearth.models.demonstrations.demonstration_data import Demonstrations
 from hearth.models.evaluation import by_group
 from hearth.models.interface import Request, Steps
+from hearth.models.method_scores import Entrant, Row, scored_rows
 from hearth.models.model_registry import MODELS, restore
-from hearth.models.predicting import predict
-from hearth.models.scored_rows import Entrant, Row, scored_rows
-from hearth.models.seen_programs import refuse_seen
+from hearth.models.prediction_files import predict
 from hearth.models.table_models import refuse_others
+from hearth.models.text_examples import requests
+from hearth.models.training_overlap import refuse_seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng

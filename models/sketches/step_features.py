@@ -8,12 +8,12 @@ from functools import cached_property
 from random import Random
 from typing import NamedTuple
 
-from hearth.models.decoding.options import Options
-from hearth.models.sketches.choices import Candidate, Choice
+from hearth.models.decoding.next_step_options import Options
+from hearth.models.sketches.candidate_choices import Candidate, Choice
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import ROLES, STYLE, Deed, Habits, NextSteps
 from hearth.models.sketches.sketch_progress import Progress, plain
-from hearth.models.sketches.text_clues import AROUND, TextState
+from hearth.models.sketches.text_features import AROUND, TextState
 from hearth.schemas.program import Step
 from hearth.simulation.observation import reach
 from hearth.simulation.world import rows

@@ -16,7 +16,7 @@ import numpy as np
 
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.mentions import mentions
+from hearth.models.text.object_mentions import mentions
 from hearth.models.text.retrieval import Memory, Similarity, text_of
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_words import words
@@ -25,7 +25,7 @@ from hearth.scoring.metrics.lcs import LEVELS, matrix
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.interface import Request, Steps
-from hearth.models.text.mentions import mentions, spellings
+from hearth.models.text.object_mentions import mentions, spellings
 from hearth.models.text.text_words import words_of
 from hearth.schemas.program import ObjectRef, Step
 

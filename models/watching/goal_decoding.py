@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from hearth.models.watching.watched_batches import Counts
+from hearth.models.watching.demonstration_batches import Counts
 from hearth.schemas.goals import Goal
 
 if TYPE_CHECKING:

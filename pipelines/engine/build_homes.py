@@ -5,7 +5,7 @@ from pathlib import Path
 
 import orjson
 
-from hearth.pipelines.engine.context import knowledge
+from hearth.pipelines.engine.build_context import knowledge
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
 from hearth.simulation.world.home import Home

@@ -17,8 +17,8 @@ from typing import Any
 
 import pyarrow as pa
 
-from hearth.pipelines.engine.deadline import Deadline, OverTime
 from hearth.pipelines.engine.dependencies import code_digest
+from hearth.pipelines.engine.record_deadline import Deadline, OverTime
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row

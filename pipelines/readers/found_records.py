@@ -10,8 +10,8 @@ from hearth.pipelines.readers.models import of_others
 from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
 from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
 from hearth.pipelines.readers.step_texts import IN_LINE
-from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
+from hearth.schemas.program_blocks import STEP
 from hearth.storage.rejects import Reject, as_text
 
 

@@ -22,11 +22,11 @@ from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
 from hearth.pipelines.readers.step_texts import Places, numbered, places_of, steps_of
 from hearth.pipelines.readers.text import header
-from hearth.schemas.blocks import STEP
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.program_blocks import STEP
 from hearth.schemas.row_types import QuantityRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.syntax import normal_name, print_lines

@@ -13,8 +13,8 @@ from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.placed_texts import Text
 from hearth.pipelines.readers.unmarked_plans import unmarked_blocks
-from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
+from hearth.schemas.program_blocks import is_sentence
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject

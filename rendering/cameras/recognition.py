@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hearth.rendering.rays.camera_shot import Shot
 from hearth.rendering.rays.first_hits import Canvas
-from hearth.rendering.rays.shot import Shot
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 
 PERSON, OBJECT = 0.015, 0.001

@@ -9,8 +9,8 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.recognition import shows
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.film.snapshots import TOP, Keyframe, Trajectory, named_nodes
-from hearth.rendering.rays.shot import shoot
-from hearth.rendering.scene.places import Places
+from hearth.rendering.rays.camera_shot import shoot
+from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY

@@ -19,7 +19,7 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import home_box
 from hearth.rendering.film.snapshots import TOP, trajectory_of
 from hearth.rendering.modalities import pictures_of
-from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
+from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.simulation.engine import Execution
 

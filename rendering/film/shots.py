@@ -11,14 +11,23 @@ from typing import NamedTuple
 import numpy as np
 
 from hearth.rendering.cameras.camera import Camera
-from hearth.rendering.cameras.candidates import around, free, preference
+from hearth.rendering.cameras.camera_candidates import around, free, preference
 from hearth.rendering.cameras.recognition import in_the_way, shows
-from hearth.rendering.cameras.sight import Obstacles, Target, Worth, ahead, person, thing, too_near, values
 from hearth.rendering.cameras.visibility import objects_of
-from hearth.rendering.film.cuts import Acts, States, Worths, best_cut
+from hearth.rendering.cameras.visibility_estimates import (
+    Obstacles,
+    Target,
+    Worth,
+    ahead,
+    person,
+    thing,
+    too_near,
+    values,
+)
+from hearth.rendering.film.shot_sequence import Acts, States, Worths, best_cut
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
-from hearth.rendering.rays.still_cameras import StillCameras
+from hearth.rendering.rays.fixed_cameras import StillCameras
 from hearth.schemas.graph import Box, EnvironmentGraph, Spot
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -141,7 +150,7 @@ class Planner:
             self.tried.append(near)
 
     def worth(self, rows: Sequence[int]) -> tuple[Worths, States]:
-        """(rows, moments) values of cameras, and the acts that they seem to show, bit by bit (see `cuts.Acts`)."""
+        """(rows, moments) values of cameras, and the acts that they seem to show, bit by bit: `shot_sequence.Acts`."""
         total = np.full((len(rows), len(self.moments)), ELSEWHERE)
         shown = np.zeros((len(rows), len(self.moments)), np.int64)
         for number in range(len(self.moments)):

@@ -12,27 +12,27 @@ from hearth.kb.modifiers import numbers
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
-from hearth.rendering.people.acting import Actor, elsewhere, initial_actors, moved, outermost
+from hearth.rendering.people.action_poses import Actor, elsewhere, initial_actors, moved, outermost
 from hearth.rendering.people.bedding import turned_back
 from hearth.rendering.people.clearance import faults
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.people.holding import held_things
-from hearth.rendering.people.pushing import slid
-from hearth.rendering.people.reaching import posed, reach_for
+from hearth.rendering.people.hand_reach import posed, reach_for
+from hearth.rendering.people.held_objects import held_things
+from hearth.rendering.people.pushed_objects import slid
 from hearth.rendering.people.skeleton import effort_of
-from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
-from hearth.rendering.rays.shot import Shot, shoot
+from hearth.rendering.rays.camera_shot import Shot, shoot
+from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.rendering.scene.added_furniture import furnished
+from hearth.rendering.scene.door_sweep import Floors
 from hearth.rendering.scene.effects import at_time, changes
-from hearth.rendering.scene.history import graphs
+from hearth.rendering.scene.film_variation import PLAIN, Variation, scattered
+from hearth.rendering.scene.graph_history import graphs
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import PreparedScene, prepared_scene
+from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import PreparedScene, prepared_scene
 from hearth.rendering.scene.standing_places import FreeFloor
-from hearth.rendering.scene.swept import Floors
 from hearth.rendering.scene.triangles import StaticThings
-from hearth.rendering.scene.variation import PLAIN, Variation, scattered
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Point, to_release

@@ -18,10 +18,10 @@ from hearth.rendering.film.shots import Planner, Shots, room_at
 from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory
 from hearth.rendering.film.video_file import Writer
 from hearth.rendering.modalities import check_modalities, pictures_of
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.motion import Frame, Span, frames, spans
-from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
-from hearth.rendering.rays.shot import Shot, shoot
+from hearth.rendering.rays.camera_shot import Shot, shoot
+from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import cos, pi, radians, sin
 
-from hearth.homes.forms import form
-from hearth.rendering.models.drape import EMPTY
-from hearth.rendering.people.acting import Actor
+from hearth.homes.object_shapes import form
+from hearth.rendering.models.blanket import EMPTY
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.scene.free_poses import Pose
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import local_size
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.scene_preparation import local_size
 from hearth.schemas.graph import Box, Node, Point
 from hearth.simulation.world.affordance import is_of_kind
 

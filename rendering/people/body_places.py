@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.aims import OTHER, SIDES, Aim
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Hand
+from hearth.rendering.people.palm_targets import OTHER, SIDES, Aim
 from hearth.schemas.graph import Point
 from hearth.schemas.yaml_extent import packaged
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.people.body_pose import BodyPose, Foot
+from hearth.rendering.people.body_shape import FORWARD, LOWERED, Shape, body_data, proportions, shaped
 from hearth.rendering.people.grips import GRIPS
 from hearth.rendering.people.proportions import Proportions
 from hearth.rendering.people.rotations import Vector, about, leaning, unit, yawed
-from hearth.rendering.people.shape import FORWARD, LOWERED, Shape, body_data, proportions, shaped
 from hearth.rendering.people.skeleton import Joints, bend, feet_of, laid, upright
 
 RIG_SIDE = {"r": "l", "l": "r"}

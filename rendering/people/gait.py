@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Foot, drawn_in
 from hearth.rendering.people.skeleton import STEP, effort_of, feet_of, sinking
 from hearth.schemas.graph import Spot

@@ -8,8 +8,12 @@ from math import radians, sin
 import numpy as np
 
 from hearth.kb.modifiers import value
-from hearth.rendering.people.acting import Actor, reachable
-from hearth.rendering.people.aims import (
+from hearth.rendering.people.action_poses import Actor, reachable
+from hearth.rendering.people.body_places import PLACE_OF, at_body
+from hearth.rendering.people.body_pose import Hand, Held
+from hearth.rendering.people.gestures import Gesture
+from hearth.rendering.people.held_objects import hold_of_node
+from hearth.rendering.people.palm_targets import (
     OTHER,
     SIDES,
     Aim,
@@ -21,12 +25,8 @@ from hearth.rendering.people.aims import (
     raised,
     thing_aim,
 )  # fmt: skip
-from hearth.rendering.people.body_places import PLACE_OF, at_body
-from hearth.rendering.people.body_pose import Hand, Held
-from hearth.rendering.people.gestures import Gesture
-from hearth.rendering.people.holding import hold_of_node
 from hearth.rendering.people.rotations import unit
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 

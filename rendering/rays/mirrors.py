@@ -6,7 +6,7 @@ import numpy as np
 
 from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.rays import shading
-from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays.ray_casting import Hits
 from hearth.rendering.rays.shading import Setting
 from hearth.rendering.scene.triangles import Geometry
 

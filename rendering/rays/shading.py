@@ -1,7 +1,7 @@
 """Shading of hits: visibility of lights from each visible point, and the resulting colours.
 
 Pixels are processed in chunks that fit the processor's cache, by one thread per processor. The loops are in
-`light_rays` and `lamplight`.
+`light_rays` and `surface_lighting`.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.models.textures import decode, texels
-from hearth.rendering.rays import lamplight as loops
 from hearth.rendering.rays import light_rays
-from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays import surface_lighting as loops
 from hearth.rendering.rays.kernels import COLUMNS, FLAT, gather_rows
 from hearth.rendering.rays.light_rays import OPEN
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.ray_casting import Hits
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.shadow_loops import own_groups
 from hearth.rendering.rays.shadow_maps import occluded
 from hearth.rendering.rays.threads import each

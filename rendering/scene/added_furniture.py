@@ -10,13 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from hearth.homes.plans import raster
+from hearth.rendering.scene.door_sweep import Floors
 from hearth.rendering.scene.floor_cells import CELL, cells_of, eroded, is_in_the_way
 from hearth.rendering.scene.free_poses import Pose
-from hearth.rendering.scene.locations import BUILDING, Location, locations_of
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.object_locations import BUILDING, Location, locations_of
 from hearth.rendering.scene.routes import NARROW, Cells
 from hearth.rendering.scene.standing_places import FreeFloor
-from hearth.rendering.scene.swept import Floors
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 

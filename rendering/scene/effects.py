@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from math import cos, pi, radians, sin
 from typing import Any
 
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.scene.instances import Thing
 from hearth.schemas.graph import Box, Point
 from hearth.schemas.rng import derive

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from math import cos, radians, sin
 from typing import NamedTuple
 
-from hearth.rendering.models.look import Region
+from hearth.rendering.models.appearance import Region
 from hearth.schemas.graph import Box, Point
 
 STEP = 0.04

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.models.looks import Model, draw
+from hearth.rendering.models.class_appearance import Model, draw
 from hearth.rendering.models.mesh import Mesh, rotation
+from hearth.rendering.models.texture_patterns import SIDE
 from hearth.rendering.models.textures import OFFSETS, SLOTS, atlas, decode
-from hearth.rendering.models.weave import SIDE
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.scene.instances import Thing, placed, tilted
 from hearth.rendering.scene.scene import Scene

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.models.look import Size
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Size
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.scene.floor_cells import IGNORED
 from hearth.rendering.scene.instances import Thing
 from hearth.schemas.graph import Node, Spot
 
 if TYPE_CHECKING:
-    from hearth.rendering.scene.prepared import PreparedScene
+    from hearth.rendering.scene.scene_preparation import PreparedScene
 
 FLAT = frozenset({"floor", "ceiling"})
 """Recipes below and above everything."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from hearth.grounding.failure_context import FailureContext
 from hearth.grounding.preconditions.postconditions import Postconditions
-from hearth.repair.circumstances import RESTING
+from hearth.repair.step_context import RESTING
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import Rules

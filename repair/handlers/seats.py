@@ -1,7 +1,7 @@
 """Who sits: errands are run before the seat is taken, and what is used there is brought within reach."""
 
-from hearth.repair.circumstances import RESTING
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, tick_start
+from hearth.repair.step_context import RESTING
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import run

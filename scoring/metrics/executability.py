@@ -7,10 +7,10 @@ from functools import lru_cache
 
 from hearth.kb.grammar import affordances, check
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.scoring.lines import Lines, steps_of
+from hearth.schemas.short_repr import brief
+from hearth.scoring.line_sequences import Lines, steps_of
 from hearth.scoring.metrics.final_graph import nodes_of
 from hearth.scoring.metrics.parsability import parsability
 from hearth.scoring.predicted_nodes import bind
@@ -118,7 +118,7 @@ def executability(
         rules: of simulation.
 
     Examples:
-        >>> from hearth.scoring.lines import read
+        >>> from hearth.scoring.line_sequences import read
         >>> found = hearth.executability(read(["[Walk] <fridge> (1)", "[Close] <fridge> (1)"]), world)
         >>> found.executable, found.failed_line, str(found.code)
         (False, 1, 'IS_CLOSED')

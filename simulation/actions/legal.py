@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
-from hearth.schemas.brief import brief
 from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.short_repr import brief
 from hearth.simulation.actions.common import Action
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation

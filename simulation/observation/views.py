@@ -6,10 +6,10 @@ from functools import cached_property
 from types import MappingProxyType
 
 from hearth.schemas.agent_messages import Message
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.observation import reach
 from hearth.simulation.world import pose as world_pose

@@ -6,7 +6,7 @@ from operator import and_, or_
 
 from hearth.kb.formula import And, Formula, Not, Or
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Requirement
+from hearth.kb.knowledge_records import Requirement
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal

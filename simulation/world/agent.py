@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 from hearth.simulation.world.pose import STRIDE, Pose
 
 AGENT_OUT = {

@@ -7,9 +7,9 @@ from functools import cached_property, partial
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
+from hearth.schemas.short_repr import brief
 from hearth.simulation.world import building
 from hearth.simulation.world.affordance import allowed, of_kind
 from hearth.simulation.world.bits import indices, mask_of

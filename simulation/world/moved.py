@@ -6,7 +6,7 @@ that relation in both directions at once; what it stands in now is *extra*.
 
 from typing import NamedTuple
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 from hearth.simulation.world.bits import indices
 
 ON, BEARS, INSIDE, CONTENTS, CLOSE, FACING, FACED = range(7)

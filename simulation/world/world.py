@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import STATE_ID

@@ -10,7 +10,7 @@ import pytest
 from hearth import cli
 from hearth.datasets.format.catalog import VIEWS, comments
 from hearth.kb.loading.load import default
-from hearth.repair.perturb import PERTURBATIONS
+from hearth.repair.perturbation import PERTURBATIONS
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES, nested
 

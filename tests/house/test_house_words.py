@@ -50,7 +50,7 @@ ALLOWED = {
     ("schemas/literals.py", "stowed|averted|shut_in"),  # names that readers of older datasets accept
     ("schemas/failures.py", "HEARD_NEARLY"),
     ("tests/schemas/test_failures.py", "HEARD_NEARLY"),
-    ("commands/run_shown.py", "stances"),  # a published key of `run --json`
+    ("commands/run_output.py", "stances"),  # a published key of `run --json`
     ("tests/commands/test_run_command.py", "stances"),
     ("analysis/synthesis.py", "told"),  # a key of older grammars
     ("tests/datasets/test_cases.py", "stowed|averted|shut_in"),  # a row of an older dataset

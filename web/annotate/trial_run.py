@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 
 from hearth.datasets.report.drawn_plans import draw
-from hearth.grounding.trial import Trial, attempt
+from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
@@ -76,7 +76,7 @@ def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[
         WebError: NOT_RENDERED: nothing of it runs.
         HearthError: MISSING_FILE: libraries for pictures are not installed.
     """
-    from hearth.rendering.film.replay import run_shapes
+    from hearth.rendering.film.replay_3d import run_shapes
 
     library_of("trimesh")
     trial = _trial(_lines(draft)[1], title, home, known)
@@ -93,7 +93,7 @@ def shapes_of(name: str, known: Knowledge) -> bytes:
     Raises:
         WebError: UNKNOWN_HOME.
     """
-    from hearth.rendering.film.replay import home_shapes
+    from hearth.rendering.film.replay_3d import home_shapes
 
     home_of(name, known)
     return orjson.dumps(home_shapes(library.load_graph(name, known), known))

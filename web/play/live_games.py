@@ -10,9 +10,9 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from hearth.challenges.channels import Listener
-from hearth.challenges.guard import AgentError
-from hearth.challenges.wire import WireAgent
+from hearth.challenges.agent_channels import Listener
+from hearth.challenges.agent_guard import AgentError
+from hearth.challenges.wire_protocol import WireAgent
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
