@@ -190,7 +190,7 @@ class Terminated(KeyboardInterrupt):
 
 
 def _is_of_typer(error: Exception) -> bool:
-    """Whether Typer prints the error itself: wrong usage, an invalid option."""
+    """Return whether Typer prints the error itself: wrong usage, an invalid option."""
     return hasattr(error, "format_message")
 
 

@@ -79,7 +79,7 @@ class View:
         return f"{node.class_name} ({node_id})" if node else f"node {node_id}"
 
     def is_room(self, node_id: int) -> bool:
-        """Whether it is a room."""
+        """Return whether it is a room."""
         return self.nodes[node_id].category == ROOM_CATEGORY
 
     def parents(self, node_id: int) -> list[int]:

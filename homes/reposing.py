@@ -120,7 +120,7 @@ def _full(node: Node, relation: str, place: Node, why: str) -> HearthError:
 def room_for(
     class_name: str, holder: Thing, relation: str, others: Sequence[Thing], knowledge: Knowledge
 ) -> tuple[Box, float] | None:
-    """Where one more thing finds room on or in another beside what is there; None where it does not.
+    """Return where one more thing finds room on or in another beside what is there; None where it does not.
 
     Args:
         class_name: of what is to be put there.

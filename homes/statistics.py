@@ -112,7 +112,7 @@ def places(graphs: Iterable[EnvironmentGraph], knowledge: Knowledge) -> Places:
 
 
 def placement_distance(one: Places, other: Places) -> float | None:
-    """How differently two collections of homes place the same things: 0 the same, 1 nothing in common.
+    """Return how differently two collections of homes place the same things: 0 the same, 1 nothing in common.
 
     The total variation distance of each class's places, weighted by the smaller of its two counts of places; None where
     no class has a place in both.

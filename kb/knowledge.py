@@ -76,11 +76,11 @@ class Knowledge:
 
     @cached_property
     def arity(self) -> Mapping[str, int]:
-        """How many objects each action takes; asked by every step."""
+        """Return how many objects each action takes; asked by every step."""
         return {name: action.arity for name, action in self.actions.items()}
 
     def affords(self, action: str, position: int, class_name: str) -> bool:
-        """Whether the grammar lets a thing of that class be the argument at `position` (from 0) of the action.
+        """Return whether the grammar lets a thing of that class be the argument at `position` (from 0) of the action.
 
         Unknown actions, classes and positions are not afforded.
         """
@@ -221,21 +221,21 @@ class Knowledge:
         return tuple(above)
 
     def is_room(self, name: str) -> bool:
-        """Whether that is a kind of room."""
+        """Return whether that is a kind of room."""
         thing = self.object_class(name)
         return thing is not None and thing.category == "Rooms"
 
     def has(self, name: str, prop: str) -> bool:
-        """Whether things of a class have a property; those of an unknown class have none."""
+        """Return whether things of a class have a property; those of an unknown class have none."""
         thing = self.object_class(name)
         return thing is not None and prop in thing.properties
 
     def seat_limit(self, name: str) -> int:
-        """How many things may be ON it before one may no longer sit down."""
+        """Return how many things may be ON it before one may no longer sit down."""
         return self._limit("sit", name)
 
     def bed_limit(self, name: str) -> int:
-        """How many things may be ON it before one may no longer lie down."""
+        """Return how many things may be ON it before one may no longer lie down."""
         return self._limit("lie", name)
 
     def _limit(self, kind: str, name: str) -> int:
@@ -287,7 +287,7 @@ class Knowledge:
     # Places
 
     def placements(self, name: str) -> tuple[Placement, ...]:
-        """Where a thing of that class may be, most usual first."""
+        """Return where a thing of that class may be, most usual first."""
         return self._of(self._placements, name)
 
     def holds(self, name: str) -> tuple[Placement, ...]:

@@ -35,7 +35,7 @@ class Requirement:
     __repr__ = brief
 
     def accepts(self, properties: frozenset[str], class_name: str, is_room: bool = False) -> bool:
-        """Whether a thing of that class with those properties may be the argument."""
+        """Return whether a thing of that class with those properties may be the argument."""
         if class_name in self.also:
             return True
         if class_name in self.never or (is_room and self.no_rooms):
@@ -109,7 +109,7 @@ class Action:
 
     @property
     def arity(self) -> int:
-        """How many objects it takes."""
+        """Return how many objects it takes."""
         return len(self.roles)
 
 

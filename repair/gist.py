@@ -85,14 +85,14 @@ def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
 
 
 def _used_after(program: Program, action: str, key: Key, preparation: frozenset[str]) -> bool:
-    """Whether a thing is of use in a step after the last such action on it, preparations aside."""
+    """Return whether a thing is of use in a step after the last such action on it, preparations aside."""
     last = max((n for n, s in enumerate(program.steps) if s.action == action and _first(s) == key), default=-1)
     later = program.steps[last + 1 :]
     return any(step.action not in preparation and key in (ref.key for ref in step.objects) for step in later)
 
 
 def _is_tool(program: Program, key: Key, knowledge: Knowledge) -> bool:
-    """Whether a thing was the last one taken before something was done that takes such a thing."""
+    """Return whether a thing was the last one taken before something was done that takes such a thing."""
     held: Key | None = None
     for step in program.steps:
         if step.action == "Grab":
@@ -128,7 +128,7 @@ def clauses(program: Program) -> list[frozenset[str]]:
 
 
 def takes_back(program: Program, number: int, knowledge: Knowledge) -> bool:
-    """Whether a step tidies up: puts away what was taken, or switches off what was switched on."""
+    """Return whether a step tidies up: puts away what was taken, or switches off what was switched on."""
     step = program.steps[number]
     if step.action in knowledge.group("forgets"):
         done = knowledge.group("takes")

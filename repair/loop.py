@@ -101,7 +101,7 @@ class _Task(NamedTuple):
         return lost(self.original, self.wanted, sources, execution) if self.wanted else None
 
     def keeps(self, execution: Execution, sources: Sequence[int]) -> bool:
-        """Whether no step is done in other circumstances."""
+        """Return whether no step is done in other circumstances."""
         return self.lost(execution, sources) is None
 
 

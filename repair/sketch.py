@@ -126,7 +126,7 @@ def _suffices(
 
 
 def _passes(nodes: Mapping[Key, int], execution: Execution, passed: Postconditions) -> bool:
-    """Whether each of some effects is there at some time."""
+    """Return whether each of some effects is there at some time."""
     return all(any(holds(fact, world, nodes) for world in execution.worlds) for fact in passed)
 
 

@@ -102,7 +102,7 @@ class _Seen:
         return [n for n, step in enumerate(self.steps) if n != number and any(ref in step.objects for ref in first)]
 
     def _words(self, step: Step) -> dict[str, float]:
-        """Whether title and description have its verb and its objects."""
+        """Return whether title and description have its verb and its objects."""
         phrases = action_phrases(step.action, self.known)
         objects = [names_in_text(ref.name, self.known) for ref in step.objects]
         first = objects[0] if objects else frozenset()

@@ -111,7 +111,10 @@ def _candidates(
 
 
 def _undo(one: Step, other: Step, both_new: bool, knowledge: Knowledge) -> bool:
-    """Whether a step undoes the one before it; sitting down and taking something are only undone where both are new."""
+    """Return whether a step undoes the one before it.
+
+    Sitting down and taking something are only undone where both are new.
+    """
     if one.agent != other.agent:
         return False
     if both_new and other.action in knowledge.group("rises"):
@@ -128,13 +131,13 @@ def _undo(one: Step, other: Step, both_new: bool, knowledge: Knowledge) -> bool:
 
 
 def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> bool:
-    """Whether a walk follows one to the same place, and did not in the original."""
+    """Return whether a walk follows one to the same place, and did not in the original."""
     step = steps[number]
     return _last_walk(steps, number, walks) == step.objects and step not in _repeated_walks(original, walks)
 
 
 def _last_walk(steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> object:
-    """Where the walk before this walk went; None if this is not a walk or the first."""
+    """Return where the walk before this walk went; None if this is not a walk or the first."""
     if steps[number].action not in walks:
         return None
     earlier = (s for s in reversed(steps[:number]) if s.agent == steps[number].agent and s.action in walks)

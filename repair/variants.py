@@ -144,7 +144,7 @@ def augment(
 
 
 def _is_refused(pair: Pair) -> bool:
-    """Whether repairing was given up: another environment is drawn instead, as long as there are any."""
+    """Return whether repairing was given up: another environment is drawn instead, as long as there are any."""
     return bool(pair.attempts) and pair.failure is not None and pair.failure.code is not Code.DUPLICATE
 
 

@@ -62,7 +62,7 @@ def _text(annotation: object) -> str:
 
 
 def _unlike(value: Any, expected: str, where: str) -> Iterator[str]:
-    """Where a value, or a part of it, is not of the type that is written."""
+    """Yield where a value, or a part of it, is not of the type that is written."""
     types = [_split(one) for one in _parts(expected, " | ")]
     fitting = [inner for name, inner in types if _is(value, name)]
     if not fitting:

@@ -54,5 +54,5 @@ class Splitter:
 
 
 def is_sentence(line: str) -> bool:
-    """Whether a line reads like a sentence, which a title does not."""
+    """Return whether a line reads like a sentence, which a title does not."""
     return line.rstrip().endswith(_SENTENCE_ENDS) or len(line.split()) >= _SENTENCE_WORDS

@@ -117,7 +117,7 @@ def _parts(graph: EnvironmentGraph) -> Parts:
 
 
 def _same(one: Node, other: Node | None) -> bool:
-    """Whether two nodes are equal, simulated states aside."""
+    """Return whether two nodes are equal, simulated states aside."""
     return other is not None and (one == other or _still(one) == _still(other))
 
 

@@ -48,7 +48,7 @@ def library(module: str) -> Any:
 
 
 def remedy(extra: str) -> str:
-    """How to install an extra where Hearth is."""
+    """Return how to install an extra where Hearth is."""
     if not CHECKOUT.is_file():
         return f"run `pip install '{DISTRIBUTION}[{extra}]'`"
     command = MADE.get(extra, f".venv/bin/python -m pip install '.[{extra}]'")

@@ -92,7 +92,7 @@ class Program:
         return tuple(seen.values())
 
     def agents(self) -> int:
-        """How many agents it needs: one more than the highest it names."""
+        """Return how many agents it needs: one more than the highest it names."""
         return max((step.agent for step in self.steps), default=0) + 1
 
     def with_steps(self, steps: Iterable[Step]) -> Program:

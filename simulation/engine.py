@@ -36,7 +36,7 @@ class Execution:
 
     @property
     def executable(self) -> bool:
-        """Whether every tick was done."""
+        """Return whether every tick was done."""
         return self.failure is None
 
     @property
@@ -179,7 +179,10 @@ def tick(
 
 
 def _only_moves(instruction: Step, before: World, now: World) -> bool:
-    """Whether an instruction can't have become possible by what changed: a move of metres that no door allowed."""
+    """Return whether an instruction can't have become possible by what changed.
+
+    A move of metres that no door allowed.
+    """
     return instruction.action in MOVES and before.states is now.states
 
 
@@ -208,8 +211,9 @@ def _twice(instruction: Step) -> Failure:
 
 
 def unfit(world: World, instruction: Step) -> Failure | None:
-    """Why an instruction fails whatever its objects are bound to, or None: nobody has its number (UNKNOWN_AGENT), or it
-    has fewer or more objects than its action takes (WRONG_ARITY).
+    """Return the failure of an instruction that fails for any binding of its objects, or None.
+
+    No agent has its number (UNKNOWN_AGENT), or its action takes another number of objects (WRONG_ARITY).
     """
     if not 0 <= instruction.agent < len(world.agents):
         return _refused(world, instruction)

@@ -44,7 +44,7 @@ class Watch:
 
     @property
     def count(self) -> int:
-        """How often it holds."""
+        """Return how often it holds."""
         return sum(mask.bit_count() for mask in self.met)
 
 
@@ -134,20 +134,23 @@ class Progress:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """How often each literal holds, in the goal's order."""
+        """Return how often each literal holds, in the goal's order."""
         if self.trace:
             return tuple(self.trace.times(literal, 0, len(self.trace.done)) for literal, _ in self.goal)
         return tuple(watch.count for watch in self.watches)
 
     @property
     def has(self) -> tuple[bool, ...]:
-        """Whether each joined part is reached, in the goal's order."""
+        """Return whether each joined part is reached, in the goal's order."""
         trace = self.trace
         return tuple(trace.has(part, 0, len(trace.done)) for part in self.goal.parts) if trace else ()
 
     @property
     def satisfied(self) -> bool:
-        """Whether every literal holds as often as is wanted, and every part is reached; True for an empty goal."""
+        """Return whether every literal holds as often as is wanted, and every part is reached.
+
+        True for an empty goal.
+        """
         return all(found >= wanted for found, (_, wanted) in self.required()) and all(self.has)
 
     @property
@@ -190,7 +193,10 @@ def _touched(change: Change, home: Home) -> defaultdict[str, int]:
 
 
 def check(literal: Literal[Name], home: Home) -> LiteralFault | None:
-    """Why no change could make a literal hold, or what the home and its knowledge do not have; None if nothing."""
+    """Return why no change could make a literal hold, or what the home and its knowledge do not have.
+
+    None if nothing.
+    """
     known, terms = home.knowledge, literal.terms
     if acts(literal, home):
         action = known.actions[literal.name]
@@ -209,7 +215,7 @@ def check(literal: Literal[Name], home: Home) -> LiteralFault | None:
 
 
 def unknown(term: Name, home: Home) -> LiteralFault | None:
-    """Why a term stands for nothing that there could be; None if it does."""
+    """Return why a term stands for nothing that there could be; None if it does."""
     if term == AGENT or nodes(term, home) or str(term).startswith("?"):
         return None
     if isinstance(term, int):

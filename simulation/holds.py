@@ -31,7 +31,7 @@ Binary = Callable[[World, int, int], int]
 
 
 def holds(literal: Literal[T], world: World, binding: Mapping[T, int] = UNBOUND) -> bool:
-    """Whether a literal holds; without its negation, one about a term that stands for nothing does not.
+    """Return whether a literal holds; without its negation, one about a term that stands for nothing does not.
 
     Examples:
         >>> literal = hearth.Literal.of("HOLDS", "agent", "milk")
@@ -76,7 +76,10 @@ class Candidates(NamedTuple):
     by_target: bool
 
     def needed(self, wanted: int) -> int:
-        """How often it must hold to be reached: as often as is wanted; if negated, of all candidates, as in `holds`."""
+        """Return how often it must hold to be reached.
+
+        As often as is wanted; if negated, of all candidates, as in `holds`.
+        """
         if not self.literal.negated:
             return wanted
         return self.subjects.bit_count() * (self.targets.bit_count() if self.by_target else 1)

@@ -113,7 +113,7 @@ class Base:
         return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
     def _spots(self, name: str) -> Spots:
-        """Where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
+        """Return where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
         return _weighted(self._places(name))
 
     @cached_property

@@ -127,7 +127,7 @@ class PartialEnvironment:
         return tuple(home.ids[j] for j in indices((home.on[i] | home.inside[i]) & ~home.rooms))
 
     def crowd(self, node_id: int) -> int:
-        """How many things are ON a node."""
+        """Return how many things are ON a node."""
         i = self.base.home.index.get(node_id)
         standing = self.base.home.bears[i].bit_count() if i is not None else 0
         return standing + self.load.get(node_id, 0)

@@ -158,12 +158,12 @@ def _candidates(
 
 
 def _put_back(requirements: Requirements, key: Key) -> bool:
-    """Whether the program puts an object back where it came from, and so needs it to come from somewhere."""
+    """Return whether the program puts an object back where it came from, and so needs it to come from somewhere."""
     return any(action == "PutObjBack" for action, _ in requirements.uses[key])
 
 
 def _linked(partial: PartialEnvironment, i: int, condition: Condition) -> bool:
-    """Whether the home's own edges already meet a condition."""
+    """Return whether the home's own edges already meet a condition."""
     home = partial.base.home
     anchor = home.index.get(partial.binding[_anchor(condition)])
     if anchor is None or home.ids[anchor] in partial.room:

@@ -204,7 +204,7 @@ def draw(
 
 
 def settle_character(partial: PartialEnvironment, program: Program, conditions: Preconditions) -> None:
-    """Where its conditions want the character, else in another room than the program starts in."""
+    """Return where its conditions want the character, else in another room than the program starts in."""
     base = partial.base
     home = base.home
     me = base.character

@@ -54,7 +54,7 @@ def in_closed_container(partial: PartialEnvironment, condition: Condition) -> No
 
 
 def closes(base: Base, spot: Target) -> bool:
-    """Whether that is inside something that can be opened and is closed in the home's default state."""
+    """Return whether that is inside something that can be opened and is closed in the home's default state."""
     home = base.home
     return spot[1] == "INSIDE" and bool((home.able("Open") & home.states[0]) >> spot[0] & 1)
 
@@ -190,7 +190,7 @@ def _movable(partial: PartialEnvironment, key: Key, room: int) -> int:
 
 
 def _is_movable(partial: PartialEnvironment, node_id: int) -> bool:
-    """Whether a node can be moved: new or graspable, with nothing on or in it."""
+    """Return whether a node can be moved: new or graspable, with nothing on or in it."""
     home = partial.base.home
     if partial.load.get(node_id, 0):
         return False

@@ -75,7 +75,7 @@ class Preconditions:
         return len(self.conditions)
 
     def has(self, name: str, *objects: Key) -> bool:
-        """Whether a condition is among them."""
+        """Return whether a condition is among them."""
         wanted = Literal(name, objects)
         return any(c.literal == wanted for c in self.conditions)
 

@@ -53,7 +53,7 @@ def _contents(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
 
 
 def _belongs(thing: Key, relation: str, place: Key, knowledge: Knowledge) -> bool:
-    """Whether the knowledge places such a thing there."""
+    """Return whether the knowledge places such a thing there."""
     same = knowledge.same_class(place[0])
     return any(p.relation == relation and p.destination in same for p in knowledge.placements(thing[0]))
 

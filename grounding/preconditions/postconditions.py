@@ -56,7 +56,7 @@ def missing(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> P
 
 
 def reached(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> bool:
-    """Whether every fact holds in a world."""
+    """Return whether every fact holds in a world."""
     return all(holds(fact, world, nodes) for fact in wanted)
 
 

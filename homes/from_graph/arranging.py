@@ -57,7 +57,7 @@ class Crowd:
         self._before = before
 
     def known(self, node: int) -> Thing | None:
-        """Where a thing is, or else where it was when all were placed before."""
+        """Return where a thing is, or else where it was when all were placed before."""
         return self.things.get(node) or self._before.get(node)
 
 
@@ -158,14 +158,14 @@ def _scores(crowd: Crowd, room: Room, node: int, spots: list[Stand], height: flo
 
 
 def _over(box: Box, thing: Thing) -> bool:
-    """Whether a box is against a wall, or over (or under) a tile or rug."""
+    """Return whether a box is against a wall, or over (or under) a tile or rug."""
     if thing.class_name == "wall":
         return gap(box, thing.box) < 0.1
     return footprint(box).overlap(footprint(thing.box)) > 0.01
 
 
 def spots(room: Room, shaped: Form) -> Iterator[tuple[Stand, float]]:
-    """Where in a room a thing of that shape may stand or hang, along walls first, each with what that is worth."""
+    """Yield the places of a room where a thing of that shape may stand or hang, along walls first, with their worth."""
     inner, height = interior(room), shaped.size[1]
     if shaped.mount == "ceiling":
         yield from (((*spot, 2.6 - height), 0.0) for spot in _out_in_the_room(inner, shaped, (0.0,)))
@@ -207,7 +207,7 @@ def _out_in_the_room(inner: Rect, shaped: Form, yaws: tuple[float, ...]) -> Iter
 
 
 def passable(room: Room, standing: list[Rect], doors: list[Rect]) -> bool:
-    """Whether one gets from each of a room's doors to all others with these things standing.
+    """Return whether one gets from each of a room's doors to all others with these things standing.
 
     Args:
         room: the room.

@@ -54,7 +54,10 @@ def _guess(parts: Parts, node: int, room: str, x: float, z: float) -> Thing:
 
 
 def _anchors(parts: Parts, room: int, members: list[int], doors: Mapping[int, Thing]) -> dict[int, tuple[float, float]]:
-    """Where some of the members should be: doors at their holes, and what is CLOSE to another room on its side."""
+    """Return where some of the members should be.
+
+    Doors at their holes, and what is CLOSE to another room on its side.
+    """
     found = {}
     for node in members:
         beyond = [doors[parts.room[n]] for n in parts.near[node] if parts.room.get(n, room) != room]

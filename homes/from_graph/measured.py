@@ -22,7 +22,7 @@ PANELS = frozenset({"wall", "floor", "ceiling"})
 
 
 def has_geometry(graph: EnvironmentGraph) -> bool:
-    """Whether all its rooms have boxes."""
+    """Return whether all its rooms have boxes."""
     rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
     return bool(rooms) and all(room.box is not None for room in rooms)
 

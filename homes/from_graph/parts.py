@@ -83,7 +83,7 @@ class Parts:
         return not plain and known.class_name not in SHELL
 
     def _bears(self, place: int, word: str) -> bool:
-        """Whether things are put there: what is on a rug stands on the floor."""
+        """Return whether things are put there: what is on a rug stands on the floor."""
         shaped = form(self.nodes[place].class_name, self.knowledge)
         if word == "inside" and not {"CONTAINERS", "CAN_OPEN"} & set(self.nodes[place].properties):
             return False

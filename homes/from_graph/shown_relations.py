@@ -113,7 +113,7 @@ def seen(ones: Sequence[Box], yaws: Sequence[float], others: Sequence[Box]) -> n
 
 
 def sees(one: Box, yaw: float | None, other: Box) -> bool:
-    """Whether the front of the first points towards the second; what has no front looks anywhere."""
+    """Return whether the front of the first points towards the second; what has no front looks anywhere."""
     dx, dz = other.center[0] - one.center[0], other.center[2] - one.center[2]
     distance = hypot(dx, dz)
     if yaw is None or distance < 0.05:

@@ -78,7 +78,7 @@ def gaps(points: np.ndarray, box: Box) -> np.ndarray:
 
 
 def stands_on_floor(thing: Thing) -> bool:
-    """Whether a thing is in the way of someone walking."""
+    """Return whether a thing is in the way of someone walking."""
     if thing.mount in ("shell", "flat", "door", "ceiling", "item", "sunk"):
         return False
     return bottom(thing.box) < HEAD and thing.class_name != "curtain" and (

@@ -77,7 +77,7 @@ class Support:
 
     @property
     def tidy(self) -> bool:
-        """Whether things stand in rows from the back."""
+        """Return whether things stand in rows from the back."""
         return self.apart == 0
 
 
@@ -123,7 +123,7 @@ def _direct(
 
 
 def _level_of(piece: Piece, relation: str, holder: Form, knowledge: Knowledge) -> str:
-    """Whether a thing stands where things are `on` its support or in its hollow.
+    """Return whether a thing stands where things are `on` its support or in its hollow.
 
     A sink is INSIDE a counter and let into its top, and what is INSIDE a bookcase stands on its open shelves.
     """
@@ -338,7 +338,10 @@ def _check(support: Support, level: Level, local: Local) -> None:
 
 
 def _best(support: Support, level: Level, width: float, depth: float) -> Local | None:
-    """Where a thing of that size stands best: the first free place from the back on tidy supports, else well apart."""
+    """Return where a thing of that size stands best.
+
+    The first free place from the back on tidy supports, else well apart.
+    """
     across, out = support.width - width, support.depth - depth
     if across < -1e-9 or out < -1e-9:
         return None

@@ -68,7 +68,7 @@ class Piece:
         return replace(self, on=change(self.on), inside=change(self.inside), lay=change(self.lay))
 
     def has(self, key: str) -> bool:
-        """Whether the plan places it by that key."""
+        """Return whether the plan places it by that key."""
         return key in self.place
 
 

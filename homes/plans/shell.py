@@ -252,7 +252,7 @@ def _door_things(plan: Plan, door: Doorway, wall: str, begin: float, finish: flo
 
 
 def _open_leaf(into: Room, wall: str, door: Doorway, begin: float, finish: float) -> Rect:
-    """Where a door's leaf stands when it is open: at right angles to its wall, inside the opening's end."""
+    """Return where a door's leaf stands when it is open: at right angles to its wall, inside the opening's end."""
     start = begin if door.hinge == "low" else finish - LEAF
     return strip(interior(into), wall, start, start + LEAF, door.width - 0.02)
 

@@ -36,7 +36,7 @@ def places(table: Thing, seats: Sequence[Thing]) -> list[Place]:
 
 
 def setting(place: Place, sizes: Sequence[tuple[float, float]]) -> list[Rect]:
-    """Where the things of one setting lie, given their (width, depth) as the person sees them.
+    """Return where the things of one setting lie, given their (width, depth) as the person sees them.
 
     The first lies before the person, the second to its left, the third to its right, the others beyond, from right to
     left.

@@ -77,7 +77,7 @@ def _candidates(class_name: str, relation: str, room: str, knowledge: Knowledge)
 
 
 def _goes_in(size: tuple[float, float, float], holder: tuple[float, float, float], shelves: int, relation: str) -> bool:
-    """Whether it is small beside what is to hold it."""
+    """Return whether it is small beside what is to hold it."""
     flat, middle, long = sorted(size)
     room = min(holder[0], holder[2]), max(holder[0], holder[2])
     high = holder[1] / shelves - 0.08 if relation == "IN" else 0.6

@@ -125,7 +125,7 @@ class PlanLine(NamedTuple):
 
     @property
     def bracketed(self) -> bool:
-        """Whether it is a step in the syntax of programs, `[Walk] <kitchen> (1)`."""
+        """Return whether it is a step in the syntax of programs, `[Walk] <kitchen> (1)`."""
         return self.number is not None and _BRACKETED.match(self.text) is not None
 
 
@@ -299,17 +299,17 @@ def is_answer(line: PlanLine) -> bool:
 
 
 def ordered(lines: Sequence[PlanLine]) -> bool:
-    """Whether a plan has numbered steps; its bullets then only explain them."""
+    """Return whether a plan has numbered steps; its bullets then only explain them."""
     return any(line.numbered for line in lines)
 
 
 def is_step(line: PlanLine, is_ordered: bool) -> bool:
-    """Whether a line is a step of its own in a plan that is numbered or not."""
+    """Return whether a line is a step of its own in a plan that is numbered or not."""
     return (line.numbered or line.bracketed) if is_ordered else line.number is not None
 
 
 def is_plan(lines: Sequence[str]) -> bool:
-    """Whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
+    """Return whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
     found = list(map(plan_line, lines))
     pairs = zip(found, lines, strict=True)
     written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and _BRACKETED.match(raw.strip())]

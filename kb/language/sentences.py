@@ -60,7 +60,7 @@ class Asked(NamedTuple):
 
     @property
     def fuzzy(self) -> bool:
-        """Whether words were corrected or left out."""
+        """Return whether words were corrected or left out."""
         return self.meant.score < 1 or bool(self.left_out)
 
 
@@ -207,7 +207,7 @@ def _are_of_a_kind(known: Knowledge, one: str, other: str) -> bool:
 
 
 def _is_bare(known: Knowledge, words: str) -> bool:
-    """Whether words are a thing without the place where it is."""
+    """Return whether words are a thing without the place where it is."""
     return thing_of(known, _uncounted(words.split())) is not None and not _BETWEEN.search(words)
 
 

@@ -53,7 +53,7 @@ SHOWN = 60
 
 
 def fits(value: Any, shape: Shape, name: str, at: Entry, faults: Faults) -> bool:
-    """Whether a value has a shape; else that is a fault."""
+    """Return whether a value has a shape; else that is a fault."""
     if shape.fits(value):
         return True
     text = str(value) if len(str(value)) <= SHOWN else f"{str(value)[:SHOWN]}..."

@@ -80,7 +80,7 @@ def _asked(formula: Formula) -> Iterator[Literal[Term]]:
 
 
 def _size(name: str, derived: Derived, sizes: dict[str, int], within: tuple[str, ...]) -> int:
-    """How many predicates a definition stands for; more than `MOST` where it follows from itself."""
+    """Return how many predicates a definition stands for; more than `MOST` where it follows from itself."""
     if name not in derived:
         return 1
     if name in within:

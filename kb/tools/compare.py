@@ -48,7 +48,7 @@ class Comparison:
     cells: Mapping[str, Mapping[str, int]]
 
     def count(self, table: str, kind: str, explained: bool) -> int:
-        """How many differences of a table are of a kind, with or without a reason."""
+        """Return how many differences of a table are of a kind, with or without a reason."""
         return sum(1 for d in self.differences if d.table == table and d.kind == kind and bool(d.why) == explained)
 
 
@@ -131,7 +131,7 @@ def _ours(knowledge: Knowledge, reasons: Reasons, table: str, fact: Fact) -> Fac
 
 
 def _cells(knowledge: Knowledge, accepted: Iterable[Fact]) -> dict[str, dict[str, int]]:
-    """How the other's accepted cells come about here: from properties, or from being listed one by one."""
+    """Return how the other's accepted cells come about here: from properties, or from being listed one by one."""
     counts: dict[str, dict[str, int]] = {}
     for action_name, position, class_name in accepted:
         action, thing = knowledge.action(action_name), knowledge.object_class(class_name)

@@ -210,7 +210,7 @@ def _proposals(counts: _Counts, knowledge: Knowledge) -> Iterator[Proposal]:
 
 
 def _serves(subject: str, room: str, knowledge: Knowledge, named: Container[str] = ()) -> bool:
-    """Whether a room stands in for one where a thing belongs, of those that are not named: the release's homes have no
+    """Return whether a room stands in for an unnamed one where a thing belongs: the release's homes have no
     kitchen, so what it finds in the dining room belongs in a kitchen.
     """
     usual = knowledge.objects[subject].rooms

@@ -180,7 +180,7 @@ def _half(target: Target) -> NDArray[np.float64]:
 
 
 def inside(eye: Sequence[float], room: Box) -> bool:
-    """Whether a point is in a room, away from its walls."""
+    """Return whether a point is in a room, away from its walls."""
     return all(abs(e - c) <= s / 2 - INSET for e, c, s in zip(eye, room.center, room.size, strict=True))
 
 

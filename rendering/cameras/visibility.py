@@ -107,7 +107,7 @@ def _missed(keyframe: Keyframe, camera: Camera, named: tuple[int, ...]) -> tuple
 
 
 def _is_in_closed(node: int, places: Places) -> bool:
-    """Whether a closed container holds the node."""
+    """Return whether a closed container holds the node."""
     states = {known.id: known.states for known in places.graph.nodes}
     for _ in range(8):
         location = places.locations.get(node)

@@ -259,7 +259,7 @@ class Planner:
         return np.array([known[camera] for camera in cameras])
 
     def shows(self, camera: Camera, number: int, agent: int) -> bool:
-        """Whether a camera's picture at a moment shows the act of an agent, by its pixels."""
+        """Return whether a camera's picture at a moment shows the act of an agent, by its pixels."""
         frame = self.moments[number].frame
         step = next((step for step in frame.steps if step.agent == agent), None)
         shot = self.pictures.shoot(frame.scene, replace(camera, width=JUDGED[0], height=JUDGED[1]))
@@ -347,7 +347,7 @@ class Verified:
         return missed, wrong
 
     def _verified(self, row: int, number: int, bit: int) -> bool:
-        """Whether a camera shows an act, by pixels; if not, this is remembered."""
+        """Return whether a camera shows an act, by pixels; if not, this is remembered."""
         key = row, number, bit
         if key not in self.known:
             planner = self.planner

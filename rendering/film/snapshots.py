@@ -269,7 +269,7 @@ BESIDE = (0.42, 0.0, 0.12)
 
 
 def _put_down_at(actor: Actor) -> Point:
-    """Where an actor puts things down: near itself; who sits or lies, not under itself."""
+    """Return where an actor puts things down: near itself; who sits or lies, not under itself."""
     return actor.position if actor.body_pose.posture == "standing" else actor.world(BESIDE)
 
 

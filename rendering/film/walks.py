@@ -36,7 +36,7 @@ def on_the_floor(prepared: PreparedScene, keyframe: Keyframe) -> list[Solid]:
 
 
 def contains(solid: Solid, spot: Spot) -> bool:
-    """Whether a point of the floor is deeper than `DEEP` inside."""
+    """Return whether a point of the floor is deeper than `DEEP` inside."""
     x, z = spot[0] - solid.middle[0], spot[1] - solid.middle[1]
     c, s = cos(radians(solid.yaw)), sin(radians(solid.yaw))
     # Thin things, such as walls and leaves, are entered by their middle.

@@ -167,24 +167,24 @@ def elsewhere(
 
 
 def _within(target: int, step: Step | None, places: Places) -> bool:
-    """Whether hands go into a container that stands open."""
+    """Return whether hands go into a container that stands open."""
     gesture = gesture_of(step)
     top, inside = outermost(target, places)
     return gesture.into and (inside or gesture.about > 0) and "OPEN" in _states(places.graph, top)
 
 
 def _hinders(actor: Actor, step: Step | None, floor: FreeFloor, top: int) -> bool:
-    """Whether somebody stands where the doors swing that it opens or closes."""
+    """Return whether somebody stands where the doors swing that it opens or closes."""
     return gesture_of(step).swings and floor.in_the_way(actor.spot, top)
 
 
 def _still(step: Step | None) -> bool:
-    """Whether doors stay as they are: who only comes to a thing may open it next."""
+    """Return whether doors stay as they are: who only comes to a thing may open it next."""
     return gesture_of(step).near and not gesture_of(step).swings
 
 
 def _out_of_reach(seated: Actor, places: Places, step: Step | None) -> bool:
-    """Whether a step needs hands at something that is not at a seat."""
+    """Return whether a step needs hands at something that is not at a seat."""
     target = _goal(step)
     pose, _ = reachable(target, places) if target and gesture_of(step).near else (None, None)
     return pose is not None and _gap(seated.spot, pose.box) > LEANING

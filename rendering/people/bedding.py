@@ -74,7 +74,7 @@ def _bedding_on(places: Places) -> dict[int, list[Node]]:
 
 
 def covers(pose: Pose) -> bool:
-    """Whether bedding is a blanket over somebody's legs."""
+    """Return whether bedding is a blanket over somebody's legs."""
     return pose.box.size[1] > EMPTY and local_size(pose.box.size, pose.yaw or 0.0)[2] >= SPREAD
 
 

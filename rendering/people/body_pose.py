@@ -126,7 +126,7 @@ class BodyPose:
         return self.right_hand if side == "r" else self.left_hand
 
     def tuck(self, side: str) -> float:
-        """How far the `r` or `l` arm is drawn in."""
+        """Return how far the `r` or `l` arm is drawn in."""
         return self.tucked[side == "l"]
 
 

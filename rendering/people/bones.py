@@ -139,7 +139,7 @@ def _arm(
 
 
 def _natural(side: str, elbow: Vector, wrist: Vector) -> Vector:
-    """Where the palm of an arm that hangs looks: inwards and a little back; down if the forearm is level."""
+    """Return where the palm of an arm that hangs looks: inwards and a little back; down if the forearm is level."""
     level = 1 - abs(float(unit(wrist - elbow)[1]))
     inwards = np.array((-1.0 if side == "r" else 1.0, 0.0, -0.35))
     found: Vector = inwards * (1 - level) + np.array((0.0, -1.0, 0.0)) * level

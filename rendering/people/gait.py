@@ -264,7 +264,7 @@ class Gait:
             self.arms = arms([self.place(min(k * SAMPLED, self.moving)) for k in range(count)])
 
     def tucked(self, time: float) -> tuple[float, float]:
-        """How far the right and the left arm are drawn in."""
+        """Return how far the right and the left arm are drawn in."""
         early, late = eased(time / SETTLING), eased((self.seconds - time) / SETTLING)
         brief = min(1.0, self.seconds / (4 * SETTLING))
         found: list[float] = []
@@ -287,7 +287,7 @@ class Gait:
         return self.moves[-1].at(self.moves[-1].seconds)
 
     def _prints(self) -> tuple[list[Print], list[Print]]:
-        """Where the right and the left foot stand, and from when."""
+        """Return where the right and the left foot stand, and from when."""
         own = self.actor.body.proportions
         start = Place(*self.actor.spot, self.actor.yaw)
         rest = feet_of(replace(self.actor.body_pose, posture="standing", stride=0.0, feet=None), own)
@@ -337,7 +337,10 @@ class Gait:
         return local(place, here.place, 0.0, pitch)
 
     def _sinks(self) -> Floats:
-        """How low the hips are every `BOBBING` seconds: as low as feet that are far apart need, without haste."""
+        """Return how low the hips are every `BOBBING` seconds.
+
+        As low as feet that are far apart need, without haste.
+        """
         pose, own = replace(self.actor.body_pose, stride=0.0), self.actor.body.proportions
         found = np.zeros(ceil(self.seconds / BOBBING) + 1)
         for number in range(len(found)):
@@ -382,7 +385,7 @@ class Gait:
 
 
 def in_world(place: Place, foot: Foot) -> Place:
-    """Where a foot of a body at a place is."""
+    """Return where a foot of a body at a place is."""
     c, s = cos(place.yaw * pi / 180), sin(place.yaw * pi / 180)
     return Place(place.x + foot.x * c + foot.z * s, place.z - foot.x * s + foot.z * c, place.yaw + foot.yaw)
 

@@ -63,13 +63,13 @@ class Hold(NamedTuple):
 
     @property
     def both(self) -> bool:
-        """Whether both hands hold it, if they are free."""
+        """Return whether both hands hold it, if they are free."""
         return self.grip == "two hands"
 
 
 @lru_cache(maxsize=4096)
 def hold_of(recipe: str, size: Point, side: str) -> Hold:
-    """How a thing of a recipe and a size in metres is held by the `right` or `left` hand."""
+    """Return how a thing of a recipe and a size in metres is held by the `right` or `left` hand."""
     row = HOLDS.get(recipe) or _by_size(size)
     left, grip = side == "left", row["grip"]
     x, y, z = row["at"]
@@ -100,7 +100,7 @@ def _by_size(size: Point) -> Mapping[str, Any]:
 
 
 def hold_of_node(node: Node, places: Places, side: str) -> Hold:
-    """How a node of the graph is held."""
+    """Return how a node of the graph is held."""
     return hold_of(choice_of(node.class_name, places.knowledge).recipe, places.size_of(node), side)
 
 

@@ -29,7 +29,7 @@ Holds = dict[str, Hold]
 
 
 def holds_of(actor: Actor, places: Places) -> Holds:
-    """How an actor holds what it holds."""
+    """Return how an actor holds what it holds."""
     nodes = {node.id: node for node in places.graph.nodes}
     held = places.holds.get(actor.node.id, {})
     return {side[0]: hold_of_node(nodes[node], places, side) for node, side in held.items()}

@@ -43,7 +43,7 @@ def slid(places: Places, actors: Sequence[Actor], steps: Sequence[Step]) -> Plac
 
 
 def _slides(places: Places, target: int) -> bool:
-    """Whether a thing stands on the floor, and can be moved."""
+    """Return whether a thing stands on the floor, and can be moved."""
     nodes: Mapping[int, Node] = {node.id: node for node in places.graph.nodes}
     location, node = places.locations.get(target), nodes.get(target)
     if node is None or target not in places.poses or location is None or "MOVABLE" not in node.properties:
@@ -68,7 +68,7 @@ def _direction(spot: Spot, box: Box) -> Spot:
 
 
 def _is_free(box: Box, by: Spot, solids: Solids, without: Sequence[int], spot: Spot) -> bool:
-    """Whether a thing that is moved hits neither others nor the person."""
+    """Return whether a thing that is moved hits neither others nor the person."""
     (x, y, z), (w, h, d) = box.center, box.size
     x, z = x + by[0], z + by[1]
     for solid in solids.near((x, z), max(w, d) / 2 + SLIPS, without).all:

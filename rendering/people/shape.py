@@ -87,7 +87,7 @@ class BodyData(NamedTuple):
 
 
 def is_present() -> bool:
-    """Whether the file of bodies is installed."""
+    """Return whether the file of bodies is installed."""
     return (files("hearth.rendering.people") / FILE).is_file()
 
 

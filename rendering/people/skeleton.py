@@ -71,7 +71,7 @@ def bend(body_pose: BodyPose, body: Proportions) -> tuple[float, float]:
 
 @lru_cache(maxsize=64)
 def effort_of(body_pose: BodyPose, body: Proportions) -> float:
-    """How far a body stoops: as its pose says, else the least with which the hands reach their targets."""
+    """Return how far a body stoops: as its pose says, else the least with which the hands reach their targets."""
     if body_pose.effort is not None:
         return body_pose.effort
     targets = [np.array(t) for t in (body_pose.right, body_pose.left) if t is not None]
@@ -263,7 +263,7 @@ def _relaxed_hand(found: Joints, side: str, sign: float, body: Proportions, body
 
 
 def _before_belly(found: Joints, sign: float, body: Proportions) -> Vector:
-    """Where the hand of an arm that is drawn in rests."""
+    """Return where the hand of an arm that is drawn in rests."""
     up = unit(found["chest"] - found["spine"])
     forward = np.cross((1.0, 0.0, 0.0), up)
     here: Vector = found["spine"] + forward * 0.11 * body.height + (sign * 0.035 * body.height, 0.0, 0.0)

@@ -245,7 +245,7 @@ def _front(rests: Actor, keyframe: Keyframe) -> float | None:
 
 
 def _beside(rests: Actor, ways: WalkableFloor | None, near: Spot, front: float | None) -> Spot:
-    """Where one stands before sitting or lying down: the walkable point nearest to the front of the hips."""
+    """Return where one stands before sitting or lying down: the walkable point nearest to the front of the hips."""
     x, _, z = rests.world((0.0, 0.0, 0.35 if rests.body_pose.posture == "sitting" else 0.0))
     if front is not None:
         x, z = x + AT_COUCH * sin(radians(front)), z + AT_COUCH * cos(radians(front))
@@ -289,7 +289,7 @@ def _seating(up: Actor, down: Actor) -> Segment:
 
 
 def _way(one: Point | None, other: Point | None, share: float) -> Point | None:
-    """Where a hand is between two places; at the second if it has none at first."""
+    """Return where a hand is between two places; at the second if it has none at first."""
     if one is None or other is None:
         return other
     x, y, z = (a + (b - a) * share for a, b in zip(one, other, strict=True))

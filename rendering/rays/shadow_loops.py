@@ -183,7 +183,7 @@ def draw_plane(
 
 @kernel
 def judged(q: Any, own: int, first: Any, other: Any, covered: Any, group: int, slack: Any) -> int:
-    """Whether a point of nearness `q` and of a group is DARK, LIT or UNSURE, by a texel's bounds."""
+    """Return whether a point of nearness `q` and of a group is DARK, LIT or UNSURE, by a texel's bounds."""
     if q > (other if own >= 0 and own == group else first) + slack:
         return LIT
     return DARK if covered > q + np.float32(10) * slack else UNSURE

@@ -165,7 +165,7 @@ class Places:
         return {**found, **kept} if kept else found
 
     def _goes_along(self, thing: Node, vessel: Node) -> bool:
-        """Whether a thing stays in or on a vessel that somebody takes."""
+        """Return whether a thing stays in or on a vessel that somebody takes."""
         holds = {"RECIPIENT", "CONTAINERS", "SURFACES"} & {*vessel.properties}
         if not holds or "GRABBABLE" not in vessel.properties or "SITTABLE" in vessel.properties:
             return False

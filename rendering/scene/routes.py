@@ -81,13 +81,13 @@ class WalkableFloor:
         return ~self._at(self.free, np.asarray(a) + shares[:, None] * (np.asarray(b) - np.asarray(a)))
 
     def clear(self, a: Spot, b: Spot, ways: Ways) -> bool:
-        """Whether the straight line is walkable."""
+        """Return whether the straight line is walkable."""
         shares = np.linspace(0, 1, max(2, int(np.ceil(dist(a, b) / CELL * 2)) + 1))
         points = np.asarray(a) + shares[:, None] * (np.asarray(b) - np.asarray(a))
         return bool(self._at(ways.floor.walkable, points).all())
 
     def has_room(self, spot: Spot) -> bool:
-        """Whether there is room for a body and its arms."""
+        """Return whether there is room for a body and its arms."""
         return bool(self._at(self.roomy, np.array([spot]))[0])
 
     def _at(self, cells: Cells, points: NDArray[np.float64]) -> Cells:
@@ -148,7 +148,7 @@ def ways_of(rooms: Iterable[Node], nodes: Sequence[Node], leaves: Floats | None 
 
 
 def blocks_walks(node: Node, floor: float) -> bool:
-    """Whether one walks around a thing."""
+    """Return whether one walks around a thing."""
     assert node.box is not None
     top = node.box.center[1] + node.box.size[1] / 2 - floor
     return is_in_the_way(node, floor) and not ("GRABBABLE" in node.properties and top < STEPPED_OVER)

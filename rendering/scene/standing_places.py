@@ -165,7 +165,7 @@ class FreeFloor:
         return AHEAD * (int(blocked.argmax()) if blocked.any() else len(blocked)) / len(blocked)
 
     def in_the_way(self, spot: Spot, opens: int) -> bool:
-        """Whether a thing's doors or drawers would hit who stands at a spot."""
+        """Return whether a thing's doors or drawers would hit who stands at a spot."""
         return bool(self._hit(np.array([spot]), opens)[0])
 
     def _hit(self, centers: NDArray[np.float64], opens: int, still: bool = False) -> NDArray[np.float64]:

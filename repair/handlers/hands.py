@@ -47,17 +47,17 @@ def no_origin(context: RepairContext) -> Edit | None:
 
 
 def _is_tool(context: RepairContext, thing: ObjectRef) -> bool:
-    """Whether the failing step is done with the thing: its own object, or the knife that cuts."""
+    """Return whether the failing step is done with the thing: its own object, or the knife that cuts."""
     return thing in context.step.objects or (context.step.action == "Cut" and "knife" in thing.name)
 
 
 def _priority(context: RepairContext, thing: ObjectRef) -> tuple[bool, int]:
-    """How little a thing is missed: what the program is to end up holding most, then what it needs soonest."""
+    """Return how little a thing is missed: what the program is to end up holding most, then what it needs soonest."""
     return (not _is_wanted(context, thing), _needed_in(context, thing))
 
 
 def _is_wanted(context: RepairContext, thing: ObjectRef) -> bool:
-    """Whether the program is to end up holding the thing."""
+    """Return whether the program is to end up holding the thing."""
     return any(fact.name == HOLDS and fact.target == thing.key for fact in context.goal)
 
 

@@ -23,7 +23,7 @@ def done_before_seat(context: RepairContext, name: str, last: int, *leading: Ste
 
 
 def stays(context: RepairContext, last: int) -> bool:
-    """Whether the character is to go on resting after step number `last`."""
+    """Return whether the character is to go on resting after step number `last`."""
     for number, step in enumerate(context.program.steps[last + 1 :], last + 1):
         if step.agent == context.failure.agent and not context.is_inserted(number):
             return step.action not in context.posture and context.rests_at(number) is not False
@@ -53,7 +53,7 @@ def brought(context: RepairContext, name: str) -> Edit | None:
 
 
 def _is_put(context: RepairContext, thing: ObjectRef, seat: ObjectRef) -> bool:
-    """Whether a repair has put a thing where the seat is, or the original has put it somewhere, or something on it.
+    """Return whether a repair has put a thing at the seat, or the original has put it, or something on it.
 
     What was brought before the seat was moved may be brought again.
     """
@@ -87,7 +87,7 @@ def _fetched(context: RepairContext, name: str, thing: ObjectRef, seat: int) -> 
 
 
 def _can_fetch(context: RepairContext, number: int) -> bool:
-    """Whether a hand is free before a step, and the step does not depend on where the character is."""
+    """Return whether a hand is free before a step, and the step does not depend on where the character is."""
     agent = context.world_before(number).agents[context.failure.agent]
     return not (agent.right and agent.left) and (_walks(context, number) or number == context.at)
 
@@ -98,7 +98,7 @@ def _approach(context: RepairContext, seat: int) -> int:
 
 
 def _walks(context: RepairContext, number: int) -> bool:
-    """Whether the character goes somewhere else in a step: not by a Find of what is close."""
+    """Return whether the character goes somewhere else in a step: not by a Find of what is close."""
     step, world = context.program.steps[number], context.world_before(number)
     if step.agent != context.failure.agent or step.action not in context.group("goes") or step.joins:
         return False

@@ -59,7 +59,7 @@ class Legal:
         return sum(map(self.count, self.masks))
 
     def count(self, action: str) -> int:
-        """How many instructions of an action there are; no thing is named twice in one."""
+        """Return how many instructions of an action there are; no thing is named twice in one."""
         masks = self.masks.get(action, (0,))
         count = masks[0].bit_count() if masks else 1
         if len(masks) > 1:

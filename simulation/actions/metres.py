@@ -98,7 +98,7 @@ def _others(world: World, number: int) -> list[Agent]:
 
 
 def _in_the_way(world: World, number: int, leg: tuple[Pose, Pose]) -> bool:
-    """Whether a stride comes nearer to another character than both bodies need, and not only away from it."""
+    """Return whether a stride comes nearer to another character than both bodies need, and not only away from it."""
     start, end = leg
     dx, dz = end.x - start.x, end.z - start.z
     square = dx * dx + dz * dz

@@ -132,7 +132,7 @@ class Ground:
         return self._reached[key]
 
     def joined(self, one: int, other: int, doors: int) -> bool:
-        """Whether a way leads from one cell to another while these doors are closed."""
+        """Return whether a way leads from one cell to another while these doors are closed."""
         region = self._regions(doors)
         return region[one] == region[other]
 

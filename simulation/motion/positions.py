@@ -131,7 +131,10 @@ def _held(world: World) -> int:
 
 
 def beside(world: World, pose: Pose, node: int) -> Pose:
-    """Where one who comes from a pose stands for a node, looking at it: the nearest of its places as the crow flies."""
+    """Return where one who comes from a pose stands for a node, looking at it.
+
+    The nearest of its places as the crow flies.
+    """
     here = ground_of(world.home)
     cells = ends(world, here, node) if here is not None else ()
     if here is None or not cells:

@@ -97,7 +97,7 @@ class View:
         return self.world.graph(self.mask)
 
     def sees(self, node_id: int) -> bool:
-        """Whether a node is seen; a node that there is not is not."""
+        """Return whether a node is seen; a node that there is not is not."""
         index = self.world.home.index.get(node_id)
         return index is not None and bool(self.mask >> index & 1)
 
@@ -137,7 +137,7 @@ def view(
 
 
 def pose(world: World, number: int, last: LastAction | None = None, among: int = -1) -> Pose:
-    """How a character stands; of what it faces and is on, the nodes of a set alone are named."""
+    """Return how a character stands; of what it faces and is on, the nodes of a set alone are named."""
     agent = world.agents[number]
     ids = world.home.ids
     room = rows.agent_room(world, agent)

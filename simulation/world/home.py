@@ -284,7 +284,7 @@ class Home:
 
     @explained
     def limit(self, index: int, lying: bool = False) -> int:
-        """How many things may be ON a seat before one may sit, or on a bed before one may lie."""
+        """Return how many things may be ON a seat before one may sit, or on a bed before one may lie."""
         name = self.classes[index]
         return self.knowledge.bed_limit(name) if lying else self.knowledge.seat_limit(name)
 

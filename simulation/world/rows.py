@@ -61,8 +61,9 @@ def _row(row: int, removed: int, extra: dict[int, int], i: int, kind: int) -> in
 
 
 def is_close(world: WorldState, agent: Agent, i: int) -> bool:
-    """Whether a character is close to i: by its own CLOSE edge, or by one hop from what it is CLOSE to (to something
-    CLOSE to it, or to something that i is ON).
+    """Return whether a character is close to i, by its own CLOSE edge or by one hop.
+
+    The hop leads from a node that the character is CLOSE to, to a node CLOSE to that one, or to a node that i is ON.
     """
     mine = agent.close
     if mine >> i & 1:
@@ -94,7 +95,7 @@ def is_near(world: WorldState, agent: Agent, i: int, near_hands: bool) -> bool:
 
 
 def is_facing(world: WorldState, agent: Agent, i: int) -> bool:
-    """Whether a character faces i, by its own FACING edge or by one hop."""
+    """Return whether a character faces i, by its own FACING edge or by one hop."""
     mine = agent.facing
     if mine >> i & 1 or mine & faced(world, i):
         return True

@@ -60,7 +60,7 @@ class World(WorldState):
 
     @explained
     def has_state(self, node_id: int, state: str) -> bool:
-        """Whether a node is in a state.
+        """Return whether a node is in a state.
 
         Raises:
             HearthError: BAD_ARGUMENT, if there is no such node or state.
