@@ -266,7 +266,7 @@ _ACTION_NAME = re.compile(r"[a-z]+(?:_[a-z]+)*")
 
 
 def of_planner(plans: Iterable[Any]) -> bool:
-    """Return whether all lists are actions of BEHAVIOR's planner, with WordNet's names of things, or names of actions."""
+    """Return whether lists are all actions of BEHAVIOR's planner, with WordNet's names of things, or action names."""
     steps = [step for plan in plans if isinstance(plan, list) for step in plan]
     if not steps or not all(isinstance(step, str) for step in steps):
         return False
