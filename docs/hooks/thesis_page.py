@@ -40,7 +40,7 @@ NONE = "not yet"
 ABOUT = """\
 # What the thesis says, what we measure
 
-Every table and figure of the thesis [*VirtualHome*](index.md#the-corpus-that-comes-with-it), and what Hearth has in its
+Every table and figure of the thesis [*VirtualHome*](corpus.md), and what Hearth has in its
 place. Each number of ours is what the command below it prints, measured on the day and at the commit beside it.
 Our corpus, homes and engine differ from the thesis's, so a number that is equal is a sign, and no proof.
 
