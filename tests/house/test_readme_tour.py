@@ -1,4 +1,4 @@
-"""The commands of the README and of the guides, one after another, in a copy of the checkout, as a new user gives them."""
+"""The commands of the README and the guides, one after another, in a copy of the checkout, as a new user types them."""
 
 from __future__ import annotations
 
