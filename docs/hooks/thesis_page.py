@@ -41,8 +41,7 @@ ABOUT = """\
 # What the thesis says, what we measure
 
 Every table and figure of the thesis [*VirtualHome*](corpus.md), and its counterpart in Hearth. The command below each
-of our
-numbers prints it; the day and the commit of the measurement stand next to it.
+of our numbers prints it; the day and the commit of the measurement stand next to it.
 Our corpus, homes and engine differ from the thesis's, so a number that is equal is a sign, and no proof.
 
 `docs/thesis.yaml` has the numbers; `python docs/hooks/thesis_page.py "table 3.1"` measures an item again."""
