@@ -107,7 +107,7 @@ class Asking(ExpectedTime):
         return step
 
     def _is_worth_it(self) -> bool:
-        """Whether to know what is wanted soon is better than the best plan without."""
+        """Return whether to know what is wanted soon is better than the best plan without."""
         if not self._forecasts or self._forecasts[0][0] >= CERTAIN:
             return False
         return self._expected((), self.talk.asking) + self.talk.delay < self.value

@@ -130,7 +130,7 @@ class HelpingPlans:
                 self._passing[edge] += share
 
     def _lacking(self, prospects: Sequence[tuple[float, Counts, Prospect]]) -> None:
-        """How probably a goal lacks one, two, ... of each predicate beside what the partner carries."""
+        """Return how probably a goal lacks one, two, ... of each predicate beside what the partner carries."""
         space = self._helper.space
         there = space.counted(self._helper.scene.places).sum(axis=1).tolist()
         carried = [rows for thing, rows in zip(space.things, space.rows_of, strict=True) if self._theirs >> thing & 1]

@@ -55,7 +55,7 @@ class Hierarchical(HumanLike):
         return super().act(observation, legal)
 
     def _note_other(self, view: View) -> None:
-        """Where the other one is: as last seen; in any other room, if it is not where it was."""
+        """Return where the other one is: as last seen; in any other room, if it is not where it was."""
         self._other = view.others[-1] if view.others else self._other
         note_others(self.belief, view, self.chooser)
 
@@ -71,11 +71,11 @@ class Hierarchical(HumanLike):
         return rest or ([] if self._other is not None and self._other.holding else mine)
 
     def _provided(self, mine: Subgoal, theirs: Subgoal, missing: Missing) -> bool:
-        """Whether the partner is doing the last that a part of the goal lacks."""
+        """Return whether the partner is doing the last that a part of the goal lacks."""
         return mine.part == theirs.part and missing[mine.part][0] < 2
 
     def _left_to_partner(self, view: View, theirs: Subgoal) -> bool:
-        """Whether the partner is at the thing of its subgoal before oneself; it is if it has it, or if one knows
+        """Return whether the partner is at the thing of its subgoal before oneself; it is if it has it, or if one knows
         neither where the partner nor where the thing is.
         """
         place, other = self.belief.where.get(theirs.thing), self._other

@@ -105,7 +105,7 @@ class Faulty(HumanLike):
         return subgoals[self.chooser.choices(list(values), weights)[0]]
 
     def _happens(self, probability: float) -> bool:
-        """Whether something happens now; what never does draws nothing."""
+        """Return whether something happens now; what never does draws nothing."""
         return probability > 0 and self.chooser.random() < probability
 
     def _forget(self, view: View) -> None:

@@ -146,7 +146,7 @@ class HumanLike:
         return self.distances.ticks(metres), end
 
     def _failed(self, view: View) -> bool:
-        """Whether its last instruction failed, so that another subgoal may be better."""
+        """Return whether its last instruction failed, so that another subgoal may be better."""
         return view.me.last is not None and view.me.last.failure is not None
 
     def _needed(self, missing: Missing, held: int) -> int:
@@ -194,5 +194,5 @@ class HumanLike:
         return search.first(Literal("CLOSED", (container,))) if container >= 0 else None
 
     def _leaves(self, search: Regression, step: Step | None) -> bool:
-        """Whether an instruction ends what there was to do here."""
+        """Return whether an instruction ends what there was to do here."""
         return step is None or step.action in search.home.knowledge.group("goes")

@@ -68,7 +68,7 @@ class ChangesGoal(Faulty):
 
 
 def _is_other(first: Goal, own: Goal, home: Home) -> bool:
-    """Whether a goal shares no predicate with another, and can be reached with what there is."""
+    """Return whether a goal shares no predicate with another, and can be reached with what there is."""
     return not {each for each, _ in first} & {each for each, _ in own} and all(
         _number(each, home) >= wanted for each, wanted in first
     )

@@ -121,7 +121,7 @@ class Learned(Hybrid):
         return self._acted(observation, legal, self.subgoal)
 
     def _still(self, open_now: Sequence[Subgoal]) -> bool:
-        """Whether its kind of subgoal is missing still; which thing it is for, the second policy decides."""
+        """Return whether its kind of subgoal is missing still; which thing it is for, the second policy decides."""
         return self.subgoal is not None and any(each.part == self.subgoal.part for each in open_now)
 
     def _acted(self, view: View, legal: Legal, subgoal: Subgoal) -> Step | None:

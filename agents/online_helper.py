@@ -91,14 +91,14 @@ class OnlineHelper(ABC):
         return True
 
     def places(self, view: View) -> Places:
-        """Where things are: as seen by who sees everything, else as believed."""
+        """Return where things are: as seen by who sees everything, else as believed."""
         if not self.home.everything & ~view.mask:
             return self.space.places(view.world)
         self.belief.observe(view)
         return [self._believed(thing) for thing in self.space.things]
 
     def _believed(self, thing: int) -> Place:
-        """Where it believes a thing to be."""
+        """Return where it believes a thing to be."""
         return self.belief.where[thing]
 
     @property

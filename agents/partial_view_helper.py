@@ -107,7 +107,7 @@ class Watchful(ExpectedTime):
         return self.distances.ticks(metres)
 
     def _believed(self, thing: int) -> Place:
-        """Where it believes a thing to be; what it has not seen is not yet where a goal may want it."""
+        """Return where it believes a thing to be; what it has not seen is not yet where a goal may want it."""
         place = super()._believed(thing)
         if self.belief.known >> thing & 1:
             return place

@@ -183,7 +183,7 @@ class Regression:
         return ()
 
     def _holds(self, formula: Formula, bound: Bound) -> bool:
-        """Whether a condition holds by belief; what an agent has no belief about, does."""
+        """Return whether a condition holds by belief; what an agent has no belief about, does."""
         if isinstance(formula, And):
             return all(self._holds(part, bound) for part in formula.parts)
         if isinstance(formula, Or):
@@ -209,7 +209,7 @@ class Regression:
         return not (self.me.right and self.me.left) if name == "free_hand" else None
 
     def near(self, node: int) -> bool:
-        """Whether the agent is close to something; to what is out of view, if it is to what that is in."""
+        """Return whether the agent is close to something; to what is out of view, if it is to what that is in."""
         if not self.seen >> node & 1:
             node = self.belief.shut_in(node)
         return node >= 0 and bool(self.seen >> node & 1) and rows.is_close(self.world, self.me, node)

@@ -74,7 +74,7 @@ class Distances:
 
 
 def _end(field: Field, cell: int) -> int:
-    """Where a field's way from a cell ends."""
+    """Return where a field's way from a cell ends."""
     following = field.following
     while (after := following[cell]) >= 0:
         cell = after

@@ -82,7 +82,7 @@ def methods(
 
 
 def _ready(helper: str) -> bool:
-    """Whether the libraries and the network are there that a helper needs."""
+    """Return whether the libraries and the network are there that a helper needs."""
     from hearth.models.model_registry import trained_names
 
     network = ONLINE[helper].network if helper in ONLINE else ""

@@ -98,7 +98,7 @@ def furniture(task: Task, world: World) -> set[str]:
 
 
 def _handles(tick: Tick, number: int) -> bool:
-    """Whether an agent did something with things other than walking to them."""
+    """Return whether an agent did something with things other than walking to them."""
     step = tick.instructions.get(number)
     if step is None or number in tick.failures or not step.objects:
         return False

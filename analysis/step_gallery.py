@@ -120,7 +120,7 @@ def _pictured(
 
 
 def _rank(step: Step, done: Counter[str]) -> tuple[int, bool]:
-    """How little a step adds to a gallery: its action was shown, or moves no hand."""
+    """Return how little a step adds to a gallery: its action was shown, or moves no hand."""
     gesture = gesture_of(step)
     return done[step.action], not (gesture.hand or gesture.rests)
 

@@ -92,7 +92,7 @@ class Guarded:
         return Step(step.action, tuple(ObjectRef(home.classes[home.index[i]], 0, i) for i in nodes), self.number)
 
     def _may_try(self, step: Step, view: View) -> bool:
-        """Whether it is about what is seen; the engine says then why it can't be done."""
+        """Return whether it is about what is seen; the engine says then why it can't be done."""
         ids = [ref.node for ref in step.objects]
         return step.action in self.allowed and all(isinstance(node, int) and view.sees(node) for node in ids)
 

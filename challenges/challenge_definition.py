@@ -83,12 +83,12 @@ class Challenge:
 
     @property
     def agents(self) -> int:
-        """How many characters there are; the first is the one that is helped."""
+        """Return how many characters there are; the first is the one that is helped."""
         return len(self.strides)
 
     @property
     def rules(self) -> Rules:
-        """How actions are read; published tasks count the bedding on a bed, and hands reach into other rooms."""
+        """Return how actions are read; published tasks count the bedding on a bed, and hands reach into other rooms."""
         return DEFAULT._replace(bodies=self.bodies, one_grip=True, made_bed=False, near_hands=False)
 
     def goals_in(self, home: Home) -> Mapping[Goal, float]:

@@ -147,8 +147,9 @@ class Lineup:
 
 
 def partial_of(agent: Any) -> bool | None:
-    """Whether an agent sees only what is around it, for `Player`: an oracle of ours sees all, who is near-sighted never
-    does, all others as the challenge has it.
+    """Return whether an agent sees only its surroundings, for `Player`.
+
+    Our oracles see everything, near-sighted agents never do; the challenge decides for all others.
     """
     ours = type(agent).__module__.startswith("hearth.agents.")
     if getattr(agent, "near_sighted", False):

@@ -52,12 +52,12 @@ class Played:
 
     @property
     def success(self) -> bool:
-        """Whether the goal was reached."""
+        """Return whether the goal was reached."""
         return self.progress[-1].satisfied
 
     @property
     def ticks(self) -> int:
-        """How long it took."""
+        """Return how long it took."""
         return len(self.env.ticks)
 
 
@@ -101,7 +101,7 @@ class Playing:
 
     @property
     def over(self) -> bool:
-        """Whether the goal is reached or the time is over."""
+        """Return whether the goal is reached or the time is over."""
         return self.progress[-1].satisfied or len(self.env.ticks) >= self.limit
 
     def view(self, number: int) -> View:

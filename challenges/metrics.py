@@ -188,7 +188,7 @@ SAME = 1e-9
 
 
 def paired(one: Mapping[str, float], other: Mapping[str, float]) -> Paired:
-    """Whether a metric differs between two agents on the tasks that both did."""
+    """Return whether a metric differs between two agents on the tasks that both did."""
     from scipy import stats
 
     tasks = [task for task in one if task in other]

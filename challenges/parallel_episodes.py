@@ -43,7 +43,7 @@ def here(workers: int) -> Spread:
 
 @contextmanager
 def spread_over(engine: str, workers: int = 1, scheduler: str = "") -> Iterator[Spread]:
-    """Where episodes are played; a cluster that is started for them ends with them.
+    """Yield where episodes are played; a cluster that is started for them ends with them.
 
     Args:
         engine: `local` or `dask`.

@@ -27,7 +27,7 @@ class Solved:
 
     @property
     def fault(self) -> str:
-        """Why the task is none; "" where it can be done."""
+        """Return why the task is none; "" where it can be done."""
         if not self.ticks:
             return f"{self.task}: its goal is reached at the start"
         return "" if self.success else f"{self.task}: not done in {self.ticks} ticks by who sees everything"

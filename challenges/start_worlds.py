@@ -108,7 +108,10 @@ def site_of(name: str, home: str, knowledge: Knowledge) -> Site:
 
 
 def _places(which: Challenge, base: Base, name: str) -> Places:
-    """Where a thing may be at a start: where the knowledge places it, but nowhere that is carried, sat or lain on."""
+    """Return where a thing may be at a start.
+
+    Where the knowledge places it, but nowhere that is carried, sat or lain on.
+    """
     home = base.home
     never = base.seats | home.properties["GRABBABLE"]
     found: defaultdict[tuple[str, str], set[int]] = defaultdict(set)

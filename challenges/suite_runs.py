@@ -75,7 +75,10 @@ def run(
 
 
 def _kept(header: Header, partial: Path) -> int:
-    """How many episodes of the same run are in a file that a stopped run left; what is half written is cut off."""
+    """Return how many episodes of the same run are in a file that a stopped run left.
+
+    What is half written is cut off.
+    """
     if not partial.exists():
         return 0
     lines = read_lines(partial)

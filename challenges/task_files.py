@@ -52,7 +52,7 @@ class Suite:
 
     @property
     def published(self) -> bool:
-        """Whether these are the first tasks of the published split."""
+        """Return whether these are the first tasks of the published split."""
         try:
             return self.tasks == published_tasks.tasks(self.challenge, self.split, limit=len(self.tasks))
         except HearthError:

@@ -98,7 +98,7 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
 
 
 def differences(check: Check) -> tuple[int, list[str]]:
-    """How many episodes of a task were done again, and what was different then."""
+    """Return how many episodes of a task were done again, and what was different then."""
     found = []
     # Those without a helper first, then those with one: their starts differ.
     for number, record in sorted(enumerate(check.records), key=lambda pair: pair[1].helped):

@@ -25,8 +25,8 @@ def augmented(
 
     \b
     Examples:
-      python cli.py augmented data_out --out figures
-      python cli.py augmented data_out --circumstances
+      hearth augmented data_out --out figures
+      hearth augmented data_out --circumstances
     """
     from hearth.analysis.augmentation_results import figures
 

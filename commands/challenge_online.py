@@ -18,7 +18,7 @@ def infer(results: Path, *, workers: int = 0, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py challenge infer nopa.jsonl
+      hearth challenge infer nopa.jsonl
     """
     from hearth.analysis.online_inference import inference
     from hearth.challenges.verification import read_whole
@@ -52,7 +52,7 @@ def people(
 
     \b
     Example:
-      python cli.py challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
+      hearth challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
     """
     from hearth.analysis.helper_harm import helped_people
     from hearth.challenges.task_files import suite

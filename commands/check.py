@@ -46,8 +46,8 @@ def check(
 
     \b
     Examples:
-      python cli.py check morning.txt evening.txt
-      python cli.py check --fix morning.txt
+      hearth check morning.txt evening.txt
+      hearth check --fix morning.txt
     """
     known = inputs.read_knowledge(kb)
     diffs = {file: _fix(file, known, write=fix) for file in files} if fix or diff else {}

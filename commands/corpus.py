@@ -30,7 +30,7 @@ def template(out: Path | None = None, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py corpus template --out mine.csv
+      hearth corpus template --out mine.csv
     """
     from importlib.resources import files
 
@@ -66,11 +66,11 @@ def synthesize(
 
     \b
     Examples:
-      python cli.py corpus synthesize --out synthetic.jsonl
-      python cli.py corpus synthesize --out synthetic.jsonl --splits splits.csv --json
-      python cli.py corpus synthesize --described --out described.jsonl
-      python cli.py corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
-      python cli.py sample synthetic.jsonl   (runs each of them in every home)
+      hearth corpus synthesize --out synthetic.jsonl
+      hearth corpus synthesize --out synthetic.jsonl --splits splits.csv --json
+      hearth corpus synthesize --described --out described.jsonl
+      hearth corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
+      hearth sample synthetic.jsonl   (runs each of them in every home)
     """
     import orjson
 
@@ -120,8 +120,8 @@ def stats(
 
     \b
     Examples:
-      python cli.py corpus stats data_out --out figures
-      python cli.py corpus stats release.zip
+      hearth corpus stats data_out --out figures
+      hearth corpus stats release.zip
     """
     from hearth.analysis import corpus_figures
     from hearth.analysis import corpus_statistics as numbers
@@ -185,7 +185,7 @@ def dirt(key: Path, sources: list[Path] | None = None, kb: Path | None = None, a
 
     \b
     Example:
-      python cli.py corpus dirt data_raw/crowd/key.csv
+      hearth corpus dirt data_raw/crowd/key.csv
     """
     from hearth.analysis import error_detection as finding
 
@@ -212,7 +212,7 @@ def fuzz(seconds: float = 300, seed: int = 0, most: int | None = None, as_json: 
 
     \b
     Example:
-      python cli.py corpus fuzz --seconds 60 --seed 7
+      hearth corpus fuzz --seconds 60 --seed 7
     """
     report = _mutated_input().fuzz(inputs.read_knowledge(None), seconds, seed, most)
     if as_json:
@@ -254,7 +254,7 @@ def sheet(
 
     \b
     Example:
-      python cli.py corpus sheet data_out --programs 100 --out ratings.csv
+      hearth corpus sheet data_out --programs 100 --out ratings.csv
     """
     from hearth.analysis import completeness_ratings
     from hearth.storage.files import write_bytes
@@ -291,8 +291,8 @@ def completeness(
 
     \b
     Examples:
-      python cli.py corpus completeness data_out --programs 100
-      python cli.py corpus completeness data_out --programs 100 --sheet ratings.csv
+      hearth corpus completeness data_out --programs 100
+      hearth corpus completeness data_out --programs 100 --sheet ratings.csv
     """
     from hearth.analysis import completeness_ratings
     from hearth.schemas.failures import Failure

@@ -232,7 +232,7 @@ def doctor(libraries: bool = False, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py doctor
+      hearth doctor
     """
     if libraries:
         wanted = [] if "open3d" in lacking("pictures") else missing_libraries()

@@ -25,7 +25,7 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
 
     \b
     Example:
-      python cli.py environment conditions watch_tv.txt
+      hearth environment conditions watch_tv.txt
     """
     from hearth.grounding.preconditions.precondition_inference import at_odds, infer
     from hearth.grounding.preconditions.release_rules import compare
@@ -69,7 +69,7 @@ def rules(source: Path, limit: int | None = None, as_json: bool = False) -> None
 
     \b
     Example:
-      python cli.py environment rules release.zip
+      hearth environment rules release.zip
     """
     from itertools import islice
 
@@ -105,9 +105,9 @@ def sample_one(
 
     \b
     Examples:
-      python cli.py environment sample watch_tv.txt --home maple --out tv.json
-      python cli.py environment sample --goal "ON(plate, kitchen_table): 9" --goal "CLEAN(stove)" --nodes 290
-      python cli.py environment sample --home birch --seed 7 --out any.json
+      hearth environment sample watch_tv.txt --home maple --out tv.json
+      hearth environment sample --goal "ON(plate, kitchen_table): 9" --goal "CLEAN(stove)" --nodes 290
+      hearth environment sample --home birch --seed 7 --out any.json
     """
     from hearth.commands import sampled_environment
     from hearth.homes import home_export
@@ -145,7 +145,7 @@ def realism(
 
     \b
     Example:
-      python cli.py environment realism release.zip --out realism
+      hearth environment realism release.zip --out realism
     """
     from hearth.analysis import object_distribution as report
 
@@ -181,7 +181,7 @@ def diversity(
 
     \b
     Example:
-      python cli.py environment diversity watch_tv.txt --home maple --samples 1000
+      hearth environment diversity watch_tv.txt --home maple --samples 1000
     """
     from hearth.analysis import object_distribution as report
 
@@ -207,8 +207,8 @@ def preconditions(
 
     \b
     Examples:
-      python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
-      python cli.py environment preconditions release.zip --drawing bars.svg
+      hearth environment preconditions release.zip --class cup --class sauce_pan --out data_out
+      hearth environment preconditions release.zip --drawing bars.svg
     """
     from hearth.analysis import object_distribution as report
 

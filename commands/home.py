@@ -31,7 +31,7 @@ def list_homes(homes: Path | None = None, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py home list --homes my_homes
+      hearth home list --homes my_homes
     """
     from hearth.homes import library
 
@@ -54,7 +54,7 @@ def show(home: str, out: Path | None = None, homes: Path | None = None, as_json:
 
     \b
     Example:
-      python cli.py home show maple --out maple.svg
+      hearth home show maple --out maple.svg
     """
     graph = _graph(home, homes)
     if out is not None:
@@ -84,8 +84,8 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
 
     \b
     Examples:
-      python cli.py home lint TrimmedTestScene1_graph.json
-      python cli.py home lint TrimmedTestScene1_graph.json --layout
+      hearth home lint TrimmedTestScene1_graph.json
+      hearth home lint TrimmedTestScene1_graph.json --layout
     """
     from hearth.commands.inputs import note_filled
     from hearth.homes import library
@@ -138,9 +138,9 @@ def convert(home: str, out: Path, layout: bool = False, homes: Path | None = Non
 
     \b
     Examples:
-      python cli.py home convert maple maple.json
-      python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
-      python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
+      hearth home convert maple maple.json
+      hearth home convert my_homes/oak.yaml my_homes/oak.ids.csv
+      hearth home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
     from hearth.homes import home_export, library
 
@@ -168,8 +168,8 @@ def export(
 
     \b
     Examples:
-      python cli.py home export maple --format gltf
-      python cli.py home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
+      hearth home export maple --format gltf
+      hearth home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
     """
     from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.rendering.scene.interchange import ENDINGS, write
@@ -189,7 +189,7 @@ def generate(rooms: int = 5, seed: int = 0, out: Path | None = None, as_json: bo
 
     \b
     Example:
-      python cli.py home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
+      hearth home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
     """
     from hearth.homes import home_export
     from hearth.homes.procedural.home_generator import generate as generated_layout
@@ -220,7 +220,7 @@ def edit(
 
     \b
     Example:
-      python cli.py home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
+      hearth home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
     """
     from hearth.commands.home_edits import edited
     from hearth.homes import home_export
@@ -250,9 +250,9 @@ def stats(
 
     \b
     Examples:
-      python cli.py home stats --homes release_homes
-      python cli.py home stats --against release_homes
-      python cli.py home stats --generated 1000
+      hearth home stats --homes release_homes
+      hearth home stats --against release_homes
+      hearth home stats --generated 1000
     """
     from hearth.homes import library
     from hearth.homes.home_statistics import beside, of_homes, placement_distance, places
@@ -292,8 +292,8 @@ def ways(names: list[str] | None = None, homes: Path | None = None, workers: int
 
     \b
     Examples:
-      python cli.py home ways
-      HEARTH_WAYS=ways python cli.py home ways oak --homes my_homes
+      hearth home ways
+      HEARTH_WAYS=ways hearth home ways oak --homes my_homes
     """
     from hearth.commands.progress_line import bar
     from hearth.homes import library

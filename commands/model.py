@@ -26,7 +26,7 @@ def every(*, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py model list
+      hearth model list
     """
     from hearth.models.model_registry import MODELS, trained_names
 
@@ -64,7 +64,7 @@ def train(
 
     \b
     Example:
-      python cli.py model train nearest data_out --out build/nearest
+      hearth model train nearest data_out --out build/nearest
     """
     from hearth.commands.progress_line import bar
     from hearth.models.fit_model import fit
@@ -99,7 +99,7 @@ def predict(
 
     \b
     Example:
-      python cli.py model predict build/nearest data_out --part test --out predicted.jsonl
+      hearth model predict build/nearest data_out --part test --out predicted.jsonl
     """
     from hearth.commands.progress_line import bar
     from hearth.models.prediction_files import predict_part
@@ -139,9 +139,9 @@ def score(
 
     \b
     Example:
-      python cli.py model score predicted.jsonl data_out
-      python cli.py model predict planner release --part "" --out planned.jsonl
-      python cli.py model score planned.jsonl release --unseen data_out
+      hearth model score predicted.jsonl data_out
+      hearth model predict planner release --part "" --out planned.jsonl
+      hearth model score planned.jsonl release --unseen data_out
     """
     from hearth.datasets.dataset import Dataset
     from hearth.models.evaluation import means
@@ -170,7 +170,7 @@ def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: b
 
     \b
     Example:
-      python cli.py model bands predicted.jsonl data_out --out figures
+      hearth model bands predicted.jsonl data_out --out figures
     """
     from hearth.analysis.scores_by_lcs import JUDGES, by_lcs, draw_by_lcs
     from hearth.datasets.dataset import Dataset
@@ -210,7 +210,7 @@ def examples(
 
     \b
     Example:
-      python cli.py model examples predicted.jsonl data_out --out examples.html
+      hearth model examples predicted.jsonl data_out --out examples.html
     """
     from hearth.analysis.prediction_examples import examples_page, prediction_examples
     from hearth.commands.progress_line import bar
@@ -236,8 +236,8 @@ def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool =
 
     \b
     Examples:
-      python cli.py model figure 4-4 data_out/clips --model clips-seen --out figure-4-4.svg
-      python cli.py model figure 4-7 data_out/clips --model clips-seen --out figure-4-7.html
+      hearth model figure 4-4 data_out/clips --model clips-seen --out figure-4-4.svg
+      hearth model figure 4-7 data_out/clips --model clips-seen --out figure-4-7.html
     """
     from hearth.datasets.dataset import Dataset
     from hearth.models.films import clip_confusion, film_figure
@@ -282,11 +282,11 @@ def show(
 
     \b
     Example:
-      python cli.py model show retrieve-edit "Turn on the TV and sit down" --home maple
-      python cli.py model show planner --sketch sketch.txt --home maple --home birch
-      python cli.py model show clips-seen data_out/clips/publish/films/FOLDER --film shown
-      python cli.py model show clips-seen film.webm --film shown
-      python cli.py model show build/demo2sketch data_out/demos/publish/frames/FOLDER --writer chooser --home maple
+      hearth model show retrieve-edit "Turn on the TV and sit down" --home maple
+      hearth model show planner --sketch sketch.txt --home maple --home birch
+      hearth model show clips-seen data_out/clips/publish/films/FOLDER --film shown
+      hearth model show clips-seen film.webm --film shown
+      hearth model show build/demo2sketch data_out/demos/publish/frames/FOLDER --writer chooser --home maple
     """
     from hearth.commands import model_output
     from hearth.models.demonstrations.demonstration_data import is_demonstration

@@ -50,9 +50,9 @@ def play(
 
     \b
     Examples:
-      python cli.py play maple --goal "HOLDS(agent, milk)" --text
-      python cli.py play maple --goal "HOLDS(agent, milk)" --agent 0="node docs/examples/agent.js" --out episode.jsonl
-      python cli.py replay episode.jsonl
+      hearth play maple --goal "HOLDS(agent, milk)" --text
+      hearth play maple --goal "HOLDS(agent, milk)" --agent 0="node docs/examples/agent.js" --out episode.jsonl
+      hearth replay episode.jsonl
     """
     seats = _seats([*([f"0={TEXT}"] if text else []), *(agent or ())])
     quiet = any(seat.spec == STDIO for seat in seats)

@@ -42,9 +42,9 @@ def program(
 
     \b
     Examples:
-      python cli.py render-program watch_tv.txt --home maple --out pictures
-      python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
-      python cli.py render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
+      hearth render-program watch_tv.txt --home maple --out pictures
+      hearth render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
+      hearth render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
     """
     from hearth.kb.loading.load import default
     from hearth.rendering.scene.home_geometry import with_geometry
@@ -187,7 +187,7 @@ def sheet(out: Path, fine: bool = False, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py render-sheet --out models.png
+      hearth render-sheet --out models.png
     """
     from hearth.rendering.film.png import encode
     from hearth.rendering.models.model_sheet import entries
@@ -212,7 +212,7 @@ def gallery(
 
     \b
     Example:
-      python cli.py render-gallery --fine --width 224 --out docs/pictures/steps.png
+      hearth render-gallery --fine --width 224 --out docs/pictures/steps.png
     """
     from hearth.analysis.coverage import Script, scripts
     from hearth.analysis.step_gallery import gallery as pictured
@@ -251,7 +251,7 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
     \b
     Example:
-      python cli.py render-visible --count 30 --seed 7
+      hearth render-visible --count 30 --seed 7
     """
     from hearth.commands.progress_line import bar, watched
     from hearth.rendering.cameras.visibility import shares

@@ -43,7 +43,7 @@ def repair(
 
     \b
     Example:
-      python cli.py repair watch_tv.txt --home maple --seed 3 --perturb free --perturb on
+      hearth repair watch_tv.txt --home maple --seed 3 --perturb free --perturb on
     """
     from hearth.repair.augmentation import Options, augment
     from hearth.schemas.failures import Failure

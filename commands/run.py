@@ -49,8 +49,8 @@ def run(
 
     \b
     Examples:
-      python cli.py run watch_tv.txt --home maple --explain
-      python cli.py run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
+      hearth run watch_tv.txt --home maple --explain
+      hearth run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
     known = read_knowledge(kb, home, graph, homes)

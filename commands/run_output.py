@@ -199,7 +199,7 @@ def _poses(execution: Execution) -> tuple[tuple[HandAndBasePose, ...], ...]:
 
 
 def _moved(before: World, after: World) -> Iterator[str]:
-    """Where each character is that stands or looks elsewhere than before."""
+    """Yield where each character is that stands or looks elsewhere than before."""
     for number, (old, new) in enumerate(zip(before.agents, after.agents, strict=True)):
         if new.pose is not None and new.pose != old.pose:
             yield f"character {number} at ({new.pose.x:.2f}, {new.pose.z:.2f}) m, facing {new.pose.yaw:.0f} degrees"

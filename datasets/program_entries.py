@@ -87,7 +87,7 @@ class Run:
 
     @property
     def executable(self) -> bool:
-        """Whether it ran to its end."""
+        """Return whether it ran to its end."""
         return self.row["executable"]
 
     @property

@@ -38,7 +38,7 @@ class Trial:
     activity: str = ""
 
     def runs(self, steps: Steps) -> bool:
-        """Whether a program is executable here, as `score dataset` measures it; the empty program is not."""
+        """Return whether a program is executable here, as `score dataset` measures it; the empty program is not."""
         return bool(steps) and executability(steps, self.world, self.reference, self.rules).executable
 
 

@@ -234,7 +234,7 @@ def settings_of(name: str, **changed: Any) -> Model:
         suggestion = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(MODELS)}"
         raise HearthError.of(Code.UNKNOWN_ID, f"no model is called `{name}`", suggestion=suggestion)
     if entry.by:
-        raise _writes_nothing(name, f"python cli.py {entry.by} --out FOLDER trains it")
+        raise _writes_nothing(name, f"hearth {entry.by} --out FOLDER trains it")
     made: Model = _class(entry)(**{**entry.settings, **changed})
     return made
 
@@ -268,7 +268,7 @@ def restore(model: str | Path) -> tuple[str, Trained]:
     """
     name, trained = restore_any(model)
     if MODELS[name].by:
-        raise _writes_nothing(str(model), "python cli.py challenge run TASKS --helper hybrid uses such models")
+        raise _writes_nothing(str(model), "hearth challenge run TASKS --helper hybrid uses such models")
     found: Trained = trained
     return name, found
 
@@ -285,7 +285,7 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
     if str(model) in MODELS and not folder.exists():
         message = f"`{model}` has not been trained"
         command = MODELS[str(model)].by or f"model train {model} DATASET"
-        suggestion = f"python cli.py {command} --out FOLDER, and name that folder"
+        suggestion = f"hearth {command} --out FOLDER, and name that folder"
         raise HearthError.of(Code.MISSING_FILE, message, suggestion=suggestion)
     checkpoint = load(folder)
     entry = MODELS.get(checkpoint.model)

@@ -67,7 +67,7 @@ class Context:
         return [home for home in self._others if home.name != name]
 
     def options_for(self, record_id: str) -> Options:
-        """How an execution is augmented; a fractional number of pairs is rounded up or down at random."""
+        """Return how an execution is augmented; a fractional number of pairs is rounded up or down at random."""
         return replace(self.options, count=_pairs(self.each, self.seed, record_id))
 
 

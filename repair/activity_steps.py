@@ -31,9 +31,9 @@ def replaceable(knowledge: Knowledge) -> frozenset[str]:
 def meant(goal: Postconditions, program: Program, conditions: Preconditions, knowledge: Knowledge) -> Postconditions:
     """The effects that a program is for, without those that are by the way.
 
-    By the way are: the room where the character or a thing ends up; that something stays open that was opened to get at
-    things; that something is still in the hand that was taken to be used, since whoever uses it has to hold it; and
-    what is in what it was poured into, since pouring is a step that is kept anyway.
+    Side effects are: the room where the character or a thing ends up; a container left open that was opened to take
+    something out; a tool still in the hand, since its user has to hold it; and the content of a vessel after pouring,
+    since pouring is a step that is kept anyway.
     """
     reached_into = {c.objects[1]: c.objects[0] for c in conditions if c.name in ("in", "inside")}
     preparation = knowledge.group("preparation")
@@ -57,7 +57,7 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
 def milestones(execution: Execution) -> Postconditions:
     """Effects that were undone again, but not before something was done meanwhile: the stove that was on while cooking.
 
-    Only what is switched on and what is put somewhere counts; what is held or open is so for another step's sake.
+    Only devices switched on and objects put somewhere count; objects are held or opened for another step's sake.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
@@ -79,20 +79,20 @@ def milestones(execution: Execution) -> Postconditions:
 
 
 def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
-    """What is switched on, and what is ON or INSIDE what, characters left out."""
+    """Return the devices switched on, and the objects ON or INSIDE others, characters left out."""
     found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
     return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]
 
 
 def _used_after(program: Program, action: str, key: Key, preparation: frozenset[str]) -> bool:
-    """Whether a thing is of use in a step after the last such action on it, preparations aside."""
+    """Return whether a thing is of use in a step after the last such action on it, preparations aside."""
     last = max((n for n, s in enumerate(program.steps) if s.action == action and _first(s) == key), default=-1)
     later = program.steps[last + 1 :]
     return any(step.action not in preparation and key in (ref.key for ref in step.objects) for step in later)
 
 
 def _is_tool(program: Program, key: Key, knowledge: Knowledge) -> bool:
-    """Whether a thing was the last one taken before something was done that takes such a thing."""
+    """Return whether a thing was the last one taken before something was done that takes such a thing."""
     held: Key | None = None
     for step in program.steps:
         if step.action == "Grab":
@@ -128,7 +128,7 @@ def clauses(program: Program) -> list[frozenset[str]]:
 
 
 def takes_back(program: Program, number: int, knowledge: Knowledge) -> bool:
-    """Whether a step tidies up: puts away what was taken, or switches off what was switched on."""
+    """Return whether a step tidies up: puts away what was taken, or switches off what was switched on."""
     step = program.steps[number]
     if step.action in knowledge.group("forgets"):
         done = knowledge.group("takes")

@@ -79,7 +79,7 @@ class Perturbed:
 
 @dataclass(frozen=True, slots=True)
 class Chances:
-    """How likely perturbations are.
+    """Probabilities of perturbations.
 
     Attributes:
         kinds: the probability of each kind, for every condition it applies to.
@@ -187,7 +187,7 @@ def _at_reach(case: Case) -> Iterator[Perturbation]:
 
 
 def _seats(case: Case) -> dict[int | None, str]:
-    """The class of what the character sits or lies on, by the numbers of the steps that the program does there."""
+    """Return the class of the character's seat or bed, by the numbers of the steps that the program does there."""
     found: dict[int | None, str] = {}
     seat = ""
     for number, step in enumerate(case.program.steps):
@@ -208,7 +208,7 @@ def _container(case: Case) -> Iterator[Perturbation]:
 
 
 def _fits_closed_container(case: Case, key: Key, now: Key) -> bool:
-    """Whether it belongs in a container other than its present place that can be closed."""
+    """Return whether it belongs in a container other than its present place that can be closed."""
     same = case.knowledge.same_class(now[0])
     classes = case.base.home.classes
     spots = case.base.spots(key[0]).choices
@@ -235,7 +235,7 @@ def _placing(case: Case, key: Key) -> list[Condition]:
 
 
 def _is_portable(case: Case, key: Key) -> bool:
-    """Whether things of its class can be carried, and no other object of the program is placed by this one."""
+    """Return whether things of its class can be carried, and no other object of the program is placed by this one."""
     leads = any(c.name in _BY_OTHERS and c.name != "location" and c.objects[1] == key for c in case.conditions)
     return case.knowledge.has(key[0], "GRABBABLE") and not leads
 
@@ -259,7 +259,7 @@ def _door(case: Case) -> Iterator[Perturbation]:
 
 
 def _has_door(case: Case, room: str) -> bool:
-    """Whether the name is a room's, and each room that may serve as it has a door that closes."""
+    """Return whether the name is a room's, and each room that may serve as it has a door that closes."""
     home = case.base.home
     doors = list(indices(home.doors & home.able("Close")))
     return case.knowledge.is_room(room) and all(

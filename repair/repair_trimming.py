@@ -59,7 +59,7 @@ def trim(
         keeps: whether a shorter program, with its sources, does its steps as it has to.
 
     Returns:
-        The execution of what is left, and the sources of its steps.
+        The execution of the remaining steps, and their sources.
     """
     nodes = nodes_of(original, execution.final)
     hands = _hands(execution.final)
@@ -111,7 +111,10 @@ def _candidates(
 
 
 def _undo(one: Step, other: Step, both_new: bool, knowledge: Knowledge) -> bool:
-    """Whether a step undoes the one before it; sitting down and taking something are only undone where both are new."""
+    """Return whether a step undoes the one before it.
+
+    Sitting down and taking something are only undone where both are new.
+    """
     if one.agent != other.agent:
         return False
     if both_new and other.action in knowledge.group("rises"):
@@ -128,13 +131,13 @@ def _undo(one: Step, other: Step, both_new: bool, knowledge: Knowledge) -> bool:
 
 
 def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> bool:
-    """Whether a walk follows one to the same place, and did not in the original."""
+    """Return whether a walk follows one to the same place, and did not in the original."""
     step = steps[number]
     return _last_walk(steps, number, walks) == step.objects and step not in _repeated_walks(original, walks)
 
 
 def _last_walk(steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> object:
-    """Where the walk before this walk went; None if this is not a walk or the first."""
+    """Return where the walk before this walk went; None if this is not a walk or the first."""
     if steps[number].action not in walks:
         return None
     earlier = (s for s in reversed(steps[:number]) if s.agent == steps[number].agent and s.action in walks)
@@ -148,5 +151,5 @@ def _repeated_walks(original: Program, walks: frozenset[str]) -> set[Step]:
 
 
 def _hands(world: World) -> tuple[int, ...]:
-    """What each character holds."""
+    """Return the objects that each character holds."""
     return tuple(agent.held for agent in world.agents)

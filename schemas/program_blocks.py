@@ -1,10 +1,10 @@
-"""Where one program of a text ends and the next begins."""
+"""The boundaries between programs in a text."""
 
 import re
 from dataclasses import dataclass
 
 STEP = re.compile(r"\s*[\[<(|]")
-"""How a line begins that is, or tries to be, a step."""
+"""The beginning of a line that is, or tries to be, a step."""
 
 TITLE = re.compile(
     r"\s*(?:(?:task|title|activity|goal|plan|your task is to)(?:\s+name)?(?:\s*[#№]?\d{1,6})?\s*[:=](?!=)"
@@ -54,5 +54,5 @@ class Splitter:
 
 
 def is_sentence(line: str) -> bool:
-    """Whether a line reads like a sentence, which a title does not."""
+    """Return whether a line reads like a sentence, which a title does not."""
     return line.rstrip().endswith(_SENTENCE_ENDS) or len(line.split()) >= _SENTENCE_WORDS

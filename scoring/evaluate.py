@@ -90,12 +90,12 @@ class Scored:
 
     @property
     def missing(self) -> bool:
-        """Whether the prediction is missing."""
+        """Return whether the prediction is missing."""
         return self.pair.predicted is None
 
     @property
     def empty(self) -> bool:
-        """Whether the prediction has no lines."""
+        """Return whether the prediction has no lines."""
         return self.pair.predicted == ()
 
 

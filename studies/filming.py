@@ -56,7 +56,7 @@ class Shoot:
 
 
 def film_path(folder: Path, film: JudgedFilm, shown: str = FILM) -> Path:
-    """Where a film, or a replay, of a study's folder is."""
+    """Return where a film, or a replay, of a study's folder is."""
     place, ending = FOLDERS[shown]
     return inside(folder, f"{place}/{film.name}{ending}")
 

@@ -95,7 +95,7 @@ class Condition:
 
     @property
     def helped(self) -> bool:
-        """Whether there is a helper."""
+        """Return whether there is a helper."""
         return self.helper != "none"
 
 
@@ -123,7 +123,7 @@ class Band:
     high: float
 
     def holds(self, lcs: float) -> bool:
-        """Whether a program's score is in the band."""
+        """Return whether a program's score is in the band."""
         return self.low <= lcs < self.high or lcs == self.high == 1
 
 

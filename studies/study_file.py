@@ -204,7 +204,7 @@ def _condition(entry: Any, room: str, faults: Faults) -> Condition:
 
 
 def reads_plans(helper: str) -> bool:
-    """Whether a helper is made for a partner that is a program, whose subgoal it reads."""
+    """Return whether a helper is made for a partner that is a program, whose subgoal it reads."""
     partner = HumanLike()
     return helper in HELPERS and getattr(HELPERS[helper].make(partner), "partner", None) is partner
 
@@ -242,7 +242,7 @@ def _scale(entry: Any, faults: Faults) -> dict[str, Any]:
 
 
 def _is_of_scale(key: str, low: int, high: int) -> bool:
-    """Whether a key is a number of a scale; other digits than 0 to 9, or thousands of them, are none."""
+    """Return whether a key is a number of a scale; other digits than 0 to 9, or thousands of them, are none."""
     number = number_of(key)
     return number is not None and low <= number <= high
 
@@ -298,7 +298,7 @@ def _check_helpers(study: Study, entries: Sequence[Any], faults: Faults) -> None
 
 
 def groups_of(study: Study) -> int:
-    """How many kinds of tasks come in turn: the goal sets of a challenge, or the bands of programs."""
+    """Return how many kinds of tasks come in turn: the goal sets of a challenge, or the bands of programs."""
     if study.tasks is not None:
         return len(challenge(study.tasks.challenge).grammar.sets)
     return len(study.films.bands) if study.films else 1

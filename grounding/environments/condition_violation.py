@@ -15,7 +15,7 @@ Target = tuple[int, str]
 
 
 def not_near(partial: PartialEnvironment, condition: Condition) -> None:
-    """The first object is not at reach of who stands at the second."""
+    """Move the first object out of reach of a character at the second."""
     key, anchor = condition.objects
     around = _around(partial, partial.binding[anchor])
     if not _beside(partial, partial.binding[key]) & around:
@@ -54,7 +54,7 @@ def in_closed_container(partial: PartialEnvironment, condition: Condition) -> No
 
 
 def closes(base: Base, spot: Target) -> bool:
-    """Whether that is inside something that can be opened and is closed in the home's default state."""
+    """Return whether that is inside something that can be opened and is closed in the home's default state."""
     home = base.home
     return spot[1] == "INSIDE" and bool((home.able("Open") & home.states[0]) >> spot[0] & 1)
 
@@ -99,7 +99,7 @@ def pet(partial: PartialEnvironment, condition: Condition) -> None:
 
 
 def _around(partial: PartialEnvironment, node_id: int) -> set[int]:
-    """What a walk to a node makes the character close to itself: the node, what is on it and what it is in."""
+    """Return the nodes that a walk to a node brings near: the node, its contents and its containers."""
     home = partial.base.home
     found = {node_id, *partial.places(node_id)}
     found.update(other for other, (relation, place) in partial.where.items() if place == node_id and relation == "ON")
@@ -110,7 +110,7 @@ def _around(partial: PartialEnvironment, node_id: int) -> set[int]:
 
 
 def _beside(partial: PartialEnvironment, node_id: int) -> set[int]:
-    """The node, what it is CLOSE to and what it is on: whoever is close to one of them is close to it."""
+    """Return the node, its neighbors and supports: a character close to one of them is close to it."""
     home = partial.base.home
     found = {node_id, *partial.places(node_id)}
     for edge in partial.added:
@@ -190,7 +190,7 @@ def _movable(partial: PartialEnvironment, key: Key, room: int) -> int:
 
 
 def _is_movable(partial: PartialEnvironment, node_id: int) -> bool:
-    """Whether a node can be moved: new or graspable, with nothing on or in it."""
+    """Return whether a node can be moved: new or graspable, with nothing on or in it."""
     home = partial.base.home
     if partial.load.get(node_id, 0):
         return False

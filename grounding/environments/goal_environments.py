@@ -84,7 +84,7 @@ def _class(literal: Literal[Name]) -> str:
 
 
 def _is_agent(term: Name | None) -> bool:
-    """Whether a term stands for agents, or is a variable."""
+    """Return whether a term stands for agents, or is a variable."""
     return isinstance(term, str) and term.startswith((AGENT, "?"))
 
 

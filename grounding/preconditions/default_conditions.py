@@ -53,13 +53,13 @@ def _contents(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
 
 
 def _belongs(thing: Key, relation: str, place: Key, knowledge: Knowledge) -> bool:
-    """Whether the knowledge places such a thing there."""
+    """Return whether the knowledge places such a thing there."""
     same = knowledge.same_class(place[0])
     return any(p.relation == relation and p.destination in same for p in knowledge.placements(thing[0]))
 
 
 def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rule 9: who goes to a table-like thing and then uses another expects it there; to a chair, near it."""
+    """Rule 9: a character that goes to a table, then uses another thing, expects it there; at a chair, near it."""
     last: Key | None = None
     seen: set[Key] = set()
     for number, step in enumerate(program.steps):

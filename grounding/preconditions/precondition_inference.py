@@ -95,7 +95,7 @@ def _next(
 
 
 def _against(new: Condition, conditions: Preconditions) -> bool:
-    """Whether a hard condition already says the opposite."""
+    """Return whether a hard condition already says the opposite."""
     opposite = _OPPOSITES.get(new.name)
     return opposite is not None and any(c.name == opposite and c.objects == new.objects and c.hard for c in conditions)
 

@@ -15,7 +15,7 @@ FIELDS: dict[str, tuple[str, ...]] = {
     "synonyms": ("class", "name"),
     "affordances": ("action", "position", "class"),
 }
-"""The tables that are compared, and what the parts of their facts are."""
+"""The compared tables, and the parts of their facts."""
 
 
 def root_of(knowledge: Knowledge, name: str) -> str:
@@ -41,7 +41,10 @@ class Rule:
         }
 
     def covers(self, fact: Fact) -> bool:
-        """Whether every part of the fact is among those named; the properties that a fact rests on are not compared."""
+        """Return whether every part of the fact is among those named.
+
+        The properties that a fact rests on are not compared.
+        """
         given = dict(zip(FIELDS[self.table], fact, strict=True))
         if self.same and given["object"] != given["destination"]:
             return False
@@ -71,11 +74,11 @@ class Reasons:
         }
 
     def removed(self, table: str, fact: Fact) -> str:
-        """Why we do not hold the other's fact, or ''."""
+        """Return why we do not hold the other's fact, or ''."""
         return next((rule.why for rule in self._of("removed", table) if rule.covers(fact)), "")
 
     def added(self, table: str, fact: Fact) -> str:
-        """Why we hold a fact that the other does not, or ''."""
+        """Return why we hold a fact that the other does not, or ''."""
         if table == "affordances":
             return self._cell(fact)
         why = next((rule.why for rule in self._of("added", table) if rule.covers(fact)), "")
@@ -98,7 +101,7 @@ class Reasons:
         return self._rules.get((kind, table), [])
 
     def _cell(self, fact: Fact) -> str:
-        """Why only we accept a cell: it is named, or rests on properties that only we give the class."""
+        """Return why only we accept a cell: it is named, or rests on properties that only we give the class."""
         action, position, name = fact
         for rule in self._of("added", "affordances"):
             if rule.covers(fact) and (not rule.by or self._rests_on(action, position, name, rule.by)):
@@ -110,7 +113,7 @@ class Reasons:
         return ""
 
     def _rests_on(self, action: str, position: str, name: str, properties: frozenset[str]) -> bool:
-        """Whether the cell would not be accepted without these properties."""
+        """Return whether the cell would not be accepted without these properties."""
         need = self.knowledge.actions[action].grammar[int(position)]
         thing = self.knowledge.objects[name]
         return not need.accepts(thing.properties - properties, name, thing.category == "Rooms")

@@ -89,7 +89,7 @@ class Options:
     masks: Mapping[str, Masks]
 
     def allows(self, action: str, nodes: Sequence[int]) -> bool:
-        """Whether an action may be done with these objects, by their indices in the home."""
+        """Return whether an action may be done with these objects, by their indices in the home."""
         masks = self.masks.get(action)
         if masks is None or len(masks) != len(nodes):
             return False

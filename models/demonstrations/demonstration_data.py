@@ -117,7 +117,7 @@ def read_pictures(path: Path) -> Pictures:
 
 
 def is_demonstration(text: str) -> bool:
-    """Whether an argument names pictures from above: their file, or a folder with one."""
+    """Return whether an argument names pictures from above: their file, or a folder with one."""
     try:
         path = Path(text)
         return bool(text) and (path.name == FILE or (path / FILE).is_file())

@@ -61,7 +61,7 @@ class Above(NamedTuple):
 
     @property
     def length(self) -> int:
-        """How many pictures there are."""
+        """Return how many pictures there are."""
         return len(self.classes)
 
 

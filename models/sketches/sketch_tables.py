@@ -176,7 +176,7 @@ def _with_sketches(
 def _other_person(
     test: Sequence[baselines.Example], every: Sequence[baselines.Example], groups: Sequence[str], seed: int
 ) -> Row:
-    """How alike the sketches of two people are who had the same text: a bound for what a model can write."""
+    """Return how alike the sketches of two people are who had the same text: a bound for what a model can write."""
     others = [next((one for one in every if one.text == each.text and one is not each), None) for each in test]
     pairs = [(other.sketch, each.sketch) for each, other in zip(test, others, strict=True) if other]
     scores = iter(score_pairs(pairs))

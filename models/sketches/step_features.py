@@ -137,7 +137,7 @@ class Offer:
 
     @cached_property
     def _text(self) -> TextState:
-        """How far the text is done."""
+        """Return how far the text is done."""
         steps = self.progress.steps
         return TextState.of(self.progress.clues, (ref.name for step in steps for ref in step.objects[::-1]))
 
@@ -223,7 +223,7 @@ class Past:
         self.last = deeds[-1] if deeds else ("", -2, -2)
 
     def of(self, deed: Deed) -> list[float]:
-        """Whether a step, its action and its object have come before, and how lately."""
+        """Return whether a step, its action and its object have come before, and how lately."""
         action, first, _ = deed
         about = self.about.get(first, []) if first >= 0 else []
         return [

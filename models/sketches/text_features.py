@@ -52,7 +52,7 @@ class Clues:
         return found
 
     def place(self, name: str) -> float:
-        """Where a class is mentioned first, from 0 to 1; -1 if it is not."""
+        """Return where a class is mentioned first, from 0 to 1; -1 if it is not."""
         place = self.places.get(name, -1)
         return place / len(self.words) if place >= 0 else -1.0
 

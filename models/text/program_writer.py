@@ -55,7 +55,7 @@ class Writer(nn.Module):
 
     @property
     def device(self) -> torch.device:
-        """Where its weights are."""
+        """Return where its weights are."""
         return self.embedding.actions.weight.device
 
     def log_probabilities(self, texts: InputBatch, programs: StepBatch) -> torch.Tensor:

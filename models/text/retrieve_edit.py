@@ -104,7 +104,7 @@ class TrainedRetrieveEdit:
         return renamed(program, swaps)
 
     def _fits(self, program: Steps, old: str, new: str) -> bool:
-        """Whether each action that a program does with an object takes another in its place."""
+        """Return whether each action that a program does with an object takes another in its place."""
         known, number = self.vocabulary, self.vocabulary.class_numbers[new]
         uses = {(step.action, place) for step in program for place, ref in enumerate(step.objects) if ref.name == old}
         return all(number in known.takes[known.action_numbers[action] - 1][place] for action, place in uses)

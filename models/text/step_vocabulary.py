@@ -100,7 +100,7 @@ class StepVocabulary:
         return found
 
     def _fits(self) -> dict[str, bool]:
-        """Whether each part is what the others need it to be."""
+        """Return whether each part is what the others need it to be."""
         last = len(self.classes)
         return {
             "words": _names(self.words),
@@ -155,5 +155,5 @@ class StepVocabulary:
 
 
 def _names(given: Sequence[Any]) -> bool:
-    """Whether these are different texts."""
+    """Return whether these are different texts."""
     return all(isinstance(name, str) for name in given) and len({*given}) == len(given)

@@ -105,12 +105,12 @@ class Joining:
         return Watched((*_within(first, chooser), *_within(second, chooser)), counts)
 
     def _stray(self, thing: Seen, example: Watched) -> bool:
-        """Whether a thing ends where the goal does not want it, but another may."""
+        """Return whether a thing ends where the goal does not want it, but another may."""
         cell = (thing.kind, thing.places[-1])
         return cell in self.layout.cells and not example.counts[self.layout.cells.index(cell)]
 
     def _concerns(self, thing: Seen, example: Watched) -> bool:
-        """Whether a goal, or another of its set, is about such things."""
+        """Return whether a goal, or another of its set, is about such things."""
         cell = self.layout.cells.index((thing.kind, thing.places[-1]))
         wanted = {self.layout.cells[i][0] for i, count in enumerate(example.counts) if count}
         return thing.kind in wanted or self.set_of[cell] == self.goal_set(example)

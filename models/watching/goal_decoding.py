@@ -72,7 +72,7 @@ def _scores(goals: np.ndarray, logs: np.ndarray) -> np.ndarray:
 
 
 def counts_of(goal: Goal, predicates: Sequence[str]) -> Counts:
-    """How often a goal wants each predicate."""
+    """Return how often a goal wants each predicate."""
     wanted = {str(literal): number for literal, number in goal}
     return tuple(wanted.get(each, 0) for each in predicates)
 

@@ -77,7 +77,7 @@ def _parts(predicate: Predicate) -> tuple[Name | None, tuple[str, Name | None]]:
 
 
 def _mine(predicate: Predicate) -> bool:
-    """Whether it is about what a character holds or uses."""
+    """Return whether it is about what a character holds or uses."""
     subject = predicate.subject
     return isinstance(subject, str) and subject.partition(":")[0] == AGENT
 

@@ -100,7 +100,7 @@ def _needed_close(step: Step, known: Knowledge) -> tuple[ObjectRef, ...]:
 
 
 def _within_reach(ref: ObjectRef, reached: set[str], known: Knowledge) -> bool:
-    """Whether an object may be near, on or in something reached, or something reached near, on or in the object."""
+    """Return whether an object may be near, on or in something reached, or the other way round."""
     things = {name for name in reached if not known.is_room(name)}
     thing = known.object_class(ref.name)
     if thing is None or thing.category == "Rooms" or not things.isdisjoint(known.same_class(ref.name)):
@@ -123,7 +123,7 @@ _CLOSELY = 4
 
 
 def _associated(known: Knowledge, one: str, other: str) -> bool:
-    """Whether two things nearly always occur together, as a faucet and a bathtub."""
+    """Return whether two things nearly always occur together, as a faucet and a bathtub."""
     return any(
         {row.name, row.other} == {one, other} and row.weight >= _CLOSELY
         for row in known.associations

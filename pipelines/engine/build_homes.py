@@ -72,7 +72,7 @@ class Homes:
         return library.load_graph(name, self.knowledge, self._settings.homes_folder)
 
     def in_catalog(self, name: str) -> bool:
-        """Whether a home is one of the catalog's."""
+        """Return whether a home is one of the catalog's."""
         return name in self.catalog()
 
     def _edges(self, name: str) -> frozenset[Edge]:

@@ -239,7 +239,10 @@ def _attempt(stage: Stage, record: Any, context: Any, deadline: Deadline) -> lis
 
 
 def _stops_the_stage(error: BaseException) -> bool:
-    """Whether the disk is full: the stage stops, complete parts are kept, and the next run continues from there."""
+    """Return whether the disk is full.
+
+    The stage stops, complete parts are kept, and the next run continues from there.
+    """
     return isinstance(error, OSError) and error.errno in _FULL
 
 

@@ -127,7 +127,7 @@ def _version(value: dict[str, Any]) -> str:
 
 
 def id_fault(own: str, place: str, line: int = 0) -> Reject | None:
-    """Why an id that comes with a record is not taken."""
+    """Return why an id that comes with a record is not taken."""
     if not any(map(leaves, own.split(":"))) and own.isprintable():
         return None
     message = "an id that is a path out of its folder, or not printable"

@@ -1,4 +1,4 @@
-"""Walks of a film, and whether they lead through solid things; measured from what is drawn, not from the routes."""
+"""Walks of a film, and whether they lead through solid things; measured from the drawn figures, not from the routes."""
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
@@ -36,7 +36,7 @@ def on_the_floor(prepared: PreparedScene, keyframe: Keyframe) -> list[Solid]:
 
 
 def contains(solid: Solid, spot: Spot) -> bool:
-    """Whether a point of the floor is deeper than `DEEP` inside."""
+    """Return whether a point of the floor is deeper than `DEEP` inside."""
     x, z = spot[0] - solid.middle[0], spot[1] - solid.middle[1]
     c, s = cos(radians(solid.yaw)), sin(radians(solid.yaw))
     # Thin things, such as walls and leaves, are entered by their middle.

@@ -60,7 +60,7 @@ IN_THE_WAY = 1.5
 """Loss of value of a camera at a moment at which a person is close in front of it."""
 
 SEEN, HALF = 8.0, 2.0
-"""Value of seeing an act, and how many times as much the acts count of who is seen in less than half of them."""
+"""Value of seeing an act, and the factor for acts of a person that is visible in less than half of its acts."""
 
 MOST = 3
 """Agents whose acts are counted apart."""
@@ -182,7 +182,7 @@ class Planner:
         return [step for step in frame.steps if step.agent == agent]
 
     def _obstacles(self, frame: Frame) -> Obstacles:
-        """What hides things at a moment: what moves least is looked at once a tick."""
+        """Occluders at a moment; slow ones are computed once a tick."""
         if frame.tick not in self.obstacles:
             keyframe = self.keyframes[frame.tick]
             held = frozenset(node for things in keyframe.places.holds.values() for node in things)
@@ -268,7 +268,7 @@ class Planner:
         return np.array([known[camera] for camera in cameras])
 
     def shows(self, camera: Camera, number: int, agent: int) -> bool:
-        """Whether a camera's picture at a moment shows the act of an agent, by its pixels."""
+        """Return whether a camera's picture at a moment shows the act of an agent, by its pixels."""
         frame = self.moments[number].frame
         step = next((step for step in frame.steps if step.agent == agent), None)
         shot = self.pictures.shoot(frame.scene, replace(camera, width=JUDGED[0], height=JUDGED[1]))
@@ -328,7 +328,7 @@ class Verified:
         ]
 
     def _rare(self, missed: Sequence[tuple[int, int]]) -> set[int]:
-        """Who is seen in less than half of its acts."""
+        """Persons that are visible in less than half of their acts."""
         acts, unseen = Counter(bit for _, bit in self._acts()), Counter(bit for _, bit in missed)
         return {bit for bit in acts if unseen[bit] > acts[bit] / 2}
 
@@ -356,7 +356,7 @@ class Verified:
         return missed, wrong
 
     def _verified(self, row: int, number: int, bit: int) -> bool:
-        """Whether a camera shows an act, by pixels; if not, this is remembered."""
+        """Return whether a camera shows an act, by pixels; if not, this is remembered."""
         key = row, number, bit
         if key not in self.known:
             planner = self.planner

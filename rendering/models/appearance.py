@@ -51,7 +51,7 @@ class Look:
 
     @property
     def on(self) -> bool:
-        """Whether it is ON."""
+        """Return whether it is ON."""
         return "ON" in self.states
 
     def pick(self, options: Sequence[Choice], use: str) -> Choice:

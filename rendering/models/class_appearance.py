@@ -20,7 +20,7 @@ FALLBACK = "crate"
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """How a class is drawn: the recipe's name and fixed parameters of its look."""
+    """The look of a class: the recipe's name and its fixed parameters."""
 
     recipe: str
     color: str = ""
@@ -54,7 +54,7 @@ def looks() -> dict[str, Choice]:
 
 
 def choice_of(class_name: str, knowledge: Knowledge) -> Choice:
-    """How a class is drawn: by its own entry, its synonym's, or its nearest hypernym's."""
+    """Return how a class is drawn: by its own entry, its synonym's, or its nearest hypernym's."""
     found = knowledge.objects.get(class_name)
     names = (class_name, found.same_as if found else "", *knowledge.ancestors(class_name))
     return next((looks()[name] for name in names if name in looks()), Choice(FALLBACK))

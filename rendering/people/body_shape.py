@@ -35,7 +35,7 @@ FORWARD = np.array((0.0, 0.0, 1.0))
 
 
 class Shape(NamedTuple):
-    """What shapes a person.
+    """Parameters of a person's shape.
 
     Attributes:
         sex: 0 female to 1 male.
@@ -87,7 +87,7 @@ class BodyData(NamedTuple):
 
 
 def is_present() -> bool:
-    """Whether the file of bodies is installed."""
+    """Return whether the file of bodies is installed."""
     return (files("hearth.rendering.people") / FILE).is_file()
 
 

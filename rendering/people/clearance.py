@@ -122,8 +122,9 @@ def _soft(inside: NDArray[np.bool_]) -> NDArray[np.float64]:
 
 
 def faults(actor: Actor, solids: Solids, reached: Collection[int] = ()) -> int:
-    """How many joints of an actor are in solid things, those of the trunk counted twice; hands out of reach of their
-    targets count like those.
+    """Return the number of an actor's joints that are inside solid things.
+
+    Joints of the trunk count twice, and so do hands out of reach of their targets.
 
     Args:
         actor: in a pose.

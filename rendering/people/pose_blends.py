@@ -23,7 +23,7 @@ QUICKENING = 9.0
 
 
 COMES = 2.45
-"""How much faster than evenly the gap between a hand and what it holds closes at its fastest."""
+"""Largest speed at which the gap between a hand and its object closes, as a multiple of the even speed."""
 
 TURNING = 360.0
 """Greatest speed at which things turn in the hand, degrees per second."""
@@ -129,7 +129,7 @@ def with_hands(body_pose: BodyPose, other: BodyPose) -> BodyPose:
 
 
 def effort_between(one: Actor, other: Actor, share: float) -> float:
-    """How far a body stoops between two poses."""
+    """Return how far a body stoops between two poses."""
     start, end = (effort_of(actor.body_pose, actor.body.proportions) for actor in (one, other))
     return start + (end - start) * share
 
@@ -157,7 +157,7 @@ def _turned(one: Actor, other: Actor, side: str, share: float) -> Hand:
 
 
 def _held(a: Held, b: Held, share: float) -> Held:
-    """How a thing is held between two poses; what is poured flows while it is nearly tilted."""
+    """Return how a thing is held between two poses; what is poured flows while it is nearly tilted."""
     # What is out of reach comes quickly into the hand, and leaves it late.
     early, late = (1 - share) ** 3, share**3
     x, y, z = (p * early + q * late for p, q in zip(a.gap, b.gap, strict=True))
@@ -167,7 +167,7 @@ def _held(a: Held, b: Held, share: float) -> Held:
 
 
 def _palm(actor: Actor, side: str) -> Point:
-    """Where the palm of a hand without a direction looks: inwards and down, by the slope of its forearm."""
+    """Return where the palm of a hand without a direction looks: inwards and down, by the slope of its forearm."""
     found = actor.figure().joints()
     forearm = found[f"wrist_{side}"] - found[f"elbow_{side}"]
     level = 1 - abs(float(forearm[1])) / max(float(np.linalg.norm(forearm)), 1e-9)

@@ -18,14 +18,17 @@ SHARES = (1.0, 0.6, 0.3)
 """Shares of the way that are tried until nothing is hit."""
 
 SLIPS = 0.02
-"""Metres between a thing that slides and what is beside it."""
+"""Distance between a sliding thing and its neighbors, metres."""
 
 FLAT = frozenset({"floor", "mat", "rug", "carpet", "doormat"})
 """Classes on which things slide."""
 
 
 def slid(places: Places, actors: Sequence[Actor], steps: Sequence[Step]) -> Places:
-    """The places after steps that push or pull: away from who pushes, or towards who pulls, as far as there is room."""
+    """Yield the places after steps that push or pull.
+
+    Away from the pushing actor, or towards the pulling one, as far as there is room.
+    """
     poses = dict(places.poses)
     for step in steps:
         way, actor = gesture_of(step).moves, actors[step.agent] if step.agent < len(actors) else None
@@ -43,7 +46,7 @@ def slid(places: Places, actors: Sequence[Actor], steps: Sequence[Step]) -> Plac
 
 
 def _slides(places: Places, target: int) -> bool:
-    """Whether a thing stands on the floor, and can be moved."""
+    """Return whether a thing stands on the floor, and can be moved."""
     nodes: Mapping[int, Node] = {node.id: node for node in places.graph.nodes}
     location, node = places.locations.get(target), nodes.get(target)
     if node is None or target not in places.poses or location is None or "MOVABLE" not in node.properties:
@@ -68,7 +71,7 @@ def _direction(spot: Spot, box: Box) -> Spot:
 
 
 def _is_free(box: Box, by: Spot, solids: Solids, without: Sequence[int], spot: Spot) -> bool:
-    """Whether a thing that is moved hits neither others nor the person."""
+    """Return whether a thing that is moved hits neither others nor the person."""
     (x, y, z), (w, h, d) = box.center, box.size
     x, z = x + by[0], z + by[1]
     for solid in solids.near((x, z), max(w, d) / 2 + SLIPS, without).all:

@@ -30,7 +30,7 @@ NO_TILES: Floats = np.zeros((0, 0), np.float32)
 
 
 def drawable(camera: Camera) -> bool:
-    """Whether a camera's rays begin at one depth: those of views from above do if they look straight down."""
+    """Return whether a camera's rays begin at one depth: those of views from above do if they look straight down."""
     return camera.cut is None or (camera.eye[0], camera.eye[2]) == (camera.target[0], camera.target[2])
 
 

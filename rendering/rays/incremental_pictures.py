@@ -69,7 +69,7 @@ class StaticLayer:
         return showing(self.shot.hits, self.shot.geometry)
 
     def serves(self, scene: Scene, camera: Camera) -> bool:
-        """Whether it is also the static layer of another scene."""
+        """Return whether it is also the static layer of another scene."""
         mine = self.shot.scene
         same = mine.static is scene.static and mine.day == scene.day and mine.lights == scene.lights
         return same and self.shot.camera == camera

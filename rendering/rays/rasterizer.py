@@ -211,7 +211,7 @@ def in_view(
 
 @kernel
 def hidden(x0: Any, y0: Any, x1: Any, y1: Any, nearest: Any, width: int, height: int, tiles: Floats) -> bool:
-    """Whether all tiles of a rectangle of pixels show something nearer."""
+    """Return whether all tiles of a rectangle of pixels show something nearer."""
     for i in range(max(0, int(y0)) // TILE, min(height - 1, int(y1) + 1) // TILE + 1):
         for j in range(max(0, int(x0)) // TILE, min(width - 1, int(x1) + 1) // TILE + 1):
             if nearest * 1.0001 + 1e-6 >= tiles[i, j]:

@@ -39,7 +39,7 @@ class GoalScore:
 
     @property
     def reached(self) -> bool:
-        """Whether all that was left to do is done, and nothing that held is broken."""
+        """Return whether all that was left to do is done, and nothing that held is broken."""
         return self.gained == self.left and not self.broken
 
     @property
@@ -96,7 +96,7 @@ def of_given(goal: Goal, start: World, execution: Execution | None) -> GoalScore
 
 
 def _conditions(progress: Progress) -> list[tuple[int, int]]:
-    """How often each condition of a goal holds, and is wanted."""
+    """Return how often each condition of a goal holds, and is wanted."""
     return [
         *((held, wanted) for held, (_, wanted) in progress.required()),
         *((int(reached), 1) for reached in progress.has),

@@ -135,5 +135,5 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
 
 
 def _where(pose: Pose | None) -> list[float] | None:
-    """Where the character stands, in metres and degrees; None in homes without geometry."""
+    """Return where the character stands, in metres and degrees; None in homes without geometry."""
     return None if pose is None else [round(pose.x, 2), round(pose.z, 2), round(pose.yaw)]

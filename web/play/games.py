@@ -87,12 +87,12 @@ class Game:
 
     @property
     def tick(self) -> int:
-        """How many ticks have passed; the number of the next decision."""
+        """Return how many ticks have passed; the number of the next decision."""
         return len(self.texts)
 
     @property
     def over(self) -> bool:
-        """Whether nothing more can be done."""
+        """Return whether nothing more can be done."""
         return self.end is not None or self.playing.over
 
     def view(self, number: int) -> View:
@@ -185,5 +185,5 @@ def made(trial: Trial) -> Agent:
 
 
 def fault_of(error: AgentError) -> tuple[Code, str]:
-    """Why an agent can't go on, as `Game.stop` takes it."""
+    """Return why an agent can't go on, as `Game.stop` takes it."""
     return error.fault.code, error.fault.message

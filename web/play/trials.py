@@ -66,7 +66,7 @@ class Trial:
 
     @property
     def helped(self) -> bool:
-        """Whether there is a second character."""
+        """Return whether there is a second character."""
         return self.helper != NOBODY
 
     @property
