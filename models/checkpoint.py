@@ -84,7 +84,7 @@ def load(folder: Path) -> Checkpoint:
 
     Raises:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; UNSUPPORTED_FILE, if it is of another
-            format; DAMAGED_FILE, if a part of it differs from what was written.
+            format; DAMAGED_FILE, if a part of it differs from the part that was written.
     """
     remedy = "name the folder that `model train` gave with --out, or a name of `model list`"
     if not (folder / NAME).exists():
@@ -103,7 +103,8 @@ def load(folder: Path) -> Checkpoint:
     if not _facts_fit(document["trained"]):
         raise _damaged(folder / NAME, "minutes, seed or curves of its training are not numbers")
     try:
-        value_digest([parts["settings"], parts["trained"]])  # they are shown, and written with what is trained on
+        # Readers see both, and models that are trained from this one record them.
+        value_digest([parts["settings"], parts["trained"]])
         written = value_digest(parts["content"])
     except HearthError as error:
         raise _damaged(folder / NAME, error.diagnostics[0].message) from error
@@ -173,7 +174,7 @@ def _damaged(path: Path, message: str) -> HearthError:
 
 
 MISFITS = (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeError, AssertionError)
-"""What models and libraries raise when settings, content and weights do not fit each other."""
+"""Errors that models and libraries raise when settings, content and weights do not fit each other."""
 
 
 def misfit(folder: Path, error: Exception) -> HearthError:
@@ -200,7 +201,7 @@ def _libraries() -> dict[str, str]:
 
 
 def _card(checkpoint: Checkpoint) -> str:
-    """The card: YAML for machines, then what the model is, what it was trained on, and what it is not for."""
+    """Return the model card: YAML for machines, then the model, its training data and the uses it is unfit for."""
     trained = checkpoint.trained
     about = _ABOUT.get(checkpoint.model.partition("-")[0], _ABOUT[""])
     lists = ("curves", "losses", "imitation")
@@ -224,7 +225,7 @@ def _card(checkpoint: Checkpoint) -> str:
 
 
 class _About(NamedTuple):
-    """What a card says of a kind of model: a tag, a line, and what it is not for."""
+    """The text of a card for one kind of model: a tag, a line, and its limits."""
 
     tag: str
     what: str
@@ -261,7 +262,7 @@ _ABOUT = {
     ),
     "demo2sketch": _About(
         "video-classification",
-        "A model of Hearth that writes the sketch of what is done in pictures from above (thesis 5.4.3).",
+        "A model of Hearth that writes the sketch of a demonstration in pictures from above (thesis 5.4.3).",
         (_OF_FILMS,),
     ),
     "masks": _About(

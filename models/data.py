@@ -73,7 +73,7 @@ class Corpus:
     """The examples that a model is trained on.
 
     Attributes:
-        dataset: where they come from; for what else a model needs.
+        dataset: the source of the examples, and of other inputs that a model needs.
         split: by which they were parted.
         train: to learn from.
         validation: to decide when to stop; their activities are not in `train`.
@@ -115,7 +115,7 @@ class Corpus:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What a checkpoint records of it."""
+        """Return the facts about this corpus that a checkpoint records."""
         counts = {"train": len(self.train), "validation": len(self.validation)}
         facts = {**facts_of(self.dataset), "split": self.split, **counts}
         if self.instead is not None:
@@ -124,7 +124,7 @@ class Corpus:
 
 
 def facts_of(dataset: Dataset) -> dict[str, Any]:
-    """What a checkpoint records of the dataset that it was trained on."""
+    """Return the facts about its training dataset that a checkpoint records."""
     version = dataset.manifest.get("version", "")
     return {"dataset": version, "digest": value_digest(dataset.manifest["files"])}
 
@@ -237,7 +237,7 @@ _SEEN: dict[str, Callable[[Example], Any]] = {
 
 
 def carved(train: Iterable[Example], seed: int) -> tuple[tuple[Example, ...], tuple[Example, ...]]:
-    """Training examples parted by activity: what stays, and what is for validation.
+    """Split training examples by activity and return those to train on and those for validation.
 
     Of two activities or more, each of the two has at least one.
     """
@@ -253,7 +253,7 @@ def carved(train: Iterable[Example], seed: int) -> tuple[tuple[Example, ...], tu
 def requests(
     dataset: Dataset, names: Sequence[str], *, worlds: bool, sketches: str = ANNOTATED
 ) -> Iterator[list[Request]]:
-    """What is known of executions before they run, without their programs, in shares of at most 250.
+    """Yield the known inputs of executions, without their programs, in batches of at most 250.
 
     Args:
         dataset: a published dataset.

@@ -1,4 +1,4 @@
-"""Where networks are computed: on a GPU if there is one."""
+"""The devices that compute networks: a GPU if there is one."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def place_of(network: Any) -> Any:
 
 
 def moved(batch: Batch, place: Any) -> Batch:
-    """A batch on a torch device: a tensor, or a tuple, list or named tuple of what is moved alike."""
+    """Move a batch to a torch device: a tensor, or a tuple, list or named tuple of batches."""
     if not isinstance(batch, tuple | list):
         return batch.to(place)  # type: ignore[attr-defined,no-any-return]
     parts = [moved(part, place) for part in batch]

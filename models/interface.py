@@ -1,4 +1,4 @@
-"""What models are asked, how they are trained, and what their settings share."""
+"""The requests to models, their training, and the common part of their settings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MOST = {
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What a model is asked. It has no reference: a prediction cannot depend on one.
+    """A request to a model. It has no reference: a prediction cannot depend on one.
 
     Attributes:
         id: of the execution, or any name.
@@ -50,7 +50,7 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Training:
-    """How long and how a model is trained.
+    """The length and the method of a model's training.
 
     Attributes:
         seed: of all random choices.
@@ -88,7 +88,7 @@ def _choices(settings: type, name: str) -> tuple[str, ...]:
 
 
 class Settings:
-    """What settings share: they are made from a checkpoint's, and written to it."""
+    """The common part of settings: they are read from a checkpoint and written to it."""
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:

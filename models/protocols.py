@@ -1,4 +1,4 @@
-"""What every model is: settings that train on examples, and a trained model that answers requests."""
+"""The protocols of every model: settings that train on examples, and a trained model that answers requests."""
 
 from __future__ import annotations
 

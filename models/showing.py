@@ -19,12 +19,12 @@ from hearth.simulation.world.world import World
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """What became of a text or a sketch.
+    """The results for one text or sketch.
 
     Attributes:
         words: those that the model was given.
         sketch: the steps that were written or given, without nodes.
-        completion: the program that runs, and what was left out of it.
+        completion: the program that runs, and the steps that were left out of it.
         failure: why nothing of it is left to run; None where something is.
     """
 

@@ -21,7 +21,7 @@ from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 
 Data = Literal["people", "drawn", "clips"]
-"""Which dataset: of people's programs, of drawn ones (`corpus synthesize`), or of their films (`--tier clips`)."""
+"""The kind of dataset: people's programs, drawn ones (`corpus synthesize`), or their films (`--tier clips`)."""
 
 LSTM = ("mle", "mle-composed")
 CRITICS = ("pg-lcs", "pg-lcs-sim")
@@ -103,7 +103,7 @@ class Needed(NamedTuple):
         return RATES.get(self.name, USUAL_RATE), EPOCHS.get(self.name, USUAL_EPOCHS)
 
     def recipe(self, out: Path, dataset: str, how: Mapping[str, Any]) -> str:
-        """A digest of what its weights depend on: dataset, settings, training, the model that it goes on from."""
+        """Return a digest of the inputs of its weights: dataset, settings, training, the model that it goes on from."""
         before = identity(self.before.folder(out)) if self.before else ""
         settings = repr(settings_of(self.name))
         return value_digest([dataset, self.name, settings, self.settings(out)[bool(before) :], dict(how), before])

@@ -1,8 +1,8 @@
 """The one training loop: seeds, a budget, early stopping, clipped gradients, curves, and resuming.
 
-It knows a module, batches, a loss and a validation score, and nothing of what they are about. Random numbers of an
-epoch are derived from the seed and its number: on the processor a run that was stopped and continued is the same as one
-that was not.
+The loop knows a module, batches, a loss and a validation score, and nothing about their meaning. Random numbers of an
+epoch are derived from the seed and its number. On the processor, a run that was stopped and continued is the same as an
+uninterrupted run.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _OPTIMISER = "optimiser/"
 
 @dataclass(frozen=True, slots=True)
 class Task(Generic[B]):
-    """What is trained.
+    """A training task.
 
     Attributes:
         module: with the weights; those that need no gradient stay.
@@ -71,7 +71,7 @@ class Epoch(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """A finished training: its epochs, the best one, whose weights the module now has, and what ended it."""
+    """A finished training: its epochs, the best one, whose weights the module now has, and the reason of its end."""
 
     epochs: tuple[Epoch, ...]
     best: int

@@ -1,4 +1,4 @@
-"""What a program's next step may be: legal in the world as it then is, and afforded by the grammar (thesis A.3)."""
+"""The allowed next steps of a program: legal in the current world, and afforded by the grammar (thesis A.3)."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ NOTHING = Partial()
 class Affordances:
     """For each argument of each action, the nodes of a home whose class the grammar allows: constant for a home.
 
-    Executability asks for it beside the engine (A.3): of programs of legal steps alone, about half are executable.
+    Executability requires affordances as well as the engine (A.3). If every step is legal but affordances are ignored,
+    about half of the programs are executable.
     """
 
     def __init__(self, home: Home) -> None:
@@ -61,7 +62,7 @@ class Affordances:
 
 
 class _Afforded(dict[str, bool]):
-    """Whether an action affords the classes that were asked for so far."""
+    """A cache of answers: class name to whether the action affords that class."""
 
     def __init__(self, knowledge: Knowledge, action: str, position: int) -> None:
         self._affords = partial(knowledge.affords, action, position)
@@ -125,7 +126,7 @@ class Options:
         return sorted(name for name, masks in self.masks.items() if masks and masks[0] >> chosen.first & 1)
 
     def second(self, chosen: Partial) -> int:
-        """The nodes that the chosen action takes beside the chosen first object."""
+        """Return the nodes that the chosen action takes as second object, given the chosen first object."""
         masks = self.masks[chosen.action or ""]
         return masks[1] & ~(1 << (chosen.first or 0)) if len(masks) > 1 else 0
 
@@ -144,7 +145,7 @@ class Grammar:
         self._known: dict[int, tuple[World, Options]] = {}
 
     def options(self, world: World) -> Options:
-        """What may be done in a world."""
+        """Return the steps that are possible in a world."""
         # By identity: the hash of a world costs more than its options. The world is kept, so that its id stays its own.
         known = self._known.get(id(world))
         if known is None:

@@ -1,4 +1,4 @@
-"""What a model says about the next step, part by part: one interface for all models and all ways of searching."""
+"""A model's scores for the next step, part by part: one interface for all models and all search methods."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Scores(NamedTuple):
     Attributes:
         values: of an action, in the order of `Scorer.actions`; of a node, in the order of the home's indices. Where the
             first part of a step is a node, one more for a step without objects. Where it is the first part, a last one
-            for the end of the program. -inf for what is never chosen.
+            for the end of the program. -inf for choices that are never made.
         steps: of whole steps, those proposed, in the order of `values`; each bound to nodes.
     """
 

@@ -26,7 +26,7 @@ from hearth.simulation.world.world import World
 
 @dataclass(frozen=True)
 class Search:
-    """How programs are searched for.
+    """Settings of the search for programs.
 
     Attributes:
         beam: programs kept at a time.
@@ -49,7 +49,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Start:
-    """Where a program is to be written.
+    """The inputs for writing one program.
 
     Attributes:
         world: at the start.
@@ -91,7 +91,7 @@ def decode(scorer: Scorer, starts: Sequence[Start], search: Search = Search()) -
 
     Args:
         scorer: the model.
-        starts: where, and from what.
+        starts: the world and the model's input of each program.
         search: how.
 
     Returns:
@@ -161,7 +161,7 @@ class _Decoder:
         return [draft for _, draft in choices]
 
     def _choices(self, draft: _Draft, part: Part, scores: Scores) -> list[Choice]:
-        """What may follow a draft: as many of the best choices as the beam has, or a random one."""
+        """Return the possible continuations of a draft: the best choices, as many as the beam has, or a random one."""
         allowed = self._allowed(draft, part, scores)
         values = scores.values[allowed]
         if not np.isfinite(values).any():
@@ -237,7 +237,7 @@ class _Decoder:
         return replace(draft, world=world, steps=(*draft.steps, step), chosen=NOTHING, whole=None, free=free)
 
     def _braked(self, draft: _Draft) -> _Draft:
-        """The draft with what may come next, or ended."""
+        """Return the draft with its allowed next choices, or ended."""
         if draft.ended or len(draft.steps) >= self.search.longest:
             return replace(draft, ended=True)
         options = self._options(draft.world, self.starts[draft.row].rules)

@@ -46,12 +46,12 @@ Batch = tuple[FrameBatch, StepBatch, DoneBatch]
 
 @dataclass(frozen=True, slots=True)
 class DemoModel(Settings):
-    """A network over colours, one over masks, and what masks show of each class; then an encoder-decoder.
+    """A network over colors, one over masks, and the features of each class in the masks; then an encoder-decoder.
 
     Attributes:
         colours: whether it has the network over colours.
         masks: whether it has the network over masks.
-        facts: whether it sees what the masks show of each class beside the person, and points at classes (ours).
+        facts: whether it reads the features of each class relative to the person, and points at classes (ours).
         whole: its networks look at the whole picture, one of four pixels each way, not around the person.
         guided: the weight of naming each step of the program in training, whether the sketch keeps it or not; 0 for
             sketches alone, as in the thesis.
@@ -140,7 +140,7 @@ class TrainedDemoModel:
     trained: dict[str, Any] = field(default_factory=dict)
 
     def see(self, pictures: Pictures) -> Above:
-        """What pictures show, as the network reads it."""
+        """Return the features of pictures, as the network reads them."""
         return above(pictures.masks, pictures.colours, self.known.person, self.settings.whole)
 
     def sketches(self, demonstrations: Sequence[Above], width: int = 1) -> list[Steps]:
@@ -203,7 +203,7 @@ class TrainedDemoModel:
         )
 
     def done(self, example: Example) -> Done:
-        """What is done before each picture of an example's demonstration: of several steps in a tick the first."""
+        """Return the step before each picture of an example's demonstration: of several steps in a tick, the first."""
         first = [not place or not step.joins for place, step in enumerate(example.steps)]
         steps = [self.vocabulary.numbers(step) or (0, 0, 0) for step in compress(example.steps, first)]
         return Done((None, *compress(example.keep, first)), ((0, 0, 0), *steps))

@@ -18,7 +18,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
 
 BEYOND = 32
-"""Half the width of what masks are pooled over, around the person; pixels."""
+"""Half the width of the area around the person over which masks are pooled, pixels."""
 
 
 def demonstrated(

@@ -1,5 +1,7 @@
-"""Pictures from above to steps: a network over the colours and one over the masks, fused with what masks show of each
-class, then recurrent over the pictures; the decoder attends to pictures (thesis 5.4.3, A.1).
+"""The network from pictures from above to steps (thesis 5.4.3, A.1).
+
+One network reads the colors and one the masks. Their outputs are fused with the features of each class in the masks. A
+recurrent network then reads the pictures in order, and the decoder attends to them.
 
 The thesis's network for colours is a ResNet-18 with weights of ImageNet, which are not to be had: ours is small and
 learns from nothing but these pictures.
@@ -25,7 +27,7 @@ COLOUR = 8
 """Planes of the masks: each class has a colour, which is learned from its properties."""
 
 SEEN = 64
-"""Numbers of what a network sees around the person."""
+"""Numbers in the output of a network that reads the area around the person."""
 
 UNNAMED = 0.15
 """The share of classes whose learned numbers are left out in training, so that new ones can be understood."""
@@ -52,7 +54,7 @@ class FrameBatch(NamedTuple):
 
     @property
     def inputs(self) -> Tensor:
-        """What a writer counts demonstrations by."""
+        """Return the tensor whose rows a writer counts as demonstrations."""
         return self.classes
 
     @property
@@ -141,7 +143,7 @@ class FrameBody(Seq2SeqBody):
         hidden: numbers in a hidden state.
         size: of the vector of a step.
         dropout: share of numbers left out in training.
-        sees: whether there are networks over colours, over masks, and of what masks show of each class.
+        sees: whether it has a network over colors, one over masks, and the features of each class in the masks.
     """
 
     def __init__(

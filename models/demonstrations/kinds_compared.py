@@ -1,4 +1,4 @@
-"""Sketches from demonstrations beside sketches from descriptions of the same programs (thesis A.4)."""
+"""Sketches from demonstrations compared with sketches from descriptions of the same programs (thesis A.4)."""
 
 from __future__ import annotations
 

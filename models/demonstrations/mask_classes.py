@@ -35,7 +35,7 @@ class MaskClasses:
 
     @classmethod
     def of(cls, knowledge: Knowledge, vocabulary: StepVocabulary) -> MaskClasses:
-        """Those of what is known."""
+        """Return the classes of the knowledge and the vocabulary."""
         things, numbers = knowledge.objects, vocabulary.class_numbers
         serves: dict[str, list[int]] = {name: [number] for name, number in numbers.items()}
         for name, number in numbers.items():

@@ -49,7 +49,7 @@ class ClassTable:
 
     @classmethod
     def of(cls, knowledge: Knowledge, done: Sequence[Instruction]) -> ClassTable:
-        """Those of what is known, and of the instructions of training clips."""
+        """Return the classes of the knowledge and of the instructions of training clips."""
         things = [*knowledge.objects.values()]
         for each in done:
             if len(each.objects) > PLACES or not all(name in knowledge.objects for name in each.objects):
@@ -137,7 +137,7 @@ class ClassTable:
         return found
 
     def numbers(self, done: Instruction) -> tuple[int, int, int]:
-        """The numbers of an action and of the rows of its objects; -1 for what training does not have, 0 for none."""
+        """Return the numbers of an action and of its objects' rows; -1 for names that training lacks, 0 for none."""
         action = self._action.get(done.action, -1)
         first, second = (*(self._row.get(name, -1) for name in done.objects), 0, 0)[:PLACES]
         return action, first, second

@@ -18,11 +18,11 @@ from hearth.models.text.text_batches import InputBatch
 
 @dataclass(frozen=True)
 class Doubt:
-    """What training does to films: a classifier is surer of those that it learned from than of new ones.
+    """Noise that training adds to films: a classifier is surer of its own training films than of new ones.
 
     Attributes:
         left_out: share of clips that are left out.
-        mistaken: share of clips that are taken for what another clip of some film of the batch shows.
+        mistaken: share of clips that get the label of another clip of some film of the batch.
         flattened: probabilities are raised to a power between this one and 1, the same for a film.
     """
 

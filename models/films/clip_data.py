@@ -1,4 +1,4 @@
-"""Clips of a published dataset as arrays, and the numbers of what is seen and done in them."""
+"""Clips of a published dataset as arrays: numbers of their frames and of their instructions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NOTHING = 0
 
 
 class Instruction(NamedTuple):
-    """What is done in the middle of a clip: an action and the classes of its objects."""
+    """The instruction in the middle of a clip: an action and the classes of its objects."""
 
     action: str
     objects: tuple[str, ...]

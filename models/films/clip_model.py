@@ -141,7 +141,7 @@ class TrainedClipModel:
         return np.concatenate(found)
 
     def readings(self, clips: Clips) -> Iterator[Reading]:
-        """What the clips of each film may show, film by film: instructions of training."""
+        """Yield the possible instructions of the clips of each film, film by film: instructions of training."""
         for part in clips.by_film():
             yield Reading(self.labels.instructions, self.scores(part))
 

@@ -66,7 +66,7 @@ class ClipNetwork(nn.Module):
 
 
 def loss_of(found: list[Tensor], wanted: Tensor, weights: list[Tensor]) -> Tensor:
-    """The mean of minus the logarithms of what is so, each class by its weight; (N, 3) `wanted` has numbers from 0."""
+    """Return the mean negative log probability of the true classes, weighted; (N, 3) `wanted` has numbers from 0."""
     parts = [
         functional.nll_loss(scores, wanted[:, place], weight)
         for place, (scores, weight) in enumerate(zip(found, weights, strict=True))

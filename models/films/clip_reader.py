@@ -7,7 +7,7 @@ from torch import Tensor, nn
 
 
 class ClipReader(nn.Module):
-    """Vectors of clips, of the probabilities of what is done in them.
+    """Vectors of clips, computed from the probabilities of their actions and objects.
 
     The thesis takes the embedding of the instruction that a clip is taken for; here every action and object counts by
     its probability. A class is known by its properties and by learned numbers, of which some classes' are left out in

@@ -1,4 +1,4 @@
-"""Tables 4.2 and 4.3: what clips are taken for, the thesis's figures beside ours beside yardsticks."""
+"""Tables 4.2 and 4.3: instructions predicted from clips, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class ClipRow(NamedTuple):
         scores: by column; of several seeds their means.
         spread: the standard error over seeds of `mean`; None of fewer than two.
         clips: how many were named; None where the thesis does not say.
-        seeds: how many trained models the scores are means of; 0 for what is not trained.
+        seeds: how many trained models the scores are means of; 0 for methods without training.
     """
 
     method: str
@@ -135,7 +135,11 @@ def looked_at(
         networks = [trained for _, trained in given if isinstance(trained, TrainedMaskModel)]
         if len(networks) != 1:
             message = f"{len(networks)} checkpoints of `masks`, not one"
-            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name one beside classifiers of clips")
+            raise HearthError.of(
+                Code.BAD_ARGUMENT,
+                message,
+                suggestion="name one such checkpoint in addition to the classifiers of clips",
+            )
         test = replace(test, films=PredictedMasks(test.films, networks[0]))
         given = [each for each in given if each[1] is not networks[0]]
     return test, [(name, _classifier(trained, name, table.kind)) for name, trained in given]
@@ -148,7 +152,7 @@ def _classifier(trained: Any, name: str, kind: type[Any]) -> Classifier:
         HearthError: BAD_ARGUMENT, if it is of another kind.
     """
     if not isinstance(trained, kind):
-        message = f"`{name}` does not look at what the table is about"
+        message = f"`{name}` does not read the input of this table"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model list` has the input of each model")
     return trained  # type: ignore[no-any-return]
 

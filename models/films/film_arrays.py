@@ -42,7 +42,7 @@ HEADER = 512
 
 
 class _Header(NamedTuple):
-    """What the header of an array says, and the bytes that follow it."""
+    """The contents of an array's header, and the bytes that follow it."""
 
     shape: tuple[int, ...]
     dtype: np.dtype[Any]
@@ -72,13 +72,13 @@ def film_array(data: IO[bytes], file: str, array: str = MASKS, most: int = MOST_
                 found: NDArray[Any] = npy.read_array(member, allow_pickle=False, max_header_size=HEADER)
     except HearthError:
         raise
-    except Exception as error:  # zipfile, zlib and NumPy raise a dozen kinds for what is not a file of theirs
+    except Exception as error:  # zipfile, zlib and NumPy raise a dozen kinds for files that are not theirs
         raise damaged(file, str(error)[:100]) from error
     return found
 
 
 def _header(archive: ZipFile, name: str) -> _Header:
-    """What the header of an array says.
+    """Return the contents of an array's header.
 
     Raises:
         ValueError: it is packed or written in a way in which NumPy does not store arrays.

@@ -1,4 +1,7 @@
-"""The second phase for writers of films: policy gradient by LCS, and by what runs in the film's home (thesis 4.3.1)."""
+"""The second phase of training for writers of films: policy gradient by LCS and by execution (thesis 4.3.1).
+
+The programs are executed in the film's home.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Films as examples for a writer of programs: what a classifier says of their clips, and what is done in them."""
+"""Films as examples for a writer of programs: a classifier's probabilities for their clips, and their steps."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class _Question:
 def film_probabilities(
     dataset: Dataset, clips: Clips, part: str, most: int, reader: TrainedSeenModel
 ) -> tuple[ClipProbabilities, ...]:
-    """What a classifier says of each film of a part.
+    """Return a classifier's probabilities for each film of a part.
 
     It takes two seconds a film, and several writers read the same: a process remembers it.
 

@@ -1,4 +1,4 @@
-"""Figure 4-7: films of the test part, with what was described, what was done, and the program that is read."""
+"""Figure 4-7: films of the test part, each with its description, its true program and the predicted program."""
 
 from __future__ import annotations
 

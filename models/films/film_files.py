@@ -1,4 +1,4 @@
-"""Which files are films: arrays of a dataset of clips, and videos."""
+"""The files that count as films: arrays of a dataset of clips, and videos."""
 
 from __future__ import annotations
 

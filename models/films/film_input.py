@@ -19,8 +19,11 @@ from hearth.schemas.libraries import library
 from hearth.storage.input_files import read_input, read_start
 
 HEADS = {".webm": (0, b"\x1a\x45\xdf\xa3"), ".mp4": (4, b"ftyp")}
-"""What videos begin with, and where. Anything else is not given to FFmpeg, which goes by what a file holds: a list of
-other films would have it read those."""
+"""The first bytes of a video by file ending, with their position.
+
+Other files are not given to FFmpeg. FFmpeg follows the contents of a file, and a list of other films would make it read
+those films.
+"""
 
 LONGEST = 20 * 60
 """Seconds of a video at most."""

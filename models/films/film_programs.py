@@ -1,4 +1,4 @@
-"""From the clips of a film to a program: by what each clip looks like alone, or with the engine as transition model.
+"""From the clips of a film to a program: by each clip alone, or with the engine as transition model.
 
 With the engine the question is which instruction that can be done now explains what is seen: every program that is
 followed runs, because each step was done in the world that the steps before it made.
@@ -26,11 +26,13 @@ Scores = NDArray[np.float32]
 """(N, I) logarithms of how probable each of I instructions is in each of a film's N clips, in order."""
 
 CHANGE = 4.0
-"""What it costs, as a logarithm, to take a clip for another instruction than the clip before, where the order of steps
-is not known."""
+"""Cost of predicting another instruction than in the clip before, as a logarithm.
+
+It applies where the order of steps is not known.
+"""
 
 UNEXPLAINED = 8.0
-"""What it costs to leave a clip unexplained, below the best that can be said of it."""
+"""Cost of leaving a clip unexplained, as a logarithm below the clip's best score."""
 
 
 class FilmProgram(NamedTuple):
@@ -56,7 +58,7 @@ Moves = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Filter:
-    """How programs are followed through a film.
+    """Settings for following programs through a film.
 
     Attributes:
         beam: worlds at a time, each with its best program.
@@ -89,7 +91,7 @@ class _Followed:
 
 
 def alone(scores: Scores, instructions: Sequence[Instruction]) -> FilmProgram:
-    """What each clip is taken for by itself, each once for the clips in a row that are taken for it."""
+    """Return the instruction predicted from each clip alone; a row of clips with the same instruction is one step."""
     return _merged(scores.argmax(1).tolist(), instructions) if len(scores) else NO_STEPS
 
 

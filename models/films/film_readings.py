@@ -1,4 +1,4 @@
-"""What a film's clips may show: the instructions that some clip makes probable, each scored in every clip."""
+"""The possible instructions of a film's clips: each that some clip makes probable, scored in every clip."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OBJECTS = 4
 
 
 class Reading(NamedTuple):
-    """What a film's clips may show.
+    """The possible instructions of a film's clips.
 
     Attributes:
         instructions: sorted.
@@ -34,7 +34,10 @@ class Reading(NamedTuple):
     scores: Scores
 
     def moves(self, order: StepOrder, trust: float = 1.0) -> Moves:
-        """What it costs to go from one to another, and at the end from none, by the order of steps in programs."""
+        """Return the costs of changing from one instruction to another, by the order of steps in programs.
+
+        The last row has the costs of the first instruction.
+        """
         return -trust * order.logs([*self.instructions, START], self.instructions)
 
 

@@ -28,7 +28,7 @@ APART = 2
 
 @dataclass(frozen=True, slots=True)
 class FilmShown:
-    """What became of a film.
+    """The results for one film.
 
     Attributes:
         clips: how many two-second clips it was cut into.

@@ -1,4 +1,4 @@
-"""Table 4.6: programs from films, the thesis's figures beside ours beside yardsticks."""
+"""Table 4.6: programs from films, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ Way = Callable[[Reading, StepOrder, World], FilmProgram]
 
 
 def _repaired(program: FilmProgram, world: World) -> FilmProgram:
-    """A program that runs: repaired, and what no repair makes run left out; inserted steps have no clips."""
+    """Return a program that runs: repaired, without steps that no repair makes run; inserted steps have no clips."""
     done = complete(program.steps, world, world.home.knowledge)
     return FilmProgram(done.execution.program.steps, ())
 
@@ -141,7 +141,7 @@ def film_table(
 def _by_writer(
     trained: TrainedFilmWriter, read: Sequence[ClipProbabilities], worlds: Sequence[World], beam: int
 ) -> Iterator[dict[str, Steps]]:
-    """What an encoder-decoder writes for each film, in each of its ways."""
+    """Yield the programs that an encoder-decoder writes for each film, by method."""
     for film, world in zip(read, worlds, strict=True):
         yield by_writer(trained, film, world, beam)
 
@@ -149,14 +149,14 @@ def _by_writer(
 def _classified(
     trained: TrainedSeenModel, test: Clips, worlds: Sequence[World], order: StepOrder
 ) -> Iterator[dict[str, Steps]]:
-    """What is read of each film by a classifier of clips, in each of the ways."""
+    """Yield the programs that a classifier of clips reads from each film, by method."""
     for masks, world in zip(test.films, worlds, strict=True):
         (found,) = trained.readings(cut(masks))
         yield {way: write(found, order, world).steps for way, write in WAYS.items()}
 
 
 def by_writer(trained: TrainedFilmWriter, film: ClipProbabilities, world: World, beam: int = 1) -> dict[str, Steps]:
-    """What an encoder-decoder writes for a film: freely, repaired, and with the engine in the loop where it can."""
+    """Return an encoder-decoder's programs for a film: free, repaired, and if possible with the engine in the loop."""
     (steps,) = trained.write([film], beam)
     found = {"free": steps, "free, repaired": _repaired(FilmProgram(steps, ()), world).steps}
     if not trained.closed:

@@ -1,7 +1,7 @@
 """The encoder-decoder over clips: what a classifier says of each is read, a program written (thesis 4.3.3).
 
 It is the network of texts with clips in the place of words: the encoder, the attention, the decoder and the heads are
-those of `models.text`. What each clip shows can be copied, as what a text mentions can.
+those of `models.text`. The network can copy the contents of a clip, as it copies words that a text mentions.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ class TrainedFilmWriter:
         return [steps for share in shares for steps in decode(self.scorer(), share, search)]
 
     def read(self, films: Sequence[ClipProbabilities], noise: Random | None = None) -> InputBatch:
-        """What the encoder reads of films; with noise, if a generator is given."""
+        """Return the encoder's input for films; with noise, if a generator is given."""
         return clip_batch(films, self.rows, self.writer.device, noise)
 
     @cached_property
@@ -208,5 +208,5 @@ class TrainedFilmWriter:
 
 
 def _recorded(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """What is recorded of a classifier: what it was trained on, and its seed."""
+    """Return the recorded facts about a classifier: its training data and its seed."""
     return {name: facts[name] for name in ("digest", "clips", "seed") if name in facts}

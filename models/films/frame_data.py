@@ -1,4 +1,4 @@
-"""What a network of whole frames learns from: numbers of instructions, and pictures."""
+"""The training data of a network of whole frames: numbers of instructions, and pictures."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ AT_ONCE = 16
 """Pictures that are read at once."""
 
 MOST_CLASSES = 255
-"""Classes that a palette has numbers for, beside 0."""
+"""Classes that a palette has numbers for, without 0."""
 
 CHECKED = 12
 """Frames of a validation film from one that is compared to the next one."""
@@ -165,7 +165,7 @@ def read_classes(content: Mapping[str, Any]) -> tuple[int, ...]:
 
 
 def mean_iou(wanted: NDArray[np.uint8], found: NDArray[np.uint8], classes: int) -> float:
-    """The mean over the classes that are there of what both have, by what one has."""
+    """Return the mean intersection over union of the classes that occur."""
     pairs = np.bincount(wanted.ravel().astype(np.int64) * classes + found.ravel(), minlength=classes * classes)
     table = pairs.reshape(classes, classes)
     both, one, other = table.diagonal(), table.sum(1), table.sum(0)

@@ -1,4 +1,4 @@
-"""What masks show of each class and of the person, frame by frame, as numbers that do not depend on the picture's size.
+"""Features of each class and of the person in masks, frame by frame, as numbers independent of the picture's size.
 
 Lengths are heights of the person where they are about the person, halves of the picture where they are places in it.
 """
@@ -17,13 +17,13 @@ PEOPLE = 9
 """Of the person in a frame, see `_person`."""
 
 CROP = 20
-"""Width and height of what is around the person."""
+"""Width and height of the array of the area around the person, cells."""
 
 AROUND = 0.65
-"""Half the width of what is around the person, by the person's height or width, whichever is greater."""
+"""Half the width of the area around the person, as a multiple of the person's height or width (the greater)."""
 
 REACH = 0.03
-"""How far from the person what touches it is, by the picture's height."""
+"""Largest distance at which a pixel counts as touching the person, as a share of the picture's height."""
 
 
 class SeenFilm(NamedTuple):
@@ -43,7 +43,7 @@ class SeenFilm(NamedTuple):
 
 
 def seen_film(masks: NDArray[np.uint16], person: int) -> SeenFilm:
-    """What a film shows.
+    """Return the features of a film.
 
     Args:
         masks: (T, H, W) class numbers.
@@ -85,7 +85,7 @@ def _size(who: NDArray[np.float64], shape: tuple[int, ...]) -> float:
 
 
 class _Frame(NamedTuple):
-    """A frame's pixels: their places in a list of classes, in what order those are sorted, and (x, y) of each."""
+    """A frame's pixels: their places in a list of classes, the order that sorts those places, and (x, y) of each."""
 
     classes: int
     flat: NDArray[np.int64]
@@ -121,9 +121,10 @@ def _numbers(
 ) -> NDArray[np.float64]:
     """(count, NUMBERS) of each class in a frame of their places in a list.
 
-    Seen; root of its share of the picture; middle (x, y); width and height; from the person's middle (x, y); distance
-    from the person; root of what touches the person; where (x, y) on the person it is nearest; share that has changed;
-    how much larger than a frame ago.
+    The numbers are: whether the class is visible; the root of its share of the picture; its middle (x, y); its width
+    and height; its offset (x, y) from the person's middle; its distance from the person; the root of the area that
+    touches the person; the point (x, y) on the person where it is nearest; the share that has changed; and its growth
+    since the previous frame.
     """
     height, width = places.shape
     frame = _Frame.of(places, count)
@@ -150,7 +151,7 @@ def _numbers(
 def _beside(
     frame: _Frame, x: NDArray[np.float64], y: NDArray[np.float64], body: NDArray[np.bool_], who: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(count, 6) where each class, with its middle at (x, y), is beside the person."""
+    """Return (count, 6) positions of each class, with its middle at (x, y), relative to the person."""
     from scipy.ndimage import distance_transform_edt
 
     height, width = body.shape

@@ -1,4 +1,4 @@
-"""Clips as what is seen of each class in their frames: the arrays that `seen_network` reads."""
+"""Clips as features of each class in their frames: the arrays that `seen_network` reads."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CONTEXT = (6, 9, 12, 16, 20, 25, 30)
 
 
 class SeenClips(NamedTuple):
-    """What N clips of F frames show, with T frames of context: T is F where there is none.
+    """The features of N clips of F frames, with T frames of context: T is F where there is none.
 
     Attributes:
         classes: (N, K) rows of the class table; 0 fills up.
@@ -55,7 +55,7 @@ def offsets(frames: int, context: bool) -> NDArray[np.int64]:
 
 
 def seen_clips(clips: Clips, table: ClassTable, context: bool = False, report: Seen = unseen) -> SeenClips:
-    """What clips show, in their order; each film is read once.
+    """Return the features of clips, in their order; each film is read once.
 
     Args:
         clips: in the order of their films.

@@ -1,4 +1,4 @@
-"""The classifier of clips that looks at each class of the masks: where it is, and what it does beside the person."""
+"""The classifier of clips that reads each class of the masks: its position, and its behavior near the person."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ AT_ONCE = 128
 
 
 class Scored(NamedTuple):
-    """What clips are taken for: logarithms of probabilities.
+    """The scores of a classifier for clips, as logarithms of probabilities.
 
     Attributes:
         actions: (N, A).
@@ -168,7 +168,10 @@ class TrainedSeenModel:
         return self.named_of(seen_clips(clips, self.table, self.settings.context))
 
     def named_of(self, shown: SeenClips) -> list[Instruction]:
-        """The same of what clips show: the most probable action, and its most probable objects."""
+        """Return the instructions predicted from features of clips.
+
+        The most probable action and its most probable objects.
+        """
         found = []
         for scores in self._scored(shown):
             actions = scores.actions.argmax(1)
@@ -183,12 +186,12 @@ class TrainedSeenModel:
         return Instruction(self.table.actions[action], names)
 
     def readings(self, clips: Clips) -> Iterator[Reading]:
-        """What the clips of each film may show, film by film."""
+        """Yield the possible instructions of the clips of each film, film by film."""
         for found in self.scored(clips):
             yield reading(found.actions, found.objects, self.table)
 
     def scored(self, clips: Clips) -> Iterator[Scored]:
-        """What the clips of each film are taken for, film by film."""
+        """Yield the scores of the clips of each film, film by film."""
         for part in clips.by_film():
             shown = seen_clips(part, self.table, self.settings.context)
             yield Scored(*(np.concatenate(columns) for columns in zip(*self._scored(shown), strict=True)))

@@ -1,7 +1,7 @@
-"""A network that names the instruction of a clip by what is seen of each class, and points at the objects.
+"""A network that names the instruction of a clip by the features of each class, and points at the objects.
 
-A class that training never had as an object can be named: it is known by its properties and by what it does beside the
-person. Classes that no frame shows are named from a list.
+The network can name a class that was never an object in training. It knows such a class by its properties and by its
+behavior near the person. Classes that no frame shows are named from a list.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from hearth.models.films.seen_classes import NUMBERS, PEOPLE
 
 FRAMES = 9
 LOOKED_AT = slice(0, FRAMES, 2)
-"""Frames in which the network looks at what is around the person: all would take twice as long."""
+"""Frames in which the network reads the area around the person: all frames would take twice as long."""
 
 HEADS = 4
 """Of the attention among classes."""
@@ -26,7 +26,7 @@ CHANNELS = (10, 24, 32)
 """Of a class and of the convolutions around the person."""
 
 NEAR = 48
-"""Numbers of what is around the person in a frame."""
+"""Numbers in the vector of the area around the person in a frame."""
 
 NEVER = -12.0
 """Logarithm of how improbable an object is that the action does not afford."""
@@ -57,7 +57,7 @@ class SeenBatch(NamedTuple):
 
 
 class PersonNetwork(nn.Module):
-    """The person in a clip, and what is around it.
+    """The network over the person in a clip and the area around the person.
 
     Args:
         traits: of a class.

@@ -1,4 +1,4 @@
-"""Which step follows which in programs: by their actions, and by what their objects have to do with each other."""
+"""The order of steps in programs: by their actions, and by the relations between their objects."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hearth.models.films.clip_data import Clips, Instruction
 
 TRUST = 8.0
-"""Examples of an action after which what follows it counts more than what follows any."""
+"""Number of examples of an action above which its own successors count more than those of all actions."""
 
 START = Instruction("", ())
 """Before the first step."""
@@ -23,7 +23,7 @@ START = Instruction("", ())
 
 @dataclass(frozen=True)
 class StepOrder:
-    """How often steps follow each other.
+    """Counts of steps that follow each other.
 
     Attributes:
         counts: action -> (next action, for each object of the next step its place among the step's objects, or -1)
@@ -86,7 +86,7 @@ def _kind(one: Instruction, other: Instruction) -> tuple[str, tuple[int, ...]]:
 
 
 def programs_of(clips: Clips) -> list[list[Instruction]]:
-    """What is done in each film, by its clips: steps without a clip lack."""
+    """Return the steps of each film, by its clips: steps without a clip are missing."""
     found: list[list[Instruction]] = [[] for _ in clips.executions]
     last: tuple[int, int] | None = None
     for clip in clips.clips:

@@ -1,4 +1,4 @@
-"""What each clip of a film shows, read together with all other clips of the film.
+"""The instruction of each clip of a film, predicted together with all other clips of the film.
 
 How probable each instruction is in each clip given the whole film, by forward and backward sums over the sequences of
 which `film_programs.described` finds the most probable (Rabiner 1989).
@@ -62,8 +62,9 @@ def _summed(logs: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 class ClassWorth(NamedTuple):
-    """What naming a class right adds to each mean accuracy over classes, in which few clips of a class count as much as
-    many.
+    """The gain of a right class in each mean accuracy over classes.
+
+    In these means, a class with few clips counts as much as a class with many.
 
     Attributes:
         counts: for each measured part of an instruction, clips of training of each class, to a power.
@@ -79,7 +80,7 @@ class ClassWorth(NamedTuple):
 
         Args:
             learned: what is done in them.
-            power: 1 where probabilities are those of clips; less by what training has already weighted its loss with.
+            power: 1 if probabilities are those of clips; less by the weights that training has already given its loss.
         """
         return cls({name: Counter(map(part, learned)) for name, part in MEASURED.items()}, power)
 

@@ -29,7 +29,7 @@ def discounted(rewards: Sequence[float], ticks: Sequence[int], discount: float) 
 
 
 def imitation(network: nn.Module, batch: Batch) -> Tensor:
-    """Minus the mean logarithm of the probability of what was chosen; returns are learnt beside it."""
+    """Return the mean negative log probability of the choices made, plus the loss of predicted returns."""
     seen: Outlook = network(batch)
     there = torch.as_tensor(batch.there)
     loss = -_chosen(seen, batch)[there].mean()
@@ -54,7 +54,7 @@ def entropy(seen: Outlook) -> Tensor:
 
 
 def _chosen(seen: Outlook, batch: Batch) -> Tensor:
-    """The logarithm of the probability of what was chosen, (B, T)."""
+    """Return the log probabilities of the choices made, (B, T)."""
     first, second = torch.as_tensor(batch.choices).unbind(-1)
     of_second = seen.second.gather(2, first[..., None, None].expand(-1, -1, 1, seen.second.shape[-1]))[:, :, 0]
     return seen.first.gather(-1, first[..., None])[..., 0] + of_second.gather(-1, second[..., None])[..., 0]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hearth.models.helping.policy_networks import State
 
 NAMES = {"subgoals": "helping-subgoals", "actions": "helping-actions"}
-"""The models of the registry, by what they choose."""
+"""The models of the registry, by the kind of their choices."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class TrainedPolicy:
     facts: Mapping[str, Any] = field(default_factory=dict)
 
     def choose(self, scene: Scene, state: State | None, chooser: Random) -> tuple[Pair, State]:
-        """What is drawn by the policy's probabilities, and the state with which the next choice is made."""
+        """Draw a choice by the policy's probabilities, and return it with the state for the next choice."""
         import torch
 
         with torch.no_grad():

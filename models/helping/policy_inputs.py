@@ -1,4 +1,4 @@
-"""What a policy is shown when it is to choose, as numbers, and sequences of that as padded arrays."""
+"""The input of a policy at each choice, as numbers, and sequences of inputs as padded arrays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 FEATURES = (
     "open", "closed", "held", "held_by_other", "same_room", "looked_into", "wanted", "target", "dx", "dz", "metres",
 )  # fmt: skip
-"""What is known of a node beside its class; the last three are tens of metres from the agent."""
+"""Features of a node in addition to its class; the last three are tens of meters from the agent."""
 
 KINDS = ("walk", "open", "close", "grab", "put")
 """The kinds of actions of the low-level policy (B.3.4), but for `follow`, which the challenge's actions lack."""
@@ -24,7 +24,7 @@ Pair = tuple[int, int]
 
 
 class Words(NamedTuple):
-    """What subgoals are about: classes of things, and of the furniture or character that they are brought to."""
+    """The vocabulary of subgoals: classes of things, and of the furniture or character that they are brought to."""
 
     things: tuple[str, ...]
     places: tuple[str, ...]
@@ -54,7 +54,7 @@ class Scene(NamedTuple):
 
 
 class Trace(NamedTuple):
-    """What was chosen one after the other, and what came of it: the discounted rewards from each choice to the end."""
+    """A sequence of choices and their returns: the discounted rewards from each choice to the end."""
 
     scenes: tuple[Scene, ...]
     choices: tuple[Pair, ...]

@@ -32,7 +32,7 @@ Increases = tuple[int, ...]
 
 
 class Episode(NamedTuple):
-    """What is learnt from.
+    """An episode of the training data.
 
     Attributes:
         states: the increases at each tick.
@@ -151,7 +151,7 @@ class TrainedGoalProposals:
         return Checkpoint(NAME, asdict(self.settings), {}, weights, self.facts)
 
     def about(self, facts: Mapping[str, Any]) -> TrainedGoalProposals:
-        """The same with what else is known of its training."""
+        """Return the same model with more facts about its training."""
         return replace(self, facts={**facts, **self.facts})
 
 

@@ -1,6 +1,6 @@
 """The learned chooser on the exact planner: it chooses nodes for a sketch, and steps that the plan may do without.
 
-The planner and the mask see to it that each program runs; the network sees to what people would do.
+The planner and the mask ensure that each program runs. The network makes it similar to people's programs.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Chooser(Settings):
         batch: choices at a time.
         nodes: whether nodes are chosen, or the nearest are taken.
         style: whether optional steps are chosen, or the plan is taken.
-        text: whether the title and the description are looked at, beside the sketch.
+        text: whether the title and the description are read, in addition to the sketch.
     """
 
     programs: int = 2_500
@@ -261,7 +261,10 @@ def _named(steps: Steps, sketch: Steps, known: Knowledge) -> Steps:
 
 
 class PlanScorer:
-    """Scores of whole steps beside the plan. Without a network the plan's own step is the best: the planner."""
+    """A scorer of whole steps that the sketch and the plan offer.
+
+    Without a network the plan's own step is the best: the planner.
+    """
 
     order = (Part.STEP,)
     actions: Sequence[str] = ()
@@ -295,7 +298,7 @@ class PlanScorer:
         return found
 
     def _offer(self, asked: Asked) -> Offer:
-        assert asked.options is not None, "a plan is for what can be done"
+        assert asked.options is not None, "a plan is made of possible steps"
         return Offer(asked.state, asked.options, self.habits, self.words)
 
 

@@ -1,4 +1,4 @@
-"""Table 5.1: how many programs, how long, in graphs of how many nodes and edges; the thesis's beside a dataset's."""
+"""Table 5.1: numbers and lengths of programs, nodes and edges of graphs; the thesis's figures and a dataset's."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ SUBJECT, FIRST, SECOND = 0, 1, 2
 
 
 class Memory(NamedTuple):
-    """What is known of B programs after some steps.
+    """The state of B programs after some steps.
 
     Attributes:
         nodes: (B, N, H), states of nodes.

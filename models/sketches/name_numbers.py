@@ -8,7 +8,7 @@ from functools import cached_property
 from hearth.kb.knowledge import Knowledge
 
 CODES = 64
-"""Numbers beside those of names, for counts and kinds."""
+"""Numbers reserved for counts and kinds, before those of names."""
 
 
 class Words:

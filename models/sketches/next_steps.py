@@ -20,7 +20,7 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 
 ROLES = 19
-"""What a node may be to the step that comes next; see `NextSteps.roles`."""
+"""Roles of a node for the next step; see `NextSteps.roles`."""
 
 STYLE = 9
 """Habitual actions, the commonest, whose counts so far show how a program is written."""
@@ -29,22 +29,22 @@ SHOWN = 3
 """Things of one kind whose steps are offered: what is held, is done before, comes later."""
 
 TOOLS = 5
-"""Classes beside the sketch's of which things are offered."""
+"""Largest number of classes outside the sketch whose things are offered."""
 
 FEWEST, OFTEN = 5, 0.08
-"""How often something is done at least to be a habit: in programs, and in how many of those with the class."""
+"""Smallest frequency of a habit: a number of programs, and a share of the programs with the class."""
 
 Deed = tuple[str, int, int]
 """A step as an action and the indices of its nodes; -1 for none."""
 
 
 class Habits(NamedTuple):
-    """What programs do beside their sketches, as counted in training programs.
+    """The steps of programs that their sketches leave out, as counted in training programs.
 
     Attributes:
         actions: those of steps that sketches leave out.
         style: the commonest of them.
-        tools: classes that programs use beside a class or an action of the sketch, the commonest first.
+        tools: classes that programs use with a class or an action of the sketch, the commonest first.
     """
 
     actions: frozenset[str]
@@ -90,7 +90,7 @@ class NextSteps:
     Args:
         progress: so far.
         options: what can be done now.
-        habits: what programs do beside their sketches.
+        habits: the steps of programs that their sketches leave out.
     """
 
     def __init__(self, progress: Progress, options: Options, habits: Habits) -> None:

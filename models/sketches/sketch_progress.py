@@ -1,4 +1,4 @@
-"""How far a program has come with its sketch: what is to be done next, and the plan for it."""
+"""The progress of a program through its sketch: the next step of the sketch, and the plan for it."""
 
 from __future__ import annotations
 

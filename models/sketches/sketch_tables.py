@@ -1,4 +1,4 @@
-"""Tables 5.2 to 5.5: programs from sketches and graphs, the thesis's figures beside ours beside yardsticks."""
+"""Tables 5.2 to 5.5: programs from sketches and graphs, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ Writer = Callable[[Sequence[Request]], Sequence[Steps]]
 
 
 class Method(NamedTuple):
-    """What answers requests.
+    """A method that answers requests.
 
     Attributes:
         name: of its row; methods of one name are seeds of one.
@@ -176,7 +176,7 @@ def _with_sketches(
 def _other_person(
     test: Sequence[baselines.Example], every: Sequence[baselines.Example], groups: Sequence[str], seed: int
 ) -> Row:
-    """Return how alike the sketches of two people are who had the same text: a bound for what a model can write."""
+    """Return the similarity of two people's sketches for the same text: a bound for the sketches of a model."""
     others = [next((one for one in every if one.text == each.text and one is not each), None) for each in test]
     pairs = [(other.sketch, each.sketch) for each, other in zip(test, others, strict=True) if other]
     scores = iter(score_pairs(pairs))
@@ -194,7 +194,7 @@ def _of_thesis(number: str) -> Iterator[Row]:
 
 
 def _yardsticks(train: Sequence[baselines.Example], test: Sequence[baselines.Example], seed: int) -> Iterator[Method]:
-    """The nearest sketch of the original training programs, and what needs no training."""
+    """Yield the nearest sketch of the original training programs, and the methods without training."""
 
     def nearest(asked: Sequence[Request]) -> list[Steps]:
         known = {each.execution_id: each for each in test}

@@ -1,4 +1,4 @@
-"""What the chooser knows of the steps that may come next, as numbers."""
+"""The chooser's features of the possible next steps, as numbers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Offer:
     Args:
         progress: so far.
         options: what can be done now.
-        habits: what programs do beside their sketches.
+        habits: the steps of programs that their sketches leave out.
         words: numbers of names.
     """
 
@@ -151,7 +151,7 @@ class Offer:
 
     @cached_property
     def _next(self) -> tuple[Deed | None, Deed | None]:
-        """What the sketch and the plan want next."""
+        """Return the next steps of the sketch and of the plan."""
         coming, proposed = (
             None if step is None else self._next_steps.deed(step) for step in (self.coming, self.proposed)
         )
@@ -175,7 +175,7 @@ class Offer:
         return Candidate([self.words.action(action), here.number, other.number, *here.around], numbers)
 
     def _of(self, node: int) -> _OfNode:
-        """What is so of all steps about a node."""
+        """Return the features that all steps about a node share."""
         known = self._known.get(node)
         if known is None:
             known = self._known[node] = self._looked(node) if node >= 0 else NO_NODE
@@ -204,7 +204,7 @@ NO_ROLES = [0.0] * ROLES
 
 
 class Past:
-    """What a program has done so far, counted once for all candidates.
+    """The steps of a program so far, counted once for all candidates.
 
     Args:
         deeds: so far.

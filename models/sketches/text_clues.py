@@ -1,6 +1,6 @@
-"""What a text says about the things of a home: which classes it mentions, where, and with which words before them.
+"""Mentions of a home's things in a text: the classes, their positions, and the words before them.
 
-Sketches leave out much that their texts say: who sits down to type, and switches the computer on before.
+Sketches leave out much that their texts say: that a person sits down to type, and first switches the computer on.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MOST = 6
 
 
 class Clues:
-    """A text as it is looked at beside a sketch; without a text nothing is mentioned.
+    """A text that is read in addition to a sketch; without a text nothing is mentioned.
 
     Args:
         words: of the text, in lower case.
@@ -78,7 +78,7 @@ def _spelt(knowledge: Knowledge) -> dict[str, str]:
 
 
 class TextState(NamedTuple):
-    """How far a program has come with its text.
+    """The progress of a program through its text.
 
     Attributes:
         place: of the mention that the last step is about, from 0 to 1.

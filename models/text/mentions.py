@@ -1,4 +1,4 @@
-"""Which classes of objects a text mentions, and at which words: what a model may copy into a program."""
+"""Classes of objects that a text mentions, and the words that mention them: a model may copy these classes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ LONGEST = 3
 """Words of the longest name that is looked for."""
 
 _ENDINGS = (("ies", "y"), ("ves", "f"), ("ves", "fe"), ("es", ""), ("s", ""))
-"""Endings of plurals, and what stands in the singular instead."""
+"""Endings of plurals, and the ending of the singular."""
 
 
 def spellings(knowledge: Knowledge, classes: Sequence[str]) -> dict[str, str]:

@@ -47,17 +47,17 @@ class Learner(Protocol):
 
     @property
     def trained(self) -> dict[str, Any]:
-        """What it records of its training."""
+        """Return the record of its training."""
 
     def asked(self, examples: Sequence[Any], random: Random) -> InputBatch:
-        """What programs of examples are written for; drawn from `random` where there is noise."""
+        """Return the inputs of examples; drawn from `random` where there is noise."""
 
     def program(self, numbers: Numbers) -> Steps:
         """The program of some numbers."""
 
 
 class Drawn(NamedTuple):
-    """A batch: examples, and the seed of what is drawn for them."""
+    """A batch: examples, and the seed for drawing their programs."""
 
     examples: list[Any]
     seed: int
@@ -132,7 +132,7 @@ def go_on(model: Learner, task: Task[Drawn], how: Training, seen: Seen) -> None:
 def surrogate(model: Learner, batch: Drawn, rewarded: Reward) -> torch.Tensor:
     """A number whose gradient is that of minus the expected reward: eq. 4.8 with one sample for each example.
 
-    Without dropout: what is drawn and what is rewarded are programs of the same policy.
+    There is no dropout, so that the drawn programs and the rewarded programs come from the same policy.
     """
     writer = model.writer
     writer.eval()

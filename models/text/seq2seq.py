@@ -36,10 +36,10 @@ class Memory(NamedTuple):
 
 
 WAYS = 2, "two directions share it"
-"""What the hidden state is a multiple of, and why."""
+"""The number that the hidden state is a multiple of, and the reason."""
 
 State = tuple[torch.Tensor, ...]
-"""What a decoder knows of programs so far; the rows of each tensor are the programs."""
+"""The state of a decoder after the programs so far; the rows of each tensor are the programs."""
 
 
 def word_embedding(vectors: torch.Tensor) -> nn.Embedding:
@@ -48,7 +48,7 @@ def word_embedding(vectors: torch.Tensor) -> nn.Embedding:
 
 
 def both_ways(lstm: nn.LSTM, inputs: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
-    """What a bidirectional LSTM of one layer makes of sequences that end before the padding; 0 past their ends.
+    """Return the outputs of a one-layer bidirectional LSTM for padded sequences; 0 past their ends.
 
     The same as of packed sequences, in a third of the time: each direction is one call, the second on sequences that
     were turned round within their lengths.
@@ -84,7 +84,7 @@ def _one_way(inputs: torch.Tensor, weights: list[torch.Tensor]) -> torch.Tensor:
 
 
 class Seq2SeqBody(nn.Module):
-    """The encoder, and the decoder without its head; `features` is the size of what it gives to the head."""
+    """The encoder, and the decoder without its head; `features` is the size of the head's input."""
 
     def __init__(self, words: nn.Module, width: int, hidden: int, size: int, dropout: float) -> None:
         """`words` makes of a batch's inputs (B, L, width) vectors, such as `word_embedding`."""

@@ -1,4 +1,4 @@
-"""From what a decoder knows at a step to probabilities of steps: whole ones of a list, or composed of their parts."""
+"""From the decoder's state at a step to probabilities of steps: whole ones of a list, or composed of their parts."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 NEVER = -1e9
-"""Score of what is never chosen."""
+"""Score of a choice that is never made."""
 
 
 class Context(NamedTuple):
-    """What a decoder knows at N places of programs; D features, C classes and one.
+    """The decoder's state at N places of programs; D features, C classes and one.
 
     Attributes:
         features: (N, D) of the decoder and of the words attended to.

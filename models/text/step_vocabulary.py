@@ -1,4 +1,4 @@
-"""What a model of texts knows by number: words, actions, classes of objects, and which action takes which class."""
+"""The numbered vocabulary of a model of texts: words, actions, classes of objects, and the classes of each action."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class StepBatch(NamedTuple):
 
 @dataclass(frozen=True)
 class Noise:
-    """What is left out of training texts, so that a model does not rely on it.
+    """The parts of training texts to leave out, so that a model does not rely on them.
 
     Attributes:
         title: the share of texts without their title: what people ask has none.

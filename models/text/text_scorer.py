@@ -22,14 +22,15 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.world import World
 
 STAND_IN = 0.5
-"""What a node loses in score if its class is not the named one but one that serves as it."""
+"""Penalty of a node whose class is not the named one but one that can replace it, in score."""
 
 AWAY = 0.25
-"""What a node loses that is not at hand, as the nearest is meant; twice as much if the program uses another one."""
+"""Penalty of a node that is not close to the agent, in score; twice as much if the program uses another of its class.
+"""
 
 
 class Place(NamedTuple):
-    """A program so far, and what the head sees there; each has one row."""
+    """A program so far, and the head's input after it; each has one row."""
 
     draft: Draft
     context: Context
@@ -41,7 +42,7 @@ class TextScorer:
     order = (Part.ACTION, Part.FIRST, Part.SECOND)
 
     def __init__(self, writer: Writer, vocabulary: StepVocabulary, read: Callable[[Sequence[Any]], InputBatch]) -> None:
-        """`read` makes a batch of what programs are written for.
+        """`read` makes a batch of the inputs of programs.
 
         Raises HearthError, BAD_ARGUMENT: the model chooses whole steps of a list.
         """
@@ -117,7 +118,7 @@ class TextScorer:
         return found
 
     def _classes(self, knowledge: Knowledge) -> dict[str, list[tuple[int, float]]]:
-        """For each class of nodes, the classes that it may stand for, and what that costs; itself first."""
+        """Return for each class of nodes the classes that it may stand for, and the cost of each; itself first."""
         known = self._nodes.get(id(knowledge))
         if known is None:
             known = self._nodes[id(knowledge)] = {}

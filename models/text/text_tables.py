@@ -1,4 +1,4 @@
-"""Tables 4.4 and 4.5: programs from descriptions, the thesis's figures beside ours beside yardsticks."""
+"""Tables 4.4 and 4.5: programs from descriptions, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def _of_thesis(number: str) -> Iterator[Row]:
 
 
 def _yardsticks(dataset: Dataset, split: str, test: Sequence[Example], seed: int) -> Iterator[Entrant]:
-    """What needs no training, and another person's program for the same text, where there is one."""
+    """Yield the methods without training, and another person's program for the same text, where there is one."""
     train = examples(dataset, split, "train", originals=True)
     yield Entrant("Empty program", "yardstick", [[()] * len(test)])
     given, asked = ([_plain(each) for each in part] for part in (train, test))

@@ -19,7 +19,7 @@ HEADS = 4
 
 
 class TransformerBody(nn.Module):
-    """Layers of attention over words, and over steps and words; `features` is the size of what goes to the head."""
+    """Layers of attention over words, and over steps and words; `features` is the size of the head's input."""
 
     def __init__(self, words: nn.Module, width: int, hidden: int, size: int, dropout: float, layers: int) -> None:
         """`words` makes of a batch's inputs (B, L, width) vectors."""

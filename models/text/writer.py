@@ -41,7 +41,7 @@ class Writer(nn.Module):
     """A body and a head.
 
     A body reads texts (`encode`), and decodes: `start`, `step` and `unroll`, as those of `Seq2SeqBody`; `features` is
-    the size of what it gives to the head.
+    the size of the head's input.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class Writer(nn.Module):
         return Draft(memory, self.body.start(memory), last, torch.zeros(count, self.classes, device=self.device))
 
     def look(self, draft: Draft) -> tuple[Draft, Context]:
-        """Programs with the decoder one step on, and what the head needs to score the next step."""
+        """Return programs with the decoder one step on, and the head's input for scoring the next step."""
         state, features, attention = self.body.step(draft.memory, draft.state, self.embedding(draft.last))
         mentioned = draft.memory.mentioned
         attended = torch.einsum("nl,nlc->nc", attention, mentioned)

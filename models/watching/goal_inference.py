@@ -127,7 +127,10 @@ class GoalInference(Settings):
 
 
 def _parted(examples: Sequence[Watched]) -> tuple[list[Watched], list[Watched]]:
-    """What is learnt from, and the demonstrations of other goals, for validation; none where there are few goals."""
+    """Split examples into those to train on and those for validation, which have other goals.
+
+    There is no validation where there are few goals.
+    """
     goals = list(dict.fromkeys(each.counts for each in examples))
     chosen = set(rng(0, "validation goals").sample(goals, len(goals) // VALIDATION))
     return [e for e in examples if e.counts not in chosen], [e for e in examples if e.counts in chosen]

@@ -22,7 +22,7 @@ RARE = 4.0
 
 
 class MomentNetwork(nn.Module):
-    """How often each predicate is wanted.
+    """A network that predicts how often each predicate is wanted.
 
     Args:
         layout: of P predicates.

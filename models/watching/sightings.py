@@ -45,7 +45,7 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What predicates are about, whatever the home.
+    """The terms of predicates, independent of the home.
 
     Attributes:
         kinds: number of classes of things.
@@ -77,7 +77,7 @@ def _parts(predicate: Predicate) -> tuple[Name | None, tuple[str, Name | None]]:
 
 
 def _mine(predicate: Predicate) -> bool:
-    """Return whether it is about what a character holds or uses."""
+    """Return whether a predicate is about a thing that a character holds or uses."""
     subject = predicate.subject
     return isinstance(subject, str) and subject.partition(":")[0] == AGENT
 
@@ -88,7 +88,7 @@ def sightings(ticks: Sequence[Tick], predicates: Sequence[Predicate], agent: int
     Args:
         ticks: of a demonstration.
         predicates: with the nodes of furniture of its home.
-        agent: the character; the watcher stands beside it.
+        agent: the character; the watcher stands next to it.
 
     Returns:
         Of each thing its kind and its places (see `Layout`).
@@ -124,7 +124,7 @@ def _kinds(predicates: Sequence[Predicate], home: Home) -> list[int]:
 
 
 def _sites(predicates: Sequence[Predicate], home: Home) -> list[Site]:
-    """What is at each place."""
+    """Return for each place a function that gives the nodes at that place."""
     found: dict[tuple[str, Name | None], Site] = {}
     for each in predicates:
         if each.name != HOLDS:

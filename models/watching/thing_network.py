@@ -18,7 +18,7 @@ LEAST = 1e-4
 
 
 class ThingNetwork(nn.Module):
-    """How often each predicate is wanted.
+    """A network that predicts how often each predicate is wanted.
 
     Args:
         layout: of P predicates.

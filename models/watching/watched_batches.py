@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 Counts = tuple[int, ...]
-"""How often each predicate is wanted."""
+"""The number of times that each predicate is wanted."""
 
 MOST_PLACES = 12
 """Places of a thing that are read: of more, the last ones."""
