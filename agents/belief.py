@@ -1,4 +1,4 @@
-"""What an agent believes about where things are and what state they are in (thesis 6.4, B.1.1).
+"""An agent's beliefs about the places and states of objects (thesis 6.4, B.1.1).
 
 A thing that was not seen yet is in any of the rooms and closed containers with equal probability. One world is drawn
 from that belief and kept; a thing is drawn anew only once what is seen refutes its place.
@@ -20,7 +20,7 @@ from hearth.simulation.world.states import CLEAN, CLOSED, OFF, OPEN, PLUGGED_IN
 from hearth.simulation.world.world import World
 
 USUAL = {CLOSED: "CAN_OPEN", OFF: "HAS_SWITCH", PLUGGED_IN: "HAS_PLUG", CLEAN: "GRABBABLE"}
-"""The states in which what is not seen yet is believed to be, and what only things with a property are in."""
+"""The believed state of an object that has not been observed, and the property of objects that can have this state."""
 
 
 Extent = Literal["class", "goal", "any"]
@@ -30,10 +30,10 @@ anything that the goal is about, or all.
 
 
 class Place(NamedTuple):
-    """Where a thing is.
+    """The place of a thing.
 
     Attributes:
-        relation: `INSIDE` a room or a container, `ON` something, or, of who holds it, `HOLDS`.
+        relation: `INSIDE` a room or a container, `ON` a thing, or `HOLDS` of the character that holds it.
         node: index of that room, thing or character.
     """
 
@@ -42,7 +42,7 @@ class Place(NamedTuple):
 
 
 def place_of(world: World, thing: int) -> Place:
-    """Return where a thing is in a world: who holds it, what it is in or on, or else its room."""
+    """Return the place of a thing in a world: its holder, the node it is in or on, or else its room."""
     for agent in world.agents:
         if agent.held >> thing & 1:
             return Place(HOLDS, agent.index)
@@ -55,7 +55,7 @@ def place_of(world: World, thing: int) -> Place:
 
 
 def containers(home: Home) -> int:
-    """What stays where it is, can be opened, and according to the knowledge has things inside."""
+    """Return the fixed nodes that can be opened and, according to the knowledge, have things inside."""
     fixed = home.properties["CAN_OPEN"] & home.everything & ~(home.properties["GRABBABLE"] | home.rooms | home.doors)
     known = home.knowledge
     return mask_of(
@@ -116,7 +116,7 @@ class Belief:
         self._chooser = chooser
 
     def observe(self, view: View) -> None:
-        """Take in what is seen now."""
+        """Update the beliefs by an observation."""
         world, mask = view.world, view.mask
         self.seen = mask
         self.room = -1 if view.me.room is None else world.home.index[view.me.room]

@@ -69,7 +69,7 @@ class Distances:
         return next(iter(self._here.ground.stands(node)), -1)
 
     def ticks(self, metres: float) -> int:
-        """Ticks until one is within reach of what is that far away."""
+        """Return the ticks until an agent is within reach of a thing at some distance."""
         return max(0, math.ceil((metres - REACH / 2) / self.stride)) if math.isfinite(metres) else 1_000
 
 

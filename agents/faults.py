@@ -1,7 +1,7 @@
 """A human-like agent with faults: less than rational, forgetful, untidy, mistaken, changing its mind, distracted.
 
-Who gives the rates decides what for: `population` has people to be helped. Demonstrations have errands of their own,
-which depend on a challenge's goals (`challenges/demonstrator.py`).
+The caller gives the rates, and with them the purpose: `population` has people to be helped. Demonstrations have errands
+of their own, which depend on a challenge's goals (`challenges/demonstrator.py`).
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Faulty(HumanLike):
         self._seed = seed
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of its plan, or of what it does instead."""
+        """Return the first instruction of its plan, or the instruction that a fault puts in its place."""
         self._forget(observation)
         if self._happens(self.faults.change_of_mind):
             self._turn()
@@ -120,7 +120,7 @@ class Faulty(HumanLike):
             self.subgoal = None
 
     def _tempted(self, view: View, step: Step | None) -> Literal[Name] | None:
-        """What it brings about instead of an instruction, by ids; None if it goes on."""
+        """Return the literal, by ids, that it makes true instead of an instruction; None if it goes on."""
         home = view.world.home
         me = view.world.agents[view.agent]
         places = list(indices(home.properties["SURFACES"] & home.furniture & view.mask))

@@ -24,11 +24,11 @@ Flags = NDArray[np.bool_]
 
 
 class Scene(NamedTuple):
-    """What somebody knows of a home.
+    """An agent's knowledge of a home.
 
     Attributes:
         places: where each thing of a space is.
-        closed: the set of what is closed.
+        closed: the set of closed nodes.
     """
 
     places: list[Place]
@@ -39,9 +39,9 @@ class Edge(NamedTuple):
     """An edge of the graph that somebody brings about.
 
     Attributes:
-        relation: `ON` or `INSIDE` furniture; HOLDS of what a character is to have; "" for taking a thing along,
-            without knowing where to.
-        thing: index of what is carried.
+        relation: `ON` or `INSIDE` furniture; HOLDS for a thing that a character is to have; "" for taking a thing
+            along, without knowing where to.
+        thing: index of the thing that is carried.
         target: index of the furniture or character; -1 for taking it along.
     """
 
@@ -51,10 +51,10 @@ class Edge(NamedTuple):
 
 
 Counts = tuple[int, ...]
-"""How many a goal wants of each predicate of a space."""
+"""The number of things that a goal wants for each predicate of a space."""
 
 Places = list[Place]
-"""Where each thing of a space is."""
+"""The place of each thing of a space."""
 
 
 GoalsIn = Callable[[Home], Mapping[Goal, float]]
@@ -160,7 +160,7 @@ class GoalSpace:
         return [place_of(world, thing) for thing in self.things]
 
     def scene(self, world: World) -> Scene:
-        """All of a world, for who sees everything."""
+        """Return the scene of a whole world, for an observer that sees everything."""
         return Scene(self.places(world), world.states[CLOSED])
 
     def counted(self, places: Places) -> Flags:

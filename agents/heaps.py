@@ -1,4 +1,4 @@
-"""What two people who fetch things find in a home: heaps of equal things, and the ticks of ways between them."""
+"""A home as two agents that fetch things find it: heaps of equal things, and the ticks of ways between them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SHORT = 1.2
 """Metres before the end of a way from which one can already reach what is there, as measured in episodes."""
 
 FAR = 1_000
-"""Ticks to what can't be reached."""
+"""Ticks to a place that can't be reached."""
 
 MAIN, HELPER = 0, 1
 
@@ -27,7 +27,7 @@ class Heap:
 
     Attributes:
         rows: the predicates for which they would count elsewhere.
-        node: index of what they are on or in; -1 in somebody's hands.
+        node: index of the node that they are on or in; -1 in the hands of a character.
         inside: whether they are in it.
         things: their numbers in the goal space.
         holder: `MAIN` or `HELPER` who holds them; -1 if nobody does.
@@ -47,7 +47,7 @@ class Situation:
         space: the goals.
         heaps: all things that goals could want elsewhere.
         starts: the cells in which both stand.
-        shut: the set of what is closed.
+        shut: the set of closed nodes.
         giving: ticks until the helper has handed over what it holds.
     """
 

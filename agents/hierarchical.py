@@ -14,11 +14,11 @@ from hearth.simulation.observation.views import Pose, View
 
 
 class Partner(Protocol):
-    """Who is helped, as far as a helper with the true goal may know its plan (thesis B.2): what it does now."""
+    """A partner whose current subgoal a helper with the true goal may know (thesis B.2)."""
 
     @property
     def subgoal(self) -> Subgoal | None:
-        """What it is doing; None if nothing."""
+        """Return its current subgoal; None if it has none."""
 
 
 HELPING = Habits(closes=False, gives=True)
@@ -26,7 +26,9 @@ HELPING = Habits(closes=False, gives=True)
 
 
 class Hierarchical(HumanLike):
-    """Pursues a goal that it is given beside somebody, to whom it leaves what that one is doing.
+    """An agent that pursues its goal next to a partner, and leaves the partner's current subgoal to the partner.
+
+    If no other subgoal is left and it sees nothing in the partner's hands, it pursues that subgoal, too.
 
     Where nothing else is left to be done and, as far as it can see, the partner's hands are empty, it does that, too.
     """

@@ -24,7 +24,7 @@ from hearth.simulation.world.states import CLOSED, OPEN
 
 @dataclass(frozen=True, slots=True)
 class Habits:
-    """How a human-like agent decides.
+    """Settings for the decisions of a human-like agent.
 
     Attributes:
         search: settings of the tree search.
@@ -47,7 +47,7 @@ PLAIN = Habits()
 
 
 class HumanLike:
-    """Does what brings its goal about, as far as it knows where things are.
+    """An agent that brings its goal about by its beliefs about the places of things.
 
     Attributes:
         subgoal: what it is doing now; None before its first tick, and when nothing is left to be done.
@@ -150,7 +150,7 @@ class HumanLike:
         return view.me.last is not None and view.me.last.failure is not None
 
     def _needed(self, missing: Missing, held: int) -> int:
-        """The things that could still count for a missing part, and what it holds because it is to hold it."""
+        """Return the things that could still count for a missing part, and those in its hands that it is to hold."""
         found = 0
         for wanted in self.aims.wanted:
             if wanted.part in missing:
@@ -160,15 +160,16 @@ class HumanLike:
         return found & self.aims.things
 
     def _spare(self, view: View, needed: int) -> tuple[int, ...]:
-        """What it holds and would put down first, if it needs a hand: what is not needed, then what is not its subgoal
-        now.
+        """Return the things that it would put down first if it needs a hand.
+
+        Things that are not needed come first, then those that are not of its current subgoal.
         """
         pursued = -1 if self.subgoal is None else self.subgoal.thing
         others = [i for i in rows.held_indices(view.world.agents[view.agent]) if i != pursued]
         return tuple(sorted(others, key=lambda i: bool(needed >> i & 1)))
 
     def _clearing(self, search: Regression, needed: int) -> Step | None:
-        """Put something down, if both hands are full of what is not needed."""
+        """Put a thing down, if both hands are full of things that are not needed."""
         me = search.me
         if not (me.right and me.left) or me.held & needed or not search.spare:
             return None

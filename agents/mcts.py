@@ -62,7 +62,7 @@ class Tree:
             needed: how many subgoals each part needs.
             cost: of a subgoal from a cell.
             cell: where the agent is.
-            chooser: of rollouts and of what is tried first.
+            chooser: of rollouts and of the order of first trials.
             settings: of the search.
         """
         self._parts, self._needed, self._cost, self._chooser = parts, needed, _remembered(cost), chooser

@@ -23,7 +23,7 @@ class NetworkProposals:
         Args:
             space: the goals, all that there are.
             model: a checkpoint's folder, or the name of one that comes with Hearth.
-            watched: index of who pursues a goal.
+            watched: index of the agent that pursues a goal.
             start: where things are at the start, as far as is known.
 
         Raises:

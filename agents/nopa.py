@@ -16,14 +16,16 @@ from hearth.schemas.goals import Goal
 from hearth.simulation.observation.views import View
 
 Source = Choice["exact", "uniform", "likeliest", "gpn"]
-"""Where particles come from: the exact posterior, all goals with equal probability, the likeliest goal alone, or the
-goal proposal network, which needs the extra `models`.
+"""The source of particles.
+
+The exact posterior, all goals with equal probability, the likeliest goal alone, or the goal proposal network, which
+needs the extra `models`.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How NOPA helps.
+    """Settings of NOPA.
 
     Attributes:
         proposals: of goals.
@@ -115,6 +117,6 @@ class Nopa(OnlineHelper):
         return dict(shares)
 
     def _weighed(self, planner: Planner) -> list[tuple[float, Counts, Prospect]]:
-        """The goals of the particles with their shares and what is predicted under each from now on."""
+        """Return the goals of the particles, with their shares and the prediction under each from now on."""
         horizon = self.settings.horizon
         return [(share, goal, planner.prospect(goal, horizon)) for goal, share in self.proposed.items()]

@@ -70,4 +70,4 @@ ONLINE: dict[str, OnlineKind] = {
     "likeliest": _nopa("planner for the likeliest goal", Settings(proposals="likeliest", horizon=1.0)),
     "empowerment": OnlineKind(Empowerment, "what most goals have in their plans"),
 }
-"""How to help somebody whose goal one does not know."""
+"""The helpers for a partner whose goal is unknown, by name."""

@@ -18,7 +18,7 @@ TURNS = (5, 20)
 
 
 class Slow(Faulty):
-    """Does something in every other tick only."""
+    """An agent that acts in every other tick only."""
 
     def __init__(self) -> None:
         super().__init__(Faults())
@@ -68,7 +68,7 @@ class ChangesGoal(Faulty):
 
 
 def _is_other(first: Goal, own: Goal, home: Home) -> bool:
-    """Return whether a goal shares no predicate with another, and can be reached with what there is."""
+    """Return whether a goal shares no predicate with another, and a home has the things to reach it."""
     return not {each for each, _ in first} & {each for each, _ in own} and all(
         _number(each, home) >= wanted for each, wanted in first
     )

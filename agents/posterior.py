@@ -27,12 +27,12 @@ MOST = 1_000
 """Things of a predicate that goals want, at most."""
 
 FAR = 1e6
-"""Ticks to what can't be reached."""
+"""Ticks to a place that can't be reached."""
 
 
 @dataclass(frozen=True, slots=True)
 class ActionModel:
-    """How the one who acts is thought to choose.
+    """A model of an agent's choices.
 
     Attributes:
         rationality: how much less probable a thing becomes with each tick that it is farther.
@@ -51,7 +51,7 @@ USUAL_MODEL = ActionModel()
 
 
 class _Lacking(NamedTuple):
-    """What goals lack, as long as the same things count.
+    """The missing predicates of goals, as long as the same things count.
 
     Attributes:
         missing: (G, P) what each goal lacks.
@@ -72,7 +72,7 @@ class _Lacking(NamedTuple):
 
     @classmethod
     def of(cls, space: GoalSpace, counted: Flags) -> _Lacking:
-        """What the goals of a space lack where some things count."""
+        """Return the missing predicates of a space's goals, given the things that count."""
         missing, able = space.missing(counted), space.fits & ~counted
         possible = missing.any(axis=1) & (missing <= able.sum(axis=1)).all(axis=1)
         goals, rows = np.nonzero(missing)
@@ -108,11 +108,11 @@ class Posterior:
         self._counted: Flags = np.zeros((0, 0), np.bool_)
 
     def observe(self, scene: Scene, other: Pose) -> None:
-        """Take in what somebody has just tried, and the home since then.
+        """Update the posterior by an agent's last attempt, and by the home since then.
 
         Args:
             scene: now.
-            other: how that one stands, with what it last tried.
+            other: the pose of that agent, with its last attempt.
         """
         last = None if other.last is None else (other.last.instruction, other.last.failure)
         stood, self._stood = self._stood, (last, other.place)
@@ -134,11 +134,11 @@ class Posterior:
             self._last = None
 
     def _expect(self, scene: Scene, other: Pose) -> None:
-        """What is fetched or carried next under each goal.
+        """Compute the thing that is fetched or carried next under each goal.
 
-        Whoever must fetch all of some things saves most by beginning with those that are near now, but far from where
-        they are wanted: what counts is the cost from here less the cost from there, or that of the dearest thing that
-        is needed otherwise.
+        An agent that must fetch all of some things saves most by beginning with things that are near now, but far from
+        their target. The score is the cost from here less the cost from the target, or less that of the dearest thing
+        that is needed otherwise.
         """
         lacking, me = self._lacking, self._home.index[other.node]
         row, number = lacking.row, lacking.number
@@ -179,7 +179,7 @@ class Posterior:
         return found
 
     def round_trips(self, closed: int) -> Floats:
-        """(P, T) ticks in which a thing is fetched from where a predicate wants it; FAR of what somebody holds."""
+        """Return (P, T) ticks to fetch a thing from a predicate's target; FAR if a character holds the thing."""
         distances = self.distances
         found = np.full(self.space.fits.shape, FAR)
         for number, (relation, node) in enumerate(self.places):
@@ -196,7 +196,7 @@ class Posterior:
         return found
 
     def _weigh(self, step: Step) -> None:
-        """Weigh the goals by an action, and what may be pursued under each."""
+        """Weigh the goals by an action, and update the possible pursuits under each goal."""
         match = self._matching(step)
         if match is None:
             return
@@ -213,12 +213,12 @@ class Posterior:
         self._keep((1 - slip) * (self.space.counts[:, row] > 0) + slip)
 
     def answered(self, row: int, count: int) -> None:
-        """Weigh the goals by what somebody says: a predicate that is still wanted, and how many are missing."""
+        """Weigh the goals by an answer: a predicate that is still wanted, and how many are missing."""
         slip, lacking = self.model.slip, np.maximum(1, (self.missing > 0).sum(axis=1))
         self._keep((1 - slip) * (self.missing[:, row] == count) / lacking + slip * slip)
 
     def _rest(self) -> None:
-        """Weigh the goals by a tick in which nothing was done: who can fetch nothing waits for what others have."""
+        """Weigh the goals by a tick without action: an agent with nothing to fetch waits for the things of others."""
         self._keep(np.where(self.pursued.any(axis=1), self.model.rest, 1.0))
 
     def _keep(self, likelihood: Floats) -> None:

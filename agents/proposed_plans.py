@@ -16,7 +16,7 @@ from hearth.simulation.observation.views import View
 
 
 class ProposedPlans(OnlineHelper):
-    """Does the first action that the hierarchical planner most often chooses for the goals that are proposed now."""
+    """A helper that takes the most frequent first action of the hierarchical planner over the proposed goals."""
 
     def __init__(self, goals: GoalsIn, model: str = "goal-proposals", particles: int = 1) -> None:
         """Choose how.

@@ -1,4 +1,4 @@
-"""What somebody will do next if they have a certain goal: a plan, and when each edge of the graph comes about.
+"""The future actions of an agent with a certain goal: a plan, and the time at which each edge of the graph comes about.
 
 The intermediate states of NOPA's particles (thesis 7.3.1): the plan is the nearest thing first, to a horizon.
 """
@@ -92,7 +92,7 @@ class Planner:
         return Prospect(frozenset(plan.nodes), plan.edges, tuple(self._later(plan)))
 
     def _ways(self, plan: _Plan) -> Iterator[tuple[float, int, int]]:
-        """What could be fetched next: ticks, number of the thing, row of the predicate."""
+        """Yield the things that could be fetched next: ticks, number of the thing, row of the predicate."""
         for row, number in plan.lacking.items():
             for thing in plan.things if number else ():
                 if self._away[row, thing] and thing not in self._taken:

@@ -1,8 +1,9 @@
 """Regression: from a literal that is to hold back to an instruction that can be done now (thesis B.1.1).
 
-The action table is asked which actions bring a literal about and what each needs first; what does not hold by belief of
-that is the next literal, until an action is legal. So for `INSIDE(plate, dishwasher)`: put it in, which needs it held,
-which needs it within reach and its container open, which needs that within reach, which needs a walk towards its room.
+The search asks the action table which actions bring a literal about and which conditions each needs first. A condition
+that does not hold by belief is the next literal, until an action is legal. So for `INSIDE(plate, dishwasher)`: put it
+in, which needs it held, which needs it within reach and its container open, which needs that within reach, which needs
+a walk towards its room.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, lowest
 
 ME, FIRST, SECOND = "a", "o", "s"
-"""The variables of the action table: who acts, and the objects."""
+"""The variables of the action table: the agent, and the objects."""
 
 DEEPEST = 8
 """Literals that stand for each other before a search is given up."""
@@ -77,7 +78,7 @@ class Regression:
         return None
 
     def _ways(self, literal: Literal[int]) -> Iterator[Way]:
-        """The actions that make a literal true, the plainest first, with what their variables stand for."""
+        """Yield the actions that make a literal true, the plainest first, with the values of their variables."""
         for action, terms in _making(self.home.knowledge, literal.name, len(literal.terms), literal.negated):
             bound = dict(zip(terms, literal.terms, strict=True))
             if bound.setdefault(ME, self.me.index) != self.me.index:
@@ -127,8 +128,10 @@ class Regression:
         return _moves(self.home.knowledge)
 
     def place(self, node: int) -> int:
-        """What something is believed to be on or in, and of what stays where it is the room; -1 of a room
-        and of a character of whom nothing is known."""
+        """Return the believed node that a thing is on or in, and the room of a fixed thing.
+
+        The answer is -1 for a room and for a character whose place is unknown.
+        """
         if node in self.belief.where:
             return self.belief.where[node].node
         if (self.home.rooms | self.home.characters) >> node & 1:
@@ -155,7 +158,7 @@ class Regression:
         return 0.0 if box is None or pose is None else math.dist(pose.point, (box.center[0], box.center[2]))
 
     def _missing(self, formula: Formula, bound: Bound) -> tuple[Literal[int], ...]:
-        """What would make a condition hold, best first; nothing if it holds by belief, or if nothing is known to."""
+        """Return the literals that would make a condition hold, best first; none if it holds, or if none is known."""
         if isinstance(formula, And):
             return tuple(each for part in formula.parts for each in self._missing(part, bound))
         if isinstance(formula, Or):
@@ -209,7 +212,7 @@ class Regression:
         return not (self.me.right and self.me.left) if name == "free_hand" else None
 
     def near(self, node: int) -> bool:
-        """Return whether the agent is close to something; to what is out of view, if it is to what that is in."""
+        """Return whether the agent is close to a thing; if it is out of view, to the closed node that it is in."""
         if not self.seen >> node & 1:
             node = self.belief.shut_in(node)
         return node >= 0 and bool(self.seen >> node & 1) and rows.is_close(self.world, self.me, node)

@@ -16,7 +16,7 @@ from hearth.simulation.observation.views import View
 
 
 class ShownChoices(Hierarchical):
-    """The hierarchical planner, which notes what it chose and what a policy would have been shown.
+    """The hierarchical planner, which records its choices and the inputs that a policy would have had.
 
     Attributes:
         choices: of subgoals.

@@ -10,7 +10,8 @@ from hearth.agents.goal_space import GoalSpace, Numbers, Places
 from hearth.schemas.literals import HOLDS
 
 ELSEWHERE = 3
-"""Predicates of a class beside those of goals: held by who is watched; on, or in, what no goal names."""
+"""Predicates of a class in addition to those of goals: held by the watched agent; on, or in, a node that no goal names.
+"""
 
 
 class StateChanges:
@@ -21,7 +22,7 @@ class StateChanges:
 
     Attributes:
         space: the goals, all that there are.
-        watched: index of who pursues one.
+        watched: index of the agent that pursues one.
         first: the places of things at the start.
     """
 

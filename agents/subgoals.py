@@ -15,10 +15,10 @@ from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.home import Home
 
 HELD, RESTS = 1, 2
-"""When a part of a goal that is about characters comes, after those about things."""
+"""Order of the parts of a goal that are about characters, after those about things."""
 
 Missing = dict[int, tuple[int, int]]
-"""By part of a goal that is not reached by belief: how many are missing, and the set of what counts."""
+"""By part of a goal that is not reached by belief: the number missing, and the set of nodes that count."""
 
 
 class Subgoal(NamedTuple):
@@ -60,7 +60,7 @@ class Wanted:
 
     @property
     def counted(self) -> int:
-        """What may be counted for it."""
+        """Return the nodes that may be counted for it."""
         return self.candidates.targets if self.last else self.candidates.subjects
 
 
@@ -105,7 +105,7 @@ class Aims:
         return self._gives and wanted.last == HELD
 
     def met(self, wanted: Wanted, belief: Belief, view: View) -> int:
-        """The set of what is counted for a literal by belief."""
+        """Return the set of nodes that are counted for a literal by belief."""
         name, targets = wanted.literal.name, wanted.candidates.targets
         if self._by_others(wanted):
             found = self._given(wanted, belief)
@@ -122,7 +122,7 @@ class Aims:
         return wanted.counted & ~found if wanted.literal.negated else found
 
     def _given(self, wanted: Wanted, belief: Belief) -> int:
-        """What others were last seen to hold of what they are to hold."""
+        """Return the things that other agents were last seen to hold, of those that they are to hold."""
         seen = wanted.counted & belief.known
         held = (t for t in indices(seen) if belief.where[t].relation == HOLDS)
         subjects = wanted.candidates.subjects

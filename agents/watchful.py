@@ -28,7 +28,7 @@ NEAR = "CLOSE"
 
 @dataclass(frozen=True, slots=True)
 class Watching(Settings):
-    """How it helps.
+    """Settings of the helper.
 
     Attributes:
         seeks: it goes to where it sees its partner; if not, it watches only who is in view anyway.
@@ -44,7 +44,7 @@ SEARCHING = ActionModel(searching=0.1)
 
 
 class Watchful(ExpectedTime):
-    """Helps with what it believes, and looks for its partner where that is expected to save time."""
+    """A helper that acts by its beliefs, and looks for its partner where that is expected to save time."""
 
     def __init__(self, goals: GoalsIn, settings: Watching = USUAL, model: ActionModel = SEARCHING) -> None:
         super().__init__(goals, settings, model)
@@ -78,7 +78,7 @@ class Watchful(ExpectedTime):
         return self._first(search, self.subgoal)
 
     def _notice(self, before: dict[int, Place]) -> None:
-        """Weigh the goals by what the partner brought while it was out of view.
+        """Weigh the goals by the things that the partner brought while it was out of view.
 
         Args:
             before: where things were that it had seen.

@@ -1,4 +1,4 @@
-"""Where others are, for an agent that does not see them all the time."""
+"""The places of others, for an agent that does not see them all the time."""
 
 from __future__ import annotations
 
