@@ -43,16 +43,16 @@ def played(knowledge: Knowledge) -> tuple[str, ...]:
 
 
 class ActionCode(Protocol):
-    """How instructions are numbered."""
+    """A numbering of instructions."""
 
     def space(self) -> Space[Any]:
         """All numbers."""
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of what `masks` returns."""
+        """Return the spaces of the arrays that `masks` returns."""
 
     def masks(self, legal: Legal, slots: Slots) -> dict[str, NDArray[Any]]:
-        """Which numbers can be done now; arrays that nobody else holds."""
+        """Return the numbers that are possible now, as new arrays."""
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | Failure | None:
         """The instruction of a number; None to wait; a failure, where no instruction has it now.
@@ -257,7 +257,7 @@ def fixed_list(names: Iterable[str], slots: Slots, places: Mapping[str, Sequence
     Args:
         names: the actions.
         slots: the nodes; some ten of them, because two of them make a hundred pairs.
-        places: action -> ids of what its last object may be; any node in a slot where it is not named.
+        places: action -> ids of the nodes that its last object may be; any node in a slot where it is not named.
     """
     home = slots.home
     grabbable = home.able("Grab", 0)

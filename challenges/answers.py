@@ -1,7 +1,7 @@
 """Answers of agents that are no Python objects: the number or the text of an instruction, read against what is legal.
 
-Nothing is tried that is not among the legal instructions. What refuses an answer is decided by what the agent sees, so
-that answers ask nothing about the rest of the home.
+Only legal instructions are tried. The agent's observation alone decides why an answer is refused, so that answers
+reveal nothing about the rest of the home.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from hearth.simulation.observation.views import View
 from hearth.simulation.world.bits import indices
 
 WAIT = "wait"
-"""The answer of who does nothing in this tick."""
+"""The answer of an agent that does nothing in this tick."""
 
 SAYING = f"{TELL} ON(plate, 55) 2"
 """An example of a message, for remedies and prompts."""
@@ -40,7 +40,7 @@ _NAMED = re.compile(r"([a-z][a-z_ ]*?)\s*([0-9]{1,9})?", re.ASCII | re.IGNORECAS
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Why an agent did nothing in a tick that was its own.
+    """The reason for an agent's failure to act in its own tick.
 
     Attributes:
         tick: which, from 0.
@@ -89,7 +89,7 @@ def by_number(number: int, options: Sequence[Step]) -> Step:
 
 
 def by_words(text: str, view: View, legal: Legal, messages: bool) -> Choice:
-    """What a text says, where agents may say something; otherwise the instruction that it means (see `by_text`).
+    """Return the message of a text, where agents may talk; otherwise the instruction that it means (see `by_text`).
 
     Raises:
         HearthError: SYNTAX: it begins as a message and is none; and the faults of `by_text`.

@@ -119,7 +119,10 @@ class Channel:
             self._flush(deadline)
 
     def _flush(self, deadline: float) -> None:
-        """Wait until nothing is unsent. Who has answered and gone was sent it, even before that is counted."""
+        """Wait until all output is sent.
+
+        An agent that has answered and exited had received everything, even if the count says otherwise.
+        """
         done = self._changed.wait_for(lambda: self._ended or not self._unsent, _left(deadline))
         if self._unsent and not self._received:
             self._need_open()
@@ -147,7 +150,7 @@ class Channel:
                     raise HearthError.of(Code.TIMED_OUT, "the agent did not answer in time")
 
     def _line(self) -> bytes | None:
-        """A whole line of what was received, if there is one."""
+        """Return a whole line of the received bytes, if there is one."""
         end = self._received.find(b"\n")
         if end > LONGEST_LINE or (end < 0 and len(self._received) > LONGEST_LINE):
             self._skipping = True
@@ -188,7 +191,7 @@ class SocketChannel(Channel):
         """Close the socket."""
         super().close()
         with contextlib.suppress(OSError):
-            self._connection.shutdown(socket.SHUT_RDWR)  # who waits for it is woken
+            self._connection.shutdown(socket.SHUT_RDWR)  # wakes the reader
         for thread in self._threads:
             thread.join()
         self._connection.close()
@@ -219,7 +222,7 @@ class ProcessChannel(Channel):
         super().__init__(given.read, taken.write, (given.close, taken.close))
 
     def close(self, patience: float = 2.0) -> None:
-        """Close its input and wait some seconds for its end; then end it and what it started."""
+        """Close its input and wait some seconds for its end; then end the process and its children."""
         super().close()
         for end in (None, *_ENDS):
             if end is not None:
@@ -231,7 +234,7 @@ class ProcessChannel(Channel):
 
 
 def _ends() -> tuple[Callable[[subprocess.Popen[bytes]], None], ...]:
-    """What ends a process: with all that it started, where processes have groups."""
+    """Return the functions that end a process, and its children where processes have groups."""
     if os.name == "nt":
         return subprocess.Popen.terminate, subprocess.Popen.kill
     return tuple(lambda process, by=by: os.killpg(process.pid, by) for by in (signal.SIGTERM, signal.SIGKILL))

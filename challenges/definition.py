@@ -22,12 +22,12 @@ NAMES = ("wah", "owah")
 """The challenges; each is a file of this package."""
 
 VARIANTS = ("owah_partial", "owah_messages")
-"""Challenges beyond the thesis: each is one of `NAMES` with what its file says otherwise."""
+"""Challenges beyond the thesis: each is one of `NAMES` with the changes in its file."""
 
 
 @dataclass(frozen=True)
 class Split:
-    """Which tasks belong together.
+    """A set of tasks.
 
     Attributes:
         tasks: how many.
@@ -44,7 +44,7 @@ class Split:
 
 @dataclass(frozen=True)
 class Challenge:
-    """What agents are asked to do.
+    """A kind of task for agents.
 
     Attributes:
         name: its identifier.
@@ -60,8 +60,8 @@ class Challenge:
         train, test: homes of training and of testing.
         held_out: how many goals of each set are for testing only.
         splits: by name.
-        demonstrations: how many there are beside the tasks.
-        habits: probabilities of what makes demonstrations hard to read (see `demonstrator`).
+        demonstrations: how many there are in addition to the tasks.
+        habits: probabilities of the habits that make demonstrations hard to read (see `demonstrator`).
     """
 
     name: str

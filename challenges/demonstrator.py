@@ -1,4 +1,4 @@
-"""Who demonstrates a task: a human-like agent that now and then does something else.
+"""The demonstrator of a task: a human-like agent that sometimes does something else.
 
 A clean demonstration gives the goal away: counting what was put where infers every goal. People open the wrong
 cupboard, put away something in passing, and change their minds.
@@ -55,7 +55,7 @@ class Demonstrator:
         self.waiting = [name for name in once if self.chooser.random() < self.habits[name]]
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """What it does now: for its goal, or something else."""
+        """Return its current instruction: for its goal, or for something else."""
         free = not observation.world.agents[observation.agent].held
         if self.errand is None and free and observation.tick >= FIRST:
             if (failing := self._failing(observation)) is not None:

@@ -44,7 +44,7 @@ class EpisodeArrays:
 
 
 def session_of(task: Task, record: Record, knowledge: Knowledge) -> Session:
-    """The start of a recorded episode, for learners; a helper is told the goal if it was asked to reach it."""
+    """Return the start of a recorded episode, for learners; a helper gets the goal if it was asked to reach it."""
     which = challenge(task.challenge)
     start = start_of(task, knowledge, None if record.helped else 1)
     goal = task.goal_in(start.home)

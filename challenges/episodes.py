@@ -1,4 +1,4 @@
-"""Episodes of tasks: played by agents, or again from a record of what they did."""
+"""Episodes of tasks: played by agents, or replayed from a record of their actions."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Job:
     Attributes:
         task: what is to be done.
         seed: number of the episode of its task.
-        lineup: who takes part.
+        lineup: the agents that take part.
         helped: whether the helper does.
         helper_goal: what the helper is asked to do; None if nothing.
         known: gives the knowledge.
@@ -113,7 +113,7 @@ def played(job: Job) -> Record:
 
 
 def again(task: Task, record: Record, knowledge: Knowledge) -> tuple[Outcome, str]:
-    """What comes of doing again what was done: the outcome and the digest of the last world.
+    """Replay the actions of a record and return the outcome and the digest of the last world.
 
     Raises:
         HearthError: BAD_ARGUMENT: an action is not one of the challenge's; REPLAY_DIFFERS: something is done after the
@@ -171,14 +171,14 @@ def _goals(which: Challenge, task: Task, helper_goal: Goal | None, home: Home, h
 def read_choices(
     texts: Sequence[str | None], home: Home, allowed: frozenset[str], messages: bool
 ) -> tuple[dict[int, Step], dict[int, Message]]:
-    """What each agent did, and what each said, in a tick of a record; errors as of `read_instruction`."""
+    """Return each agent's instruction and message in a tick of a record; errors as of `read_instruction`."""
     said = {n: told for n, text in enumerate(texts) if messages and text and (told := read_message(text)) is not None}
     rest = {n: text for n, text in enumerate(texts) if text is not None and n not in said}
     return {n: read_instruction(text, n, home, allowed) for n, text in rest.items()}, said
 
 
 def written(choice: Choice) -> str | None:
-    """What was done as records have it: `Grab 41`; what was said as `schemas.agent_messages` has it."""
+    """Return an instruction as records have it, `Grab 41`, or a message as `schemas.agent_messages` has it."""
     if choice is None or isinstance(choice, Message):
         return None if choice is None else str(choice)
     return " ".join([choice.action, *(str(ref.node) for ref in choice.objects)])

@@ -1,7 +1,7 @@
-"""What went wrong, or well, between two agents in an episode, counted from its ticks alone (thesis 6.5.3, figure 6-7).
+"""Faults and merits of two agents in an episode, counted from its ticks alone (thesis 6.5.3, figure 6-7).
 
-Everything is counted in the real world, from what was done and what each agent could see, so that a replay counts the
-same.
+Everything is counted in the real world, from the actions and from each agent's visible nodes, so that a replay counts
+the same.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ class _Analysis:
     def _by(self, did: Step | None, before: Progress, lost: int, tick: Tick) -> int:
         """Return how many of these nodes an instruction is about and moves away.
 
-        One may also go to what the other takes.
+        An agent may also walk to the nodes that the other takes.
         """
         about = lost & self._named(did) if lost and did is not None else 0
         if not about or did is None:
@@ -186,7 +186,7 @@ class _Analysis:
         return visible(world, world.agents[number]) if self.which.partial else world.home.everything
 
     def finished(self, last: Progress) -> Columns:
-        """The columns, with what is known at the end only."""
+        """Return the columns, including those that are known at the end only."""
         assert self.world is not None
         counted = reduce(or_, (mask for watch in last.watches for mask in watch.met), 0)
         for i in indices(self.taken & ~counted):

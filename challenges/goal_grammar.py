@@ -247,7 +247,7 @@ class Grammar:
         Names may be as in the thesis: `IN`, `HOLD(Alice, book)`, `SIT(Alice, sofa)`; `;` and `,` may stand for `and`.
 
         Raises:
-            HearthError: SYNTAX; UNKNOWN_OBJECT for what is not a predicate of the grammar.
+            HearthError: SYNTAX; UNKNOWN_OBJECT for a literal that is not a predicate of the grammar.
         """
         pairs = list(given.items()) if isinstance(given, Mapping) else _pairs(given)
         found: dict[Literal[Name], int] = {}

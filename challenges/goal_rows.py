@@ -77,7 +77,7 @@ def check(goal: Goal, most: int) -> None:
 
 
 def goal_array(view: View, slots: Slots, progress: Progress | None, most: int) -> NDArray[np.int16]:
-    """The rows of the goal that an agent is told, padded with zeros; zeros alone where it is told none.
+    """Return the rows of an agent's known goal, padded with zeros; zeros alone where it knows no goal.
 
     Raises:
         HearthError: BAD_ARGUMENT (see `check`).

@@ -1,8 +1,8 @@
 """Training of Hybrid and HRL: the planner's choices are imitated, then A2C goes on from there (thesis B.3.3 to B.3.5).
 
-The thesis begins with episodes in which the agent is alone; imitating the planner takes their place. It trains with
-RMSprop and 126,000 episodes, here it is AdamW and what two cores give. The weights of imitation stay where practice
-earns no more on the tasks for validation.
+The thesis begins with episodes in which the agent is alone; here imitating the planner takes their place. The thesis
+trains with RMSprop and 126,000 episodes; this training uses AdamW and as many episodes as two cores can play. The
+weights of imitation stay if practice earns no more on the tasks for validation.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ VALIDATION = 30
 
 @dataclass(frozen=True)
 class Lesson:
-    """A task that the planner is to do beside the human-like agent, its choices noted."""
+    """A task that the planner does next to the human-like agent, with its choices recorded."""
 
     task: Task
     words: Words
@@ -55,7 +55,7 @@ class Lesson:
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is practised.
+    """The amount of practice.
 
     Attributes:
         imitation: passes over the planner's choices.
@@ -73,11 +73,11 @@ class Effort:
 
 
 EFFORTS = {"subgoals": Effort(), "actions": Effort(imitation=9, epochs=2, updates=5)}
-"""What two cores give in some minutes."""
+"""Amounts of training that two cores manage in some minutes."""
 
 
 def lesson(given: Lesson) -> tuple[list[Trace], list[Trace]]:
-    """What the planner chose in an episode: subgoals, and actions for each of them."""
+    """Return the planner's choices in an episode: subgoals, and actions for each of them."""
     main = HumanLike()
     shown = ShownChoices(given.words, main)
     done = beside(given.task, main, shown, given.known, 0)
@@ -89,7 +89,7 @@ def lesson(given: Lesson) -> tuple[list[Trace], list[Trace]]:
 
 
 def beside(task: Task, main: HumanLike, helper: Any, known: Known, seed: int) -> Played:
-    """An episode in which a helper is told the true goal."""
+    """Play an episode in which a helper knows the true goal."""
     which, knowledge = challenge(task.challenge), known()
     start = start_of(task, knowledge, None)
     goal = task.goal_in(start.home)
@@ -113,7 +113,7 @@ def high_rewards(done: Played) -> list[float]:
 
 
 def traced(choices: Sequence[Choice], rewards: Sequence[float]) -> Trace:
-    """Choices with what came of them."""
+    """Return choices with their returns."""
     from hearth.models.helping.actor_critic import discounted
 
     returns = discounted(rewards, [each.tick for each in choices], DISCOUNT)
@@ -261,7 +261,7 @@ def _score(rollout: Rollout, tasks: Sequence[Task]) -> float:
 
 
 def _helping(policy: TrainedPolicy, known: Known, task: Task, seed: int) -> tuple[list[Trace], float]:
-    """An episode of Hybrid beside the human-like agent."""
+    """Play an episode of Hybrid next to the human-like agent."""
     helper = Hybrid(policy)
     done = beside(task, HumanLike(), helper, known, seed)
     rewards = high_rewards(done)

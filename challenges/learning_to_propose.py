@@ -28,7 +28,7 @@ RATE = 0.0009
 
 @dataclass(frozen=True)
 class Wish:
-    """An episode to be played: a task, and what gives the knowledge."""
+    """An episode to be played: a task, and the source of the knowledge."""
 
     task: Task
     known: Known

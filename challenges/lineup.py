@@ -1,4 +1,4 @@
-"""Who takes part in episodes: agents by name, or somebody's own, and what the helper is asked to do."""
+"""The agents of episodes: agents by name or the user's own, and the goal of the helper."""
 
 from __future__ import annotations
 
@@ -22,21 +22,22 @@ from hearth.schemas.libraries import lacking, remedy
 from hearth.storage.files import file_digest
 
 NOBODY = "none"
-"""The helper of who acts alone."""
+"""The helper's name for a main agent that acts alone."""
 
 GOALS = ("true", "inferred", "inferred_states", "random", "none")
-"""What a helper may be asked to do: the main agent's goal, what counting or the network of models infers of it from a
-demonstration, another task's goal, nothing.
+"""The goals that a helper may have.
+
+The main agent's, the goal that counting or a network infers from a demonstration, another task's goal, none.
 """
 
 
 @dataclass(frozen=True)
 class Lineup:
-    """Who takes part.
+    """The agents that take part.
 
     Attributes:
         main: the agent that is helped, by name.
-        helper: who helps, by name; `none`, or `FILE.py:CLASS` for an agent of one's own.
+        helper: the helper's name; `none`, or `FILE.py:CLASS` for the user's own agent.
         goal: what the helper is asked to do; as its row in the registry says where empty.
         seconds: an agent may think about a tick as long as this.
     """
@@ -130,7 +131,7 @@ class Lineup:
         return found
 
     def _own(self, which: Challenge) -> Agent:
-        """A helper that is made without its partner: one that is not told the goal, or somebody's own."""
+        """Return a helper that is made without its partner: one that does not know the goal, or the user's own."""
         if self.helper in ONLINE:
             return ONLINE[self.helper].make(which.goals_in)
         made = load(self.helper)

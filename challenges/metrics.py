@@ -1,4 +1,4 @@
-"""How good a helper is: of one episode, and of many with standard errors over tasks (thesis 6.5.1)."""
+"""Scores of a helper: for one episode, and for many with standard errors over tasks (thesis 6.5.1)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hearth.challenges.definition import Challenge
 from hearth.challenges.failure_analysis import NAMES, Columns
 
 PER_TICK = 0.004
-"""What each tick costs of the reward."""
+"""Price of a tick, in units of the reward."""
 
 
 @dataclass(frozen=True, slots=True)

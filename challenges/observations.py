@@ -1,4 +1,4 @@
-"""What an agent sees as a JSON-able mapping. Every field is made of what it sees: nothing else changes a byte of it."""
+"""An agent's observation as a JSON-able mapping. Every field depends on the visible nodes alone."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class SeenLiteral:
     Attributes:
         literal: as the goal has it.
         wanted: how often it must hold; of a negated one, of all that the agent sees.
-        seen: how often it holds among what the agent sees; None of a literal about what is done.
+        seen: how often it holds among the visible nodes; None of a literal about actions.
     """
 
     literal: Literal[Name]
@@ -63,7 +63,10 @@ def seen_instances(name: str, home: Home, mask: int) -> int:
 
 
 def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:
-    """What an agent sees: `tick`, `me`, `others`, `messages`, `goal` and `graph`, the last in the form of the release.
+    """Return an agent's observation: `tick`, `me`, `others`, `messages`, `goal` and `graph`.
+
+    The graph is in the form of the release. A box has the place of a thing at the start, so a thing that was carried
+    elsewhere has none.
 
     A box is where a thing stood at the start, so things that were carried elsewhere have none.
     """

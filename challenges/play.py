@@ -26,7 +26,7 @@ class Player:
     """An agent in an episode.
 
     Attributes:
-        agent: who decides.
+        agent: the agent that decides.
         goal: what it is asked to reach; None if nothing.
         partial: whether it sees only what is around it; as the episode has it where None.
     """
@@ -107,14 +107,14 @@ class Playing:
         return self.progress[-1].satisfied or len(self.env.ticks) >= self.limit
 
     def view(self, number: int) -> View:
-        """What a player sees now."""
+        """Return a player's current observation."""
         self.env.partial = self._partial[number]
         seen = self.env.observe(number)
         last = self.said[-1] if self.said else {}
         return replace(seen, messages=tuple((n, said) for n, said in last.items() if n != number)) if last else seen
 
     def legal(self, number: int) -> Legal:
-        """What a player may do now."""
+        """Return a player's currently legal actions."""
         self.env.partial = self._partial[number]
         return self.env.legal(number, actions=self._allowed)
 
@@ -145,7 +145,7 @@ def play(
     Args:
         start: a world in which character n belongs to player n.
         goal: what ends the episode; progress is counted in the real world only.
-        players: who acts.
+        players: the agents that act.
         seed: of the episode; each agent gets one derived from it.
         actions: what may be tried; everything where None.
         partial: whether agents see only what is around them.

@@ -36,7 +36,7 @@ class Demonstration:
     habits: tuple[tuple[int, str], ...]
 
     def ticks(self, knowledge: Knowledge) -> list[Tick]:
-        """What happened, done again."""
+        """Replay the demonstration and return its ticks."""
         which = challenge(self.task.challenge)
         env = Env(which.rules, which.partial)
         env.restore(self.task.demonstration_start(knowledge))

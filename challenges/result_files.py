@@ -27,11 +27,11 @@ MOST_SEEDS = 1_000
 
 @dataclass(frozen=True)
 class Header:
-    """What was run.
+    """The description of a run.
 
     Attributes:
         suite: the tasks.
-        lineup: who took part; names only.
+        lineup: the agents that took part; names only.
         seeds: episodes of each task, numbered from 0.
         version: of Hearth.
         episodes: task, seed and kind of those that there are; None where there are all. People do not do all.
@@ -103,7 +103,7 @@ class FileRecords(Collection[Record]):
 
 @dataclass(frozen=True)
 class Results:
-    """What came of a run.
+    """The results of a run.
 
     Attributes:
         header: what was run.
@@ -119,7 +119,7 @@ class Results:
 
 
 def line(header: Header, record: Record) -> bytes:
-    """An episode as a line, with a digest of itself and of what was run."""
+    """Return an episode as a line, with a digest of itself and of its run's description."""
     import orjson
 
     data = episode_data(record)

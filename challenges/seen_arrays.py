@@ -1,4 +1,4 @@
-"""What an agent sees, as padded arrays; one row for each slot (see `slots`), zeros where nothing is seen.
+"""An agent's observation as padded arrays; one row for each slot (see `slots`), zeros where nothing is visible.
 
 Of a partial view only what it shows is in the arrays: scrambling the rest of the world changes no byte of them.
 """
@@ -68,7 +68,7 @@ class Sizes:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """What never changes in a home, by slot.
+    """The constant facts about a home, by slot.
 
     Attributes:
         slots: of the home.
@@ -124,7 +124,7 @@ class Encoder:
         }
 
     def rows(self, home: Home, things: Iterable[str | int] | None = None) -> Rows:
-        """What `arrays` needs of a home.
+        """Return the facts about a home that `arrays` needs.
 
         Args:
             home: the home.
@@ -151,7 +151,7 @@ class Encoder:
         Args:
             view: what an agent sees.
             rows: of its home.
-            progress: of the goal that the agent is told; None where it is told none.
+            progress: of the goal that the agent knows; None where it knows none.
             time: the part of the episode that has passed.
 
         Raises:
@@ -209,7 +209,7 @@ class Encoder:
 
 
 def _places(view: View, rows: Rows) -> NDArray[np.float32]:
-    """Return where things are: with who holds them, where they have been put, or where the home has them."""
+    """Return the places of nodes: with their holders, at their targets, or as the home has them."""
     world = view.world
     here = ground_of(world.home)
     found = rows.places.copy()

@@ -74,14 +74,14 @@ MOST_SEED = 2**63 - 1
 
 @dataclass(frozen=True)
 class Setting:
-    """How episodes are played.
+    """Settings of episodes.
 
     Attributes:
-        opening: where they begin, and what is wanted.
-        actions: names of what may be tried; None: those of challenges (see `action_codes.played`).
+        opening: the start of an episode, and its goal.
+        actions: names of the actions that may be tried; None: those of challenges (see `action_codes.played`).
         code: how instructions are numbered (see `action_codes`): `triples`, `listed`, or an `ActionCode`.
         partial: whether agents see only what is around them.
-        told: the agents that are told the goal; all of them where None.
+        told: the agents that know the goal; all of them where None.
         limit: ticks after which an episode is cut off.
         rewards: of a tick.
         rules: of actions.
@@ -188,7 +188,7 @@ class Session:
         return len(self.env.ticks) >= self.setting.limit and not self.succeeded
 
     def seen(self, agent: int) -> tuple[View, Legal]:
-        """What an agent sees and could do now."""
+        """Return an agent's observation and its legal actions."""
         if agent not in self._seen:
             self._seen[agent] = self.env.observe(agent), self.env.legal(agent, actions=self.names)
         return self._seen[agent]
@@ -202,7 +202,7 @@ class Session:
         return {**arrays, **self.code.masks(legal, self.rows.slots)}
 
     def info(self, agent: int) -> dict[str, Any]:
-        """What is not for the agent's eyes.
+        """Return facts about an episode that the agent must not observe.
 
         Returns:
             `legal`, how many instructions it could do; `left_out`, how many of them have no number; `failure`, why its
@@ -224,7 +224,9 @@ class Session:
         return ["wait", *map(str_step, self.rows.slots.instructions(legal))]
 
     def read(self, agent: int, number: Number) -> Step | Failure | None:
-        """The instruction of an agent's number; a failure, where it has none now or is about what the agent cannot see.
+        """Return the instruction of an agent's number.
+
+        A number without an instruction now, or about a node that the agent does not see, gives a failure.
 
         Raises:
             HearthError: UNKNOWN_AGENT; BAD_ARGUMENT, where it is not in the action space.
@@ -244,7 +246,7 @@ class Session:
         return found
 
     def step(self, numbers: Mapping[int, Number]) -> dict[int, float]:
-        """Let agents act; who has no number waits. Nothing is done where a number is refused.
+        """Let agents act; an agent without a number waits. If a number is refused, no agent acts.
 
         Returns:
             The reward of each agent.

@@ -93,7 +93,7 @@ class HomeEnv(Env[Arrays, Number]):
         return self._now()
 
     def step(self, action: Number) -> tuple[Arrays, float, bool, bool, dict[str, Any]]:
-        """One tick: the learner's action, and what its partners choose.
+        """Run one tick: the learner's action, and its partners' choices.
 
         Raises:
             HearthError: OUT_OF_ORDER before the first `reset`; BAD_ARGUMENT, where the action is not in its space. The

@@ -21,7 +21,7 @@ from hearth.storage.input_files import read_lines
 from hearth.storage.parallel import Seen, unseen
 
 INFERRED = {"inferred": "actions", "inferred_states": "states"}
-"""How the demonstration is read, by what the helper is asked to do (see `agents.demonstrations`)."""
+"""The method that reads the demonstration, by the helper's kind of goal (see `agents.demonstrations`)."""
 
 
 def run(
@@ -42,7 +42,7 @@ def run(
 
     Args:
         suite: the tasks.
-        lineup: who takes part.
+        lineup: the agents that take part.
         seeds: episodes of each task.
         out: the file of results.
         known: gives the knowledge.
@@ -113,7 +113,7 @@ def _jobs(header: Header, known: Known, workers: int) -> list[Job]:
 
 
 def helper_goal(kind: str, task: Task, seed: int, tasks: Sequence[Task]) -> Goal | None:
-    """What the helper is asked to do, if that need not be inferred; a random goal is that of another of the tasks."""
+    """Return the helper's goal, if it need not be inferred; a random goal is that of another of the tasks."""
     if kind == "true":
         return task.goal
     if kind == "none" or kind in INFERRED:

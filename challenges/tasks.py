@@ -1,4 +1,4 @@
-"""Tasks: who is where, what one wants, and the home in which another may have seen it done."""
+"""Tasks: the places of the agents, the main agent's goal, and the home of a demonstration of it."""
 
 from __future__ import annotations
 

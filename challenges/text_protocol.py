@@ -58,7 +58,7 @@ class TextAgent:
         self._goal: Goal | None = None
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
-        """Begin an episode; the seed is for whoever answers."""
+        """Begin an episode; the seed is for the function that answers."""
         self.faults, self._goal = [], goal
 
     def act(self, observation: View, legal: Legal) -> Choice:
@@ -106,7 +106,10 @@ def understood(answer: str, view: View, legal: Legal, options: Sequence[Step], m
 
 
 def description(view: View, goal: Goal | None = None) -> str:
-    """What an agent sees, as lines of English; numbers are node ids. States that are usual are left out (`USUAL`)."""
+    """Return an agent's observation as lines of English; numbers are node ids.
+
+    States that are usual are left out (`USUAL`).
+    """
     me = view.me
     lines = [f"Tick {view.tick}. You are agent {view.agent}, {_where(me, view)}{_place(me)}."]
     lines.append(f"You hold {_things(me.holding, view)}." + _worn(me, view))
@@ -213,7 +216,7 @@ _ROOM, _THING, _STRUCTURE = range(3)
 
 
 def _kind(step: Step, view: View) -> int:
-    """What an instruction is about: a room, a thing, or a wall or a floor."""
+    """Return the kind of an instruction's node: a room, a thing, or a wall or a floor."""
     home = view.world.home
     nodes = [home.index[ref.node] for ref in step.objects if ref.node is not None]
     if any(home.rooms >> i & 1 for i in nodes):

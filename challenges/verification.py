@@ -1,4 +1,4 @@
-"""Whether results are true: every episode is done again, and every metric computed again."""
+"""The verification of results: every episode is replayed, and every metric computed again."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, spread, unseen
 
 MOST_AT_ONCE = 40
-"""Episodes of a task that one process does again before it says what it found."""
+"""Episodes of a task that one process replays before it reports its findings."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """Episodes of one task that are to be done again.
+    """Episodes of one task that are to be replayed.
 
     Attributes:
         task: theirs.
@@ -85,7 +85,7 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
     tasks = {task.id: task for task in header.suite.tasks}
     grammar = challenge(header.suite.challenge).grammar
     if agents and ":" in header.lineup.helper:  # a file of results, perhaps a stranger's, names no code that is run
-        message = f"the helper `{header.lineup.helper[:60]}` is not one of ours, and is not run by what a file says"
+        message = f"the helper `{header.lineup.helper[:60]}` is not one of ours, and results name no code to run"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="verify without --agents")
     lineup = header.lineup.checked() if agents else header.lineup
     for name, group in groupby(results.records, lambda each: each.task):
@@ -98,7 +98,7 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
 
 
 def differences(check: Check) -> tuple[int, list[str]]:
-    """Return how many episodes of a task were done again, and what was different then."""
+    """Return how many episodes of a task were replayed, and the differences."""
     found = []
     # Those without a helper first, then those with one: their starts differ.
     for number, record in sorted(enumerate(check.records), key=lambda pair: pair[1].helped):

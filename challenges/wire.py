@@ -142,11 +142,11 @@ class WireAgent:
 
 
 def read_answer(line: bytes, agent: int) -> tuple[int, int | str | None]:
-    """The tick of an answer and what is to be done: a number, a text, or None to wait.
+    """Return the tick of an answer and its choice: a number, a text, or None to wait.
 
     Args:
         line: as it came.
-        agent: who is asked; an answer may name it.
+        agent: the agent that is asked; an answer may name it.
 
     Raises:
         HearthError: BAD_JSON; UNKNOWN_AGENT; BAD_ARGUMENT, of a field that is missing or of a wrong kind.
