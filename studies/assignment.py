@@ -1,4 +1,4 @@
-"""Who does what: every task under every condition equally often, and every person under every condition, too.
+"""The assignment of tasks: every task under every condition equally often, and every person under every condition.
 
 Trials stand in one row, number i under condition i mod C; the task moves on by one as well, and by one more each time
 that both would begin anew, so that all pairs come up. A person has a stretch of the row: stretches hold each condition
@@ -135,7 +135,7 @@ LOOKED = 300_000
 
 
 def imbalances(study: Study, slots: Slots) -> list[str]:
-    """What is not balanced in an assignment; empty where all is."""
+    """Return the imbalances of an assignment; none if it is balanced."""
     found = []
     pairs = Counter((each.item, each.condition) for slot in slots for each in slot)
     if set(pairs.values()) != {study.repeats} or len(pairs) != study.items * len(study.conditions):

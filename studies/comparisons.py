@@ -1,5 +1,7 @@
-"""Tests of a study: paired two-tailed t-tests and the normality of their residuals, as the thesis has them (6.6, B.4.4,
-C.5.2), with what it lacks: differences, effect sizes, and intervals of 95 %.
+"""Tests of a study, as the thesis has them (6.6, B.4.4, C.5.2).
+
+These are paired two-tailed t-tests and the normality of their residuals. Differences, effect sizes and intervals of 95
+% are added; the thesis lacks them.
 
 scipy has all of it. statsmodels was weighed and left out: what it would add, mixed models, the thesis does not report,
 and pairs by task take care of tasks that differ.
@@ -25,7 +27,7 @@ class Comparison:
 
     Attributes:
         metric: what is compared.
-        one, other: of what.
+        one, other: the two sides of the comparison.
         pairs: how many.
         difference, low, high: mean of one less other, and its interval.
         t, freedom, p: of the paired two-tailed t-test.

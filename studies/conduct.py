@@ -1,4 +1,4 @@
-"""A study as it goes on: who is where in it, and what may come next; for people and for agents in their places."""
+"""A study under way: each person's stage, and the possible next events; for people and for agents in their places."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from hearth.studies.study_trials import checked
 CONSENT, TUTORIAL, PRACTICE, TRIAL, QUESTIONS, EXIT, DONE, LEFT = STAGES = (
     "consent", "tutorial", "practice", "trial", "questions", "exit", "done", "left",
 )  # fmt: skip
-"""Where a person may be in a study, in this order."""
+"""The stages of a person in a study, in this order."""
 
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """Where a person is in a study.
+    """The stage of a person in a study.
 
     Attributes:
         person: the id.
@@ -86,11 +86,11 @@ class Conduct:
         return next(self._open_places(self.ledger.read(PLACES)), None) is not None
 
     def _open_place(self, joined: Sequence[Event]) -> int | None:
-        """The place that the next gets; who gave no sign there for too long has left from now on."""
+        """Return the place of the next person; a person silent there for too long counts as having left from now on."""
         return next((place for place, person in self._open_places(joined) if not person or self._gone(person)), None)
 
     def _open_places(self, joined: Sequence[Event]) -> Iterator[tuple[int, str]]:
-        """The places that are open, each with who has had it last and is to be counted as gone, if anybody."""
+        """Yield the open places, each with the last person there who is to be counted as gone, if there is one."""
         last = {each.data["place"]: each for each in joined}
         yield from ((place, "") for place in range(len(self.slots)) if place not in last)
         for event in sorted(last.values(), key=lambda each: each.number):
@@ -119,7 +119,10 @@ class Conduct:
         return max([each.at for each in standing.events] or [self.joined_at(standing.person)])
 
     def code(self, person: str) -> str:
-        """The code of a person: what the person is given at the end, and what desk and tables have as the id."""
+        """Return the code of a person.
+
+        The person gets the code at the end, and the desk and the tables have it as the id.
+        """
         return salted(self.ledger.secret("participants"), person)
 
     def joined_at(self, person: str) -> float:
@@ -149,7 +152,7 @@ class Conduct:
         return self.study.condition(self.trial(standing).condition)
 
     def questions(self, standing: Standing) -> tuple[Question, ...]:
-        """What is asked now."""
+        """Return the present questions."""
         if standing.stage == EXIT:
             return self.study.exit
         return self.study.asked(self.condition(standing)) if standing.stage == QUESTIONS else ()
@@ -173,7 +176,7 @@ class Conduct:
 
         Args:
             person: who.
-            record: all that was done, as `result_files.episode_data` writes it; it is done again here.
+            record: all actions, as `result_files.episode_data` writes them; they are replayed here.
             seconds: that it took.
             times: when the person decided in each tick, in seconds since it was begun; none where that is not known.
 
@@ -213,7 +216,8 @@ class Conduct:
         return self._append(standing, "answered", {**named, "answers": given})
 
     def leave(self, person: str, why: str = "left") -> Standing:
-        """A person leaves; the place is given to the next who joins. Who is done has nothing to leave."""
+        """Let a person leave; the place goes to the next person who joins. A person who is done has nothing to leave.
+        """
         standing = self.standing(person)
         if standing.stage in (DONE, LEFT):
             return standing

@@ -26,11 +26,11 @@ _FIELDS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
     "left": {"why": str},
     "finished": {"answers": dict},
 }
-"""What the data of every kind of event has."""
+"""The data of every kind of event."""
 
 
 _METRICS = {"success", "ticks", "length", "reward"}
-"""What every record says of its episode."""
+"""The metrics in every record of an episode."""
 
 
 def check_events(study: Study, slots: Slots, ledger: Ledger, file: str) -> None:

@@ -1,4 +1,4 @@
-"""What happened in a study, one event after another: nothing else is kept, and all else follows from it."""
+"""The events of a study, one after another: nothing else is kept, and all else follows from them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from hearth.storage.files import sync_folder, value_digest, write_bytes
 from hearth.storage.input_files import LARGEST_TABLE, read_input
 
 PLACES = "places"
-"""The stream of who took which place; every other stream is a person's."""
+"""The stream of places that people took; every other stream is a person's."""
 
 KINDS = ("joined", "consented", "read", "practised", "did", "answered", "left", "finished")
-"""What may happen: `joined` in the stream of places, the others in a person's."""
+"""The kinds of events: `joined` in the stream of places, the others in a person's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Event:
 
 
 class Ledger(Protocol):
-    """Where events are kept; `study_store` of the server keeps them in a database, `FileLedger` in a file."""
+    """The storage of events; `study_store` of the server keeps them in a database, `FileLedger` in a file."""
 
     def streams(self) -> list[str]:
         """The streams of people, in the order in which they began."""

@@ -1,4 +1,4 @@
-"""What people judge: films of episodes by people and agents, or of programs that were written for descriptions."""
+"""The films that people judge: of episodes by people and agents, or of programs written for descriptions."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class JudgedFilm:
         condition: whose it is, a condition's name.
         name: of its file.
         group: what films are compared by: the condition, or the band of a program.
-        about: what people read beside it: the goal, or the description.
+        about: the text that people read next to it: the goal, or the description.
         home: where it is.
         measure: what it is worth by itself: the ticks of an episode, or the normalised LCS of a program.
         content: the episode's record, or the program's lines.
@@ -77,7 +77,7 @@ _MOST = {"condition": 60, "name": 70, "group": 60, "about": 10_000, "home": 200}
 
 
 def _fault_of(film: Any) -> str:
-    """What is wrong with a film as JSON; "" where nothing is."""
+    """Return the fault of a film as JSON; "" if there is none."""
     if not isinstance(film, dict) or film.keys() != {each.name for each in fields(JudgedFilm)}:
         return "it has other keys than a film"
     for name, most in _MOST.items():

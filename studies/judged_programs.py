@@ -25,7 +25,7 @@ from hearth.studies.judged_films import JudgedFilm
 from hearth.studies.study import Band, Study
 
 HOMES = ("rowan", "willow")
-"""Where programs are filmed: the homes of testing."""
+"""The homes in which programs are filmed: the homes of testing."""
 
 DRAWN = 600
 """Synthetic programs that are drawn, of which those that fit are damaged."""

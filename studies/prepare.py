@@ -1,4 +1,4 @@
-"""What a study with people needs before it begins: the agent's episodes in its tasks, and the films that are judged."""
+"""The preparation of a study with people: the agent's episodes in its tasks, and the films to judge."""
 
 from __future__ import annotations
 

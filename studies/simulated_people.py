@@ -19,7 +19,7 @@ BIAS, NOISE = 0.5, 0.7
 """Standard deviations of a person's own bias and of chance, in steps of a scale."""
 
 SECONDS_A_TICK = 3.0
-"""How long a simulated person takes for a decision."""
+"""Time of a simulated person for a decision, seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def simulated_person(seed: int, number: int) -> SimulatedPerson:
 
 @dataclass(frozen=True, slots=True)
 class Impression:
-    """What a simulated person's rating is about, each from 0 to 1; 0.5 is neither good nor bad.
+    """The grounds of a simulated person's rating, each from 0 to 1; 0.5 is neither good nor bad.
 
     Attributes:
         knew: F1 of the helper's goal with the true one; 0.5 for a helper that is not given a goal.
@@ -68,7 +68,7 @@ class Impression:
     looks: float = 0.5
 
     def of(self, question: str) -> float:
-        """What a question is about: `trust` is about the worse of knowledge and help."""
+        """Return the ground of a question: for `trust`, the worse of knowledge and help."""
         about = {"knew": self.knew, "helpful": self.helpful, "trust": min(self.knew, self.helpful)}
         return about.get(question, self.looks)
 

@@ -1,4 +1,4 @@
-"""A study: who does or judges what, under which conditions, and what they are asked (thesis 6.6, B.4, C.5)."""
+"""A study: its people's tasks, under its conditions, and its questions (thesis 6.6, B.4, C.5)."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from typing import Literal
 
 PLAY, JUDGE = "play", "judge"
 ROOMS = (PLAY, JUDGE)
-"""What people do: act in homes, or judge films."""
+"""The tasks of people: to act in homes, or to judge films."""
 
 EPISODES, PROGRAMS = "episodes", "programs"
 SOURCES = (EPISODES, PROGRAMS)
-"""What films show: people and agents at tasks, or programs that were written for descriptions."""
+"""The contents of films: people and agents at tasks, or programs that were written for descriptions."""
 
 FILM, REPLAY = "film", "replay"
 SHOWN = (FILM, REPLAY)
-"""How what is judged is shown: as a film that was made before, or in 3D in the browser, to be seen from anywhere."""
+"""The presentation to judges: a film that was made before, or 3D in the browser, seen from anywhere."""
 
 AFTER = ("trial", "helped")
-"""When a question is asked: after every trial, or after those with a helper."""
+"""The times of a question: after every trial, or after trials with a helper."""
 
 Kind = Literal["scale", "choice", "text"]
 
@@ -59,7 +59,7 @@ class Question:
     after: str = "trial"
 
     def fault(self, answer: object) -> str:
-        """What is wrong with an answer; "" where nothing is."""
+        """Return the fault of an answer; "" if there is none."""
         if answer is None or answer == "":
             return "it needs an answer" if self.required else ""
         if self.kind == "scale":
@@ -82,7 +82,7 @@ class Condition:
     Attributes:
         name: in tables.
         title: in reports.
-        helper, goal: who helps, and what it is asked to do (see `challenges.lineup.Lineup`); nobody where `none`.
+        helper, goal: the helper and its goal (see `challenges.lineup.Lineup`); no helper where `none`.
         actor: whose episodes films show: `person` or `agent`; "" where people play.
     """
 
@@ -128,7 +128,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Films:
-    """What is judged.
+    """The films to judge.
 
     Attributes:
         of: one of `SOURCES`.
@@ -160,7 +160,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Study:
-    """What a study's file says.
+    """The contents of a study's file.
 
     Attributes:
         name: its identifier.

@@ -47,7 +47,7 @@ def own_figure(study: str) -> str:
 
 
 def names_of(found: Findings) -> dict[str, str]:
-    """Who acted, in words."""
+    """Return the names of the actors, in words."""
     return {PEOPLE: "simulated people" if found.simulated else "people", AGENT: "human-like agent"}
 
 
@@ -129,7 +129,7 @@ def _ratings(axes: Any, found: Findings) -> None:
 
 
 def online(found: Findings, alone: Findings | None) -> Drawing:
-    """Figure 7-6: speedup with helpers that are not given the goal; b) is of people, a) of the agent beside it."""
+    """Figure 7-6: speedup with helpers that are not given the goal; b) is of people, a) of the agent."""
     figure: Drawing = library("matplotlib.figure").Figure(figsize=(7, 4), layout="constrained")
     axes = figure.subplots()
     helped = [(found, each.name, each.title) for each in found.study.conditions if each.helped]
@@ -178,4 +178,4 @@ FIGURES: dict[str, Callable[[Findings, Findings | None], Any]] = {
     "4-9": by_band,
     "likeness": likeness,
 }
-"""How each figure is drawn."""
+"""The function that draws each figure."""

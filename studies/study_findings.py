@@ -1,4 +1,4 @@
-"""What came of a study: success, speedup, reward and ratings with standard errors, and the thesis's tests."""
+"""The results of a study: success, speedup, reward and ratings with standard errors, and the thesis's tests."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from hearth.studies.study_tables import Rows
 PUBLISHED: dict[str, list[dict[str, str]]] = packaged("hearth.studies", "published_tests.yaml")
 
 PEOPLE, AGENT = "people", "agent"
-"""Who acted: the study's people, real or simulated, or the human-like agent in the same tasks."""
+"""The actors: the study's people, real or simulated, or the human-like agent in the same tasks."""
 
 METRICS = ("success", "speedup", "reward", "length")
 
@@ -44,7 +44,7 @@ def figure_of(values: Mapping[Any, float]) -> Figure | None:
 
 @dataclass(frozen=True)
 class Findings:
-    """What came of a study.
+    """The results of a study.
 
     Attributes:
         study: the design.
@@ -74,7 +74,7 @@ class Findings:
 
     @property
     def groups(self) -> list[tuple[str, str]]:
-        """What is compared, name and title: conditions, or bands of programs."""
+        """Return the compared groups, name and title: conditions, or bands of programs."""
         films = self.study.films
         if films is not None and films.bands:
             return [(each.name, each.title) for each in films.bands]
@@ -82,7 +82,7 @@ class Findings:
 
 
 def findings(collected: Collected, alone: Collected | None = None) -> Findings:
-    """What came of a study.
+    """Return the results of a study.
 
     Args:
         collected: the study with all that was collected.
@@ -161,7 +161,7 @@ def scales(study: Study) -> list[str]:
 
 
 def published(study: str, metric: str, condition: str) -> str:
-    """What the thesis reports of people and agent under a condition."""
+    """Return the thesis's report on people and agent under a condition."""
     rows = PUBLISHED.get(study, ())
     found = (row["text"] for row in rows if (row.get("metric", ""), row["condition"]) == (metric, condition))
     return next(found, "")

@@ -60,7 +60,7 @@ class Collected:
         return self.conduct.ledger
 
     def records(self, finished: bool = True) -> dict[str, list[Record]]:
-        """What people did, by task; only who finished, unless all are asked for."""
+        """Return people's records, by task; only of people who finished, unless all are asked for."""
         found = defaultdict(list)
         for person in self.ledger.streams():
             if not finished or self.conduct.standing(person).finished:
@@ -88,7 +88,8 @@ def opened(folder: Path, known: Known) -> Collected:
 
 
 def beside(collected: Collected) -> Collected | None:
-    """The simulated study, in the folder beside, whose lengths are those without a helper; None where there is none."""
+    """Return the simulated study, in the neighboring folder, with the lengths without a helper; None if there is none.
+    """
     name = collected.study.alone
     if not name or collected.folder is None:
         return None
@@ -119,7 +120,7 @@ def related(study: Study, files: Path | None) -> Study | None:
 def references(
     study: Study, folder: Path, known: Known, workers: int = 1, watch: Callable[[str], Seen] | None = None
 ) -> dict[str, Results]:
-    """What the human-like agent does in the same tasks under the same conditions; what the folder has is kept.
+    """Return the human-like agent's results in the same tasks and conditions; results in the folder are kept.
 
     Args:
         study: whose tasks and conditions are meant.

@@ -50,7 +50,7 @@ def page(found: Findings, pictures: list[str]) -> str:
 
 
 def failures(found: Findings) -> list[str]:
-    """What is said of the helpers that could not go on, a line for each condition."""
+    """Return the notes about helpers that could not go on, a line for each condition."""
     titles = dict(found.groups)
     return [
         f"{titles[name]}: the helper failed in {count} {'trial' if count == 1 else 'trials'}. "

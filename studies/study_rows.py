@@ -1,4 +1,4 @@
-"""A row of every table that `study export` writes; each column has its meaning beside its type."""
+"""A row of every table that `study export` writes; each column has its meaning next to its type."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class StudyTrialRow(TypedDict):
 
 
 class DecisionRow(TypedDict):
-    """What the person or the helper tried in a tick of a trial."""
+    """The attempt of the person or the helper in a tick of a trial."""
 
     study: Annotated[str, "name of the study"]
     participant: Annotated[str, "whose trial"]

@@ -138,7 +138,7 @@ class Rows:
                 }
 
     def decisions(self, knowledge: Knowledge) -> Iterator[Mapping[str, Any]]:
-        """A row for what each agent tried in each tick."""
+        """Yield a row for each agent's attempt in each tick."""
         for standing in self.standings:
             for number, event in enumerate(_of_kind(standing, "did")):
                 if "record" not in event.data:
@@ -190,7 +190,7 @@ class Rows:
 
 
 def helper_fault(data: Mapping[str, Any]) -> str:
-    """The code of what the helper failed with, if that ended a trial, by the data of its event; "" otherwise."""
+    """Return the code of the helper's failure, if that ended a trial, by the data of its event; "" otherwise."""
     end = (data.get("record") or {}).get("end")
     return str(end["code"]) if end and end.get("agent") == HELPER else ""
 
@@ -206,7 +206,7 @@ def _trial_of(standing: Standing, item: int, condition: str) -> int:
 
 
 def person_of(collected: Collected, given: str) -> str:
-    """Who is meant by an id of the tables, or by the id of a session.
+    """Return the person with an id of the tables, or with the id of a session.
 
     Raises:
         HearthError: UNKNOWN_ID: nobody of this id takes part.

@@ -1,4 +1,4 @@
-"""Trials of a study as episodes of tasks: played by people or by agents, and checked by doing them again."""
+"""Trials of a study as episodes of tasks: played by people or by agents, and checked by a replay."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def check_helpers(study: Study) -> None:
 
 
 def lineup_of(condition: Condition) -> Lineup:
-    """Who takes part under a condition; the person is in the place of the human-like agent."""
+    """Return the agents under a condition; the person is in the place of the human-like agent."""
     return Lineup(helper=condition.helper, goal=condition.goal).checked()
 
 
@@ -92,7 +92,7 @@ def _inferred(task: Task, reader: str, known: Known) -> Goal:
 
 
 def checked(study: Study, planned: Planned, given: Mapping[str, Any], knowledge: Knowledge) -> dict[str, Any]:
-    """A record of a trial, with the metrics that come of doing again what was done.
+    """Return a record of a trial, with the metrics of a replay of its actions.
 
     Raises:
         HearthError: BAD_JSON: it is not a record; REPLAY_DIFFERS: it is one of another trial, or ends in another world.

@@ -1,4 +1,4 @@
-"""The server as one ASGI application: rooms, start page, desk, files, and what a request must pass."""
+"""The server as one ASGI application: rooms, start page, desk, files, and the checks on every request."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from hearth.schemas.failures import Code
 from hearth.web.store import private
 
 COOKIE = "hearth_desk"
-"""The cookie of who has entered the desk."""
+"""The cookie of a researcher who has entered the desk."""
 
 VARIABLE = "HEARTH_DESK_TOKEN"
 """The environment variable with the token, for servers on many machines."""

@@ -1,4 +1,4 @@
-"""How much and how fast one sender may ask."""
+"""Limits on the size and the rate of one sender's requests."""
 
 from __future__ import annotations
 

@@ -61,5 +61,5 @@ class Link:
 
 
 def nobody() -> WebError:
-    """The refusal of whoever has no session."""
+    """Return the refusal for a sender without a session."""
     return WebError(Code.NO_SESSION, "session", "the token of a session", "none, or an unknown one")

@@ -26,7 +26,7 @@ class Inbox:
         self._rate = rate or Rate(each_second=60, burst=120)
 
     def take(self, raw: str | bytes) -> dict[str, Any]:
-        """The message in what came.
+        """Return the message in the received data.
 
         Raises:
             WebError: FILE_TOO_LARGE, TOO_FAST, BAD_JSON, BAD_ARGUMENT or OUT_OF_ORDER.

@@ -19,11 +19,11 @@ from hearth.web.visit import Handler, Web
 
 
 class Who(Enum):
-    """Who may ask for an address."""
+    """The people who may ask for an address."""
 
     ANYONE = "anyone"
     PERSON = "a person with a session"
-    RESEARCHER = "who has the desk's token"
+    RESEARCHER = "a researcher with the desk's token"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ def socket(path: str, handler: Callable[[Any], Awaitable[None]]) -> Address:
 
 
 def _nothing(web: Web) -> None:
-    """What most rooms do when a server starts."""
+    """Do nothing, as most rooms do when a server starts."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What holds for every answer and every request, before any room sees it: headers, hosts, origins."""
+"""The rules for every answer and every request, before any room sees it: headers, hosts, origins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where everything is kept: one database, embedded (SQLite) or of many machines (PostgreSQL), one schema.
+"""The store of all data: one database, embedded (SQLite) or of many machines (PostgreSQL), one schema.
 
 A write is one transaction, isolated from all others and on the disk when it returns: what was accepted survives a kill.
 """
@@ -46,7 +46,7 @@ class Store:
 
     def __init__(self, url: str) -> None:
         self.engine = _engine(url)
-        # SQLite lets one write; who waits here is woken at once, who waits for SQLite tries again later.
+        # SQLite lets one thread write. A thread that waits here is woken at once; SQLite itself would only retry later.
         self._turn: contextlib.AbstractContextManager[Any] = contextlib.nullcontext()
         if self.engine.dialect.name == "sqlite":
             self._turn = threading.Lock()
@@ -55,7 +55,7 @@ class Store:
             self.write(_make_tables)
 
     def read(self, work: Callable[[sql.Connection], T]) -> T:
-        """What a function returns that reads one state of the store and changes nothing."""
+        """Return the result of a function that reads one state of the store and changes nothing."""
         with self.engine.connect() as connection, connection.begin():
             return work(connection)
 

@@ -13,7 +13,7 @@ from hearth.schemas.libraries import CHECKOUT
 
 HERE = Path(__file__).resolve().parent
 FETCHED = HERE / "fetched"
-"""What the server serves under `/fetched/`; the wheel contains it."""
+"""The folder that the server serves under `/fetched/`; the wheel contains it."""
 
 
 class Script(NamedTuple):

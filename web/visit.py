@@ -1,4 +1,4 @@
-"""What a handler of a room gets: one request with all that was checked about it, and ways to answer."""
+"""The input of a room's handler: one request with its checked parts, and ways to answer."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from hearth.web.web_errors import WebError
 
 @dataclass(frozen=True, slots=True)
 class Web:
-    """What all handlers share; it holds nothing that a session depends on, so that any process can answer.
+    """The common state of all handlers; no session depends on it, so that any process can answer.
 
     Attributes:
         store: the database.
@@ -62,7 +62,7 @@ class Visit:
     Attributes:
         web: what all handlers share.
         request: the request as it came; its body is read already.
-        session: who asks, on addresses of persons; on others maybe None.
+        session: the sender's session, on addresses of persons; on others maybe None.
         body: at most as many bytes as the address allows.
         fields: a form's, or the address's query.
     """

@@ -1,4 +1,4 @@
-"""What the server refuses, as data: a code, the place, what was expected and what came."""
+"""The server's refusals, as data: a code, the place, the expected and the received value."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ SESSIONS = sql.Table(
     sql.Column("created", sql.Float, nullable=False, comment="seconds since 1970, UTC"),
     sql.Column("tab", sql.Text, nullable=False, server_default="", comment="the one tab that may act"),
 )
-"""A person at work: who has the token has the session."""
+"""A person at work: the holder of the token has the session."""
 
 
 def owner() -> sql.Column[str]:

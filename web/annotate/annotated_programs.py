@@ -1,4 +1,4 @@
-"""Programs in the store: found for the session that may see them, changed by whoever read their last version."""
+"""Programs in the store: read by sessions that may see them, changed by a session that has read the last version."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was accepted, as the files that `ingest` reads: batches of both stages, sketches, described films.
+"""The accepted contributions, as the files that `ingest` reads: batches of both stages, sketches, described films.
 
 The files follow from the store: they are written after each acceptance and when the server starts, and can be deleted.
 """
@@ -37,7 +37,7 @@ PROGRAMS = (
 
 
 def write_collected(web: Web) -> None:
-    """Write all files of what is accepted, each whole or not at all; none where nothing is."""
+    """Write all files of accepted contributions, each whole or not at all; no file without contributions."""
     with FileLock(private(web.out) / "collected.lock"):
         for name, data in collected(web.store).items():
             path = web.out / name
@@ -86,7 +86,7 @@ def _film(mark: Row) -> tuple[str, ...]:
 
 
 _KINDS: Mapping[str, type] = {"sketch": list, "completeness": int, "film": dict}
-"""What the value of a mark is, by its kind."""
+"""The type of a mark's value, by the mark's kind."""
 
 
 def _marked(mark: Row) -> Any:

@@ -38,7 +38,7 @@ def describe(visit: Visit) -> Response:
 
 
 def submit_description(visit: Visit) -> Response:
-    """Store a description, or ask politely for what it lacks."""
+    """Store a description, or ask politely for the missing parts."""
     title, description = visit.field("title").strip(), visit.field("description").strip()
     wishes = lacks(title, description)
     if wishes:
@@ -56,7 +56,7 @@ def submit_description(visit: Visit) -> Response:
 
 
 def lacks(title: str, description: str) -> tuple[str, ...]:
-    """What a description lacks, as polite sentences; none if it is good enough to be read by others."""
+    """Return the faults of a description, as polite sentences; none if others can read it."""
     found = []
     if sum(letter.isalpha() for letter in title) < 3 or len(title) > MOST_TITLE or len(title.split()) > 10:
         found.append("Please give the activity a short title of its own, such as “Make tea”.")

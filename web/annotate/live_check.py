@@ -1,4 +1,4 @@
-"""The check of a program while it is written: the code of `check`, and what `build` would refuse."""
+"""The check of a program while it is written: the code of `check`, and the faults that `build` would refuse."""
 
 from __future__ import annotations
 

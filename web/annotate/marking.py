@@ -1,4 +1,4 @@
-"""Marks on what is there: sketches of programs (thesis 5.5.1), their completeness (3.4.1), films in words (4.4)."""
+"""Marks on existing items: sketches of programs (thesis 5.5.1), their completeness (3.4.1), films in words (4.4)."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def film_page(visit: Visit) -> Response:
 
 
 def keep_film(visit: Visit) -> Response:
-    """Store the description of a film, or ask politely for what it lacks."""
+    """Store the description of a film, or ask politely for the missing parts."""
     film = _film(visit)
     title, description = visit.field("title").strip(), visit.field("description").strip()
     if wishes := lacks(title, description):
@@ -153,7 +153,7 @@ def _accepted(visit: Visit) -> Row:
 
 
 def _marked(visit: Visit, kind: str) -> set[str]:
-    """What a person has marked in one way."""
+    """Return the items that a person has marked in one way."""
     query = sql.select(MARKS.c.subject).where(MARKS.c.session == visit.person, MARKS.c.kind == kind)
     return set(visit.web.store.read(lambda connection: connection.execute(query).scalars().all()))
 

@@ -1,4 +1,4 @@
-"""Review: a second person accepts a program, mends it, or returns it to its author (thesis 3.3)."""
+"""Review: a second person accepts a program, corrects it, or returns it to its author (thesis 3.3)."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from hearth.web.web_errors import WebError
 
 
 def review_list(visit: Visit) -> Response:
-    """What waits for a second person; the way to the test for those who have not passed it."""
+    """Return the programs that wait for a second person; people without the test get the way to the test."""
     qualified = is_qualified(visit.web.store, visit.person)
     waiting = annotated_programs.submitted(visit.web.store, visit.person) if qualified else []
     return visit.page("annotate/reviews.html", qualified=qualified, waiting=waiting)
 
 
 def review_page(visit: Visit) -> Response:
-    """A program beside its description."""
+    """Return a program next to its description."""
     program, text = _waiting(visit)
     draft = stored(program["draft"])
     found = composing.check_of(visit, text, draft)
@@ -51,7 +51,7 @@ def judge(visit: Visit) -> Response:
 
 
 def mend_page(visit: Visit) -> Response:
-    """The program with its blocks, to be mended."""
+    """Return the program with its blocks, for correction."""
     program, text = _waiting(visit)
     values: dict[str, Any] = {"base": f"/annotate/review/{program['id']}", "mode": "mend", "homes": trial_run.homes()}
     return visit.page("annotate/compose.html", text=text, closed=False, program=program, **values)
@@ -64,14 +64,14 @@ def work(visit: Visit) -> Response:
 
 
 def check(visit: Visit) -> Response:
-    """Check the mended steps; nothing is kept before they are accepted."""
+    """Check the corrected steps; nothing is kept before they are accepted."""
     _, text, draft, message = _mended(visit)
     found = composing.check_of(visit, text, draft)
     return visit.answer({"version": int_field(message, "version", 1, 10**9), "found": found})
 
 
 def try_out(visit: Visit) -> Response:
-    """Run the mended steps in a home."""
+    """Run the corrected steps in a home."""
     _, text, draft, message = _mended(visit)
     return visit.answer(composing.run_of(visit, text, message, draft))
 
@@ -83,7 +83,7 @@ def replay(visit: Visit) -> Response:
 
 
 def mend(visit: Visit) -> Response:
-    """Accept the mended steps instead of those that were submitted."""
+    """Accept the corrected steps instead of the submitted ones."""
     program, text, draft, message = _mended(visit)
     if fault := next((each for each in composing.check_of(visit, text, draft) if each["fault"]), None):
         raise WebError(Code[fault["code"]], "steps", "a program without faults", fault["message"])

@@ -1,4 +1,4 @@
-"""The 3D scene of a game: a home's fixed part as one glTF, and what is different from it now, for browsers to draw."""
+"""The 3D scene of a game, for browsers: a home's fixed part as one glTF, and the present differences from it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def in_sight(scene: Scene, world: World) -> Iterator[Thing]:
 
 @lru_cache(maxsize=32)
 def base_key(name: str, home: str, knowledge: Knowledge) -> str:
-    """What is drawn of it, in 32 digits, for its file and address."""
+    """Return a digest of the drawn parts, in 32 digits, for its file and address."""
     return _digest(base_scene(name, home, knowledge).everything)
 
 
@@ -68,7 +68,7 @@ def _digest(value: object) -> str:
 
 
 def model_key(thing: Thing) -> str:
-    """What names a thing's model in addresses; parts of the building are drawn where they stand."""
+    """Return the name of a thing's model in addresses; parts of the building are drawn where they stand."""
     where = (thing.position, thing.yaw) if thing.structural else ()
     return _digest((thing.model, where))
 
@@ -93,7 +93,7 @@ class DrawnGame:
 
     @property
     def scene(self) -> Scene:
-        """What there is to see now."""
+        """Return the present scene."""
         return self.sensor.scene(self.game.playing.env)
 
     @property
@@ -129,14 +129,14 @@ class DrawnGame:
         return glb(Scene((alone,)), textures=False)
 
     def others(self) -> Iterator[Thing]:
-        """What is there now and is not of the home's fixed part."""
+        """Yield the present things that are not of the home's fixed part."""
         return (thing for thing in self._in_sight() if thing not in self._base)
 
     def _in_sight(self) -> Iterator[Thing]:
         return in_sight(self.scene, self.game.playing.env.world)
 
     def jpeg(self) -> bytes:
-        """What is seen, as our own renderer draws it."""
+        """Return the person's view, as our own renderer draws it."""
         import cv2
 
         rgb = self.sensor(self.game.playing.env, self.number, ("rgb",))["rgb"]

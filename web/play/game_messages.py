@@ -46,7 +46,7 @@ def thing_group(node: Node) -> str:
 
 
 class Telling:
-    """What one page knows of a game, so that only what is new is sent to it.
+    """One page's knowledge of a game, so that the server sends the page only news.
 
     Args:
         game: the game.
@@ -125,7 +125,7 @@ def seen_objects(view: View) -> Objects:
 
 
 def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
-    """What a thing is held by, in, or on, as far as it is seen; '' and 0 where there is no such thing."""
+    """Return the relation and the id of a thing's holder or place, as far as it is visible; '' and 0 without one."""
     world, home = view.world, view.world.home
     if i in held:
         return "held", home.ids[held[i].index]
@@ -139,7 +139,7 @@ def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
 
 
 def _thing(home: Home, node_id: int) -> list[Any]:
-    """What never changes of a thing: class, panel, footprint on the plan."""
+    """Return the constant facts about a thing: class, panel, footprint on the plan."""
     node = home.node(home.index[node_id])
     return [node.class_name, thing_group(node), _rect(node)]
 
@@ -167,7 +167,7 @@ def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
     """The instructions that are offered: action -> the ids that each of its places may have.
 
     They are those that can be done with things that the page shows, and that make sense to people. `me` is the node of
-    who decides, which the page does not show as a thing.
+    the person's character, which the page does not show as a thing.
     """
     home = legal.home
     things = usable_things(home) & ~(1 << home.index[me])

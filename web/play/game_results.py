@@ -16,7 +16,7 @@ MAIN = "person"
 """The main agent of people's results."""
 
 Kind = tuple[str, str, str, str]
-"""Challenge, split, helper, and what the helper is asked to do: those of one file."""
+"""Challenge, split, helper and the helper's goal: those of one file."""
 
 
 def kind_of(game: Game) -> Kind:

@@ -78,7 +78,9 @@ def begin(connection: sql.Connection, session: str, trial: Trial, go_on: str = "
 
 
 def join(connection: sql.Connection, session: str, code: str) -> str:
-    """Take the second seat of the game with a code; its id. Who has a seat of it keeps that.
+    """Take the second seat of the game with a code, and return the game's id.
+
+    A person with a seat in the game keeps that seat.
 
     Raises:
         WebError: UNKNOWN_ID: there is no such game for two; LOCKED: somebody else has the seat.
@@ -109,7 +111,7 @@ def seat(connection: sql.Connection, game: str, session: str) -> int:
 
 
 def stored(connection: sql.Connection, game: str) -> Stored:
-    """A game; who may see it, `seat` has checked.
+    """Return a game; `seat` has checked that the person may see it.
 
     Raises:
         WebError: UNKNOWN_ID: it was deleted, as one of its people asked.

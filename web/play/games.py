@@ -1,4 +1,4 @@
-"""A game: a trial under way. It is a value of its decisions: done again from the store, it is the same."""
+"""A game: a trial under way. Its decisions determine it: a replay from the store gives the same game."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from hearth.web.play.remembered import Remembered
 from hearth.web.play.trials import OTHERS, PERSON, PROGRAM, Trial
 
 Texts = tuple[str | None, ...]
-"""What each character tried in a tick, as records have it (`Grab 41`); None where it waited."""
+"""Each character's attempt in a tick, as records have it (`Grab 41`); None where it waited."""
 
 HELPER = 1
 """The number of the helper."""
@@ -96,11 +96,11 @@ class Game:
         return self.end is not None or self.playing.over
 
     def view(self, number: int) -> View:
-        """What a character sees now."""
+        """Return a character's current view."""
         return self.playing.view(number)
 
     def legal(self, number: int) -> Legal:
-        """What a character may do now."""
+        """Return a character's currently legal actions."""
         return self.playing.legal(number)
 
     def read(self, number: int, text: str | None) -> str | None:
@@ -113,7 +113,9 @@ class Game:
         return written(step)
 
     def helper_decides(self) -> str | None:
-        """What an agent that helps does in this tick; it is asked once a tick, however often this is called.
+        """Return the choice of an agent that helps, in this tick.
+
+        The agent is asked once a tick, however often this is called.
 
         Raises:
             AgentError: it can't go on.

@@ -26,14 +26,14 @@ SHOWN = {"symbolic": "Buttons and a floor plan", "visual": "First person, in 3D"
 """The interfaces, for people."""
 
 KINDS_SHOWN = {True: "only what is around me", False: "everything"}
-"""What a person sees, for people."""
+"""A person's view of the home, for people."""
 
 FIRST_TASKS = 20
 """Tasks of each challenge that the page offers; studies choose others."""
 
 
 def start_page(visit: Visit) -> Response:
-    """What may be played, and the person's games."""
+    """Return the games that may be played, and the person's games."""
     mine = visit.web.store.read(lambda connection: game_store.games_of(connection, visit.person))
     return visit.page(
         "play/start.html",

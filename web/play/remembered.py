@@ -1,4 +1,4 @@
-"""What a person has seen of a game by now: trails of characters, and counts of the goal when it last saw its place."""
+"""A person's observations of a game so far: trails of characters, and counts of the goal as last observed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Counted:
 
 
 class Remembered:
-    """What one person has seen.
+    """The observations of one person.
 
     Attributes:
         trails: for each character, the ticks at which it was seen and where it stood.

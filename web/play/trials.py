@@ -61,7 +61,7 @@ class Trial:
 
     @property
     def challenge(self) -> Challenge:
-        """Whose task it is."""
+        """Return the challenge of the task."""
         return challenge(self.task.challenge)
 
     @property
@@ -96,7 +96,7 @@ class Trial:
 
 
 def helpers() -> dict[str, str]:
-    """The helpers that a person may have, with what they are. One that needs a main agent of ours is not among them."""
+    """Return the helpers that a person may have, with descriptions; none that needs a main agent of ours."""
     ours = {name: each.about for name, each in HELPERS.items() if not each.main}
     online = {name: each.about for name, each in ONLINE.items()}
     others = {NOBODY: "nobody", PERSON: "another person", PROGRAM: "a program over the agent protocol"}
@@ -143,7 +143,7 @@ def trial(
     partial: bool | None = None,
     goal: str = "",
 ) -> Trial:
-    """A trial, checked, with what its helper is asked to do.
+    """Return a trial, checked, with its helper's goal.
 
     Args:
         task: what is to be done.
@@ -178,7 +178,7 @@ def _check(what: str, given: str, known: Any) -> None:
 
 
 def _asked(task: Task, kind: str, seed: int, knowledge: Knowledge) -> Goal | None:
-    """What a helper is asked to do; a random goal is another that the task's sets could have had."""
+    """Return a helper's goal; a random goal is another that the task's sets could have had."""
     if kind == "true":
         return task.goal
     if kind in INFERRED:

@@ -22,7 +22,7 @@ from hearth.web.visit import Visit
 
 SILENT, DELETED = "silent", "deleted"
 OVER = (DONE, LEFT, SILENT, DELETED)
-"""What is not under way: also who gives no sign for longer than the study allows, and who was deleted."""
+"""The states of people who have ended: also those silent for longer than the study allows, and deleted people."""
 
 
 def overview(visit: Visit) -> Response:

@@ -44,7 +44,7 @@ TEMPLATES = {
 
 
 ANSWER = "answer-"
-"""How the field of an answer begins; the name of its question follows."""
+"""Beginning of an answer's field; the name of its question follows."""
 
 MEDIA = {FILM: "video/webm", REPLAY: "application/json"}
 """The type of a film's file, by how it is shown."""
@@ -89,14 +89,14 @@ def way(visit: Visit) -> Response:
 
 
 def _note(visit: Visit, study: Study, standing: Standing | None) -> str:
-    """What the page says of a post that was not asked for and led here; "" where none did."""
+    """Return the page's note about a post that was not asked for and led here; "" where there was none."""
     return unasked_line(study, standing) if UNASKED in visit.fields else ""
 
 
 def shown(
     visit: Visit, conduct: Conduct, standing: Standing, fault: str = "", given: Mapping[str, Any] | None = None
 ) -> Response:
-    """The page of a stage; with what was wrong with answers, if anything was."""
+    """Return the page of a stage; with the faults of the answers, if there are any."""
     study = conduct.study
     note = _note(visit, study, standing)
     values: dict[str, Any] = {
@@ -221,7 +221,7 @@ def film(visit: Visit) -> Response:
 
 
 def film_at(web: Web, conduct: Conduct, standing: Standing) -> JudgedFilm:
-    """What is judged in a trial.
+    """Return the film that is judged in a trial.
 
     Raises:
         WebError: MISSING_FILE: its film was not prepared.

@@ -17,7 +17,7 @@ from hearth.web.study.study_schema import TRIAL_GAMES
 from hearth.web.visit import Web
 
 BACK = "/study/"
-"""Where the page of a game leads when it is over."""
+"""The address that a game's page leads to when the game is over."""
 
 
 def begun(web: Web, conduct: Conduct, standing: Standing) -> str:
