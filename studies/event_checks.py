@@ -95,7 +95,7 @@ def _check_answers(asked: Sequence[Question], event: Event, file: str) -> None:
     questions = {each.name: each for each in asked}
     for name, answer in event.data["answers"].items():
         if name not in questions or questions[name].fault(answer):
-            raise _wrong(event, f"`{name[:20]}` is not an answer to what is asked", file)
+            raise _wrong(event, f"`{name[:20]}` is not an answer to a present question", file)
 
 
 def _named(event: Event) -> Planned:

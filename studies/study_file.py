@@ -188,7 +188,7 @@ def _condition(entry: Any, room: str, faults: Faults) -> Condition:
     line = located.line_of(entry)
     helper, goal = found.get("helper", NOBODY), found.get("goal", "")
     if room == JUDGE and (helper, goal) != (NOBODY, ""):
-        faults.add(Code.BAD_ARGUMENT, "who judges films has no helper", line, "leave out `helper` and `goal`")
+        faults.add(Code.BAD_ARGUMENT, "a person who judges films has no helper", line, "leave out `helper` and `goal`")
     elif ":" in helper:
         faults.add(Code.BAD_ARGUMENT, "a study's helper is one of ours", line, "`challenge run` runs others")
     else:

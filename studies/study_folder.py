@@ -88,8 +88,7 @@ def opened(folder: Path, known: Known) -> Collected:
 
 
 def beside(collected: Collected) -> Collected | None:
-    """Return the simulated study, in the neighboring folder, with the lengths without a helper; None if there is none.
-    """
+    """Return the simulated study in the neighboring folder, with the lengths without a helper; None if absent."""
     name = collected.study.alone
     if not name or collected.folder is None:
         return None
@@ -113,7 +112,7 @@ def related(study: Study, files: Path | None) -> Study | None:
     if files is not None and (path := inside(files, f"{name}.yaml")).is_file():
         return named(str(path))
     if name not in SHIPPED:
-        raise HearthError.of(Code.MISSING_FILE, f"there is no study `{name}`", suggestion=f"put {name}.yaml beside it")
+        raise HearthError.of(Code.MISSING_FILE, f"there is no study `{name}`", suggestion=f"put {name}.yaml next to it")
     return named(name)
 
 

@@ -11,13 +11,13 @@ class ParticipantRow(TypedDict):
     study: Annotated[str, "name of the study"]
     participant: Annotated[str, "salted id: equal in all tables of an export, and nothing else is known by it"]
     simulated: Annotated[bool, "an agent was in a person's place"]
-    place: Annotated[int, "the place in the study, from 0; who takes the place of somebody who left has the same"]
+    place: Annotated[int, "the place in the study, from 0; a successor of a person who left has the same"]
     stage: Annotated[str, "done, left, or how far the person is"]
     trials: Annotated[int, "that the person did"]
     seconds: Annotated[float, "of all trials"]
     left: Annotated[str, "why the person left; empty if not"]
     began: Annotated[float, "when the person joined, in seconds since 1970, UTC; 0 of simulated people"]
-    ended: Annotated[float | None, "when the person finished or left, in the same seconds; null of who is under way"]
+    ended: Annotated[float | None, "when the person finished or left, in the same seconds; null of a person under way"]
 
 
 class StudyTrialRow(TypedDict):
@@ -39,7 +39,7 @@ class StudyTrialRow(TypedDict):
     reward: Annotated[float | None, "1 if the goal was reached, less 0.004 a tick of its length"]
     conflicts: Annotated[int | None, "predicates of the other's goal that held and that the person or helper undid"]
     needless: Annotated[int | None, "things the helper moved that in the end neither count nor are where they were"]
-    end: Annotated[str, "code of what ended it before its time; empty if nothing did"]
+    end: Annotated[str, "code of the reason that ended it before its time; else empty"]
     helper_fault: Annotated[str, "code of the helper's fault that ended it, for which reports leave it out; else empty"]
 
 

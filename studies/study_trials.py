@@ -106,7 +106,7 @@ def checked(study: Study, planned: Planned, given: Mapping[str, Any], knowledge:
         raise HearthError.of(Code.REPLAY_DIFFERS, f"the record is of {record.task}, not of this trial")
     outcome, final = again(task, record, knowledge)
     if final != record.final:
-        raise HearthError.of(Code.REPLAY_DIFFERS, "what was recorded ends in another world when it is done again")
+        raise HearthError.of(Code.REPLAY_DIFFERS, "the record ends in another world when it is replayed")
     data = episode_data(replace(record, metrics=outcome.as_json()))
     return {**data, "actions": [list(tick) for tick in record.actions]}
 
