@@ -1,4 +1,4 @@
-"""Results of augmentation: outcomes of pairs, and figures beside those of the thesis (table 5.1, figure 5-4)."""
+"""Results of augmentation: outcomes of pairs, and figures compared with the thesis's (table 5.1, figure 5-4)."""
 
 from collections import Counter
 from pathlib import Path
@@ -70,7 +70,7 @@ _GROUPS = {"executable": "parent_id IS NULL", "augmented": "parent_id IS NOT NUL
 
 
 def figures(dataset: Path) -> dict[str, Any]:
-    """The numbers of table 5.1 and figure 5-4 for a published dataset, beside the thesis.
+    """Return the numbers of table 5.1 and figure 5-4 for a published dataset, with the thesis's.
 
     Returns:
         `strength` of augmenting; `table`: programs, lengths, nodes and edges of ours and the thesis's; `lengths`:

@@ -1,4 +1,4 @@
-"""What the main agent of an episode believes of where wanted things are, as time goes by (thesis 6.4, figure B-3)."""
+"""The main agent's beliefs about the places of wanted things in an episode, over time (thesis 6.4, figure B-3)."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
 MOMENTS = 5
-"""How many moments are looked at: the start, the end, and between."""
+"""Number of moments to look at: the start, the end, and between."""
 
 
 class Believed(NamedTuple):
-    """Where the things of one class are believed to be at a tick: the expected number of them by class of place."""
+    """Believed places of the things of one class at a tick: the expected number of them by class of place."""
 
     tick: int
     thing: str
@@ -34,7 +34,7 @@ class Believed(NamedTuple):
 
 
 def followed(task: Task, start: World, ticks: Sequence[Tick], moments: int = MOMENTS) -> list[Believed]:
-    """The belief of who has seen what the main agent saw.
+    """Return the beliefs of an observer that gets the main agent's observations.
 
     Args:
         task: whose things are of interest.

@@ -1,4 +1,4 @@
-"""Where things are when tasks start: the distributions of the thesis's figures B-4 and B-5."""
+"""Starting places of things in tasks: the distributions of the thesis's figures B-4 and B-5."""
 
 from __future__ import annotations
 

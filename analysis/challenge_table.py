@@ -1,4 +1,4 @@
-"""All methods of the thesis's figures 6-5 and 7-3 on the same tasks, beside what the thesis says of them."""
+"""All methods of the thesis's figures 6-5 and 7-3 on the same tasks, with the thesis's text about them."""
 
 from __future__ import annotations
 

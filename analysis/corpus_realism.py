@@ -1,4 +1,6 @@
-"""Is a corpus like people's? One corpus asked about another, beside the other's own halves asked about each other.
+"""The similarity of a corpus to people's, measured by its predictions of the people's corpus.
+
+The halves of the people's corpus predict each other for comparison.
 
 Each draw splits the other corpus into halves A and B and draws as many programs of this one as A has; every measure is
 taken of A against B and of the draw against B. Their ratio is 1 if the corpora can't be distinguished.
@@ -26,7 +28,7 @@ from hearth.scoring.bootstrap import intervals
 
 DRAWS, ORDER = 20, 3
 SMOOTHING = f"interpolated Witten-Bell, order {ORDER}, over the steps of both corpora"
-"""How probabilities are smoothed: printed with the perplexities."""
+"""The smoothing of probabilities, printed with the perplexities."""
 
 FEWEST = 4
 """Programs that either corpus needs."""

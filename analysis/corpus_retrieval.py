@@ -1,4 +1,4 @@
-"""What a larger corpus is worth: retrieval of programs by description, trained on its first part and on all of it."""
+"""The value of a larger corpus: retrieval of programs by description, trained on its first part and on all of it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Whether helpers do harm: people of kinds that no helper was tuned with, alone and helped."""
+"""The test that helpers do no harm: people of kinds that no helper was tuned with, alone and helped."""
 
 from __future__ import annotations
 

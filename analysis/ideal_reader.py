@@ -1,7 +1,7 @@
-"""How much of drawn programs their descriptions say: what an ideal reader would make of them.
+"""The share of drawn programs that their descriptions say: the score of an ideal reader.
 
-Half of a program's parts go unsaid, as in the thesis's corpora (3.3; table 4.1 has 3.4 sentences for 9.6 steps). No
-model can know those but by chance: scores of models are to be read beside those of a reader who understands every
+Half of a program's parts go unsaid, as in the thesis's corpora (3.3; table 4.1 has 3.4 sentences for 9.6 steps). A
+model can only guess those parts. The score to compare models with is therefore that of a reader who understands every
 clause, and knows how often each part is in a program.
 """
 

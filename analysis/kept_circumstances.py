@@ -1,4 +1,4 @@
-"""Whether augmented programs do the steps of their originals in the circumstances in which the originals do them.
+"""The check that augmented programs do the steps of their originals in the circumstances of the originals.
 
 Both are run again from a dataset. Which steps a program has kept is found anew, from the steps alone: nothing that
 repairing recorded is used.
@@ -47,7 +47,7 @@ class Found(NamedTuple):
         counts: `programs`, and those that do all they have kept in the same circumstances (`programs as_original`); and
             the same of the `steps` that they have kept.
         seats: for each action, the programs that do it and whose original does it seated (`seated`), and those that
-            never do it seated (`otherwise`): who types standing, and sits down then, has done something else.
+            never do it seated (`otherwise`): a person who types standing, and then sits down, has done something else.
         odd: programs with a step in other circumstances.
     """
 

@@ -1,4 +1,4 @@
-"""How well helpers infer the goal while it is pursued: F1 over time (figures 7-3b, C-4), log loss, calibration."""
+"""The quality of goal inference during an episode: F1 over time (figures 7-3b, C-4), log loss, calibration."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Question:
 
 
 def answer(question: Question) -> Beliefs:
-    """What the helper believes in each tick."""
+    """Return the helper's beliefs in each tick."""
     return beliefs(question.task, question.record, question.helper, question.known())
 
 

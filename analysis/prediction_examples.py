@@ -1,4 +1,4 @@
-"""A page of predictions beside what people wrote, as figures 4-5, 4-6, 5-5, A-1, A-2 and A-4; with pictures, 4-8.
+"""A page of predictions next to people's programs, as figures 4-5, 4-6, 5-5, A-1, A-2 and A-4; with pictures, 4-8.
 
 Examples are taken at equal steps of LCS from the worst to the best, each of another activity: nobody chose them.
 """
@@ -33,7 +33,7 @@ SHOWN = {
     "f1": "F1",
     "goal_fraction": "share of the goal",
 }
-"""The scores of an example, and what the page calls them."""
+"""The scores of an example, and the page's names for them."""
 
 SIZE = (320, 240)
 """Of a picture, pixels."""

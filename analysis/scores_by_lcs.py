@@ -16,10 +16,10 @@ from hearth.schemas.libraries import library
 from hearth.scoring.evaluate import METRICS, Scored
 
 BANDS = (0.25, 0.5, 0.65, 0.8, 0.95)
-"""Where bands of LCS begin, beside 0; from .5 on as in figure 4-9."""
+"""Lower bounds of bands of LCS, after 0; from .5 on as in figure 4-9."""
 
 JUDGES = {"executable": "runs", "goal_fraction": "share of the goal", "f1": "F1 of the change"}
-"""The scores that stand for judges, and what they are called in the figure."""
+"""The scores that stand for judges, and the figure's names for them."""
 
 
 class BandRow(NamedTuple):

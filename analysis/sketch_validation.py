@@ -1,4 +1,4 @@
-"""Cross-validation of learned sketches over activities, beside rules and majorities, with intervals of their leads."""
+"""Cross-validation of learned sketches over activities, with rules, majorities, and intervals of the leads."""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ def _rank(step: Step, done: Counter[str]) -> tuple[int, bool]:
 def picture_of(
     trajectory: Trajectory, keyframe: Keyframe, graph: EnvironmentGraph, size: tuple[int, int], quality: str = "draft"
 ) -> tuple[Image, bool]:
-    """A picture of what is done, from where it is seen best; and whether person and object can be recognised in it."""
+    """Return a picture of a step from its best camera, and whether person and object can be recognized in it."""
     rooms = {node.id: node.box for node in graph.nodes if node.category == ROOM_CATEGORY}
     named = tuple(dict.fromkeys(seen_as(node, keyframe.places) for node in named_nodes(keyframe.steps, rooms)))
     actor = keyframe.acting

@@ -90,7 +90,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """An activity: titles, distributions of objects by slot, parts, and what it is for."""
+    """An activity: titles, distributions of objects by slot, parts, and its aims."""
 
     name: str
     titles: tuple[str, ...]
@@ -178,7 +178,7 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
 
 
 def _inherited(entry: Mapping[str, Any], entries: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A task's entry, with what it lacks from the task that it is like."""
+    """Return a task's entry, with its missing parts from the task that it is like."""
     return {**entries[entry["like"]], "aims": (), **entry} if "like" in entry else entry
 
 

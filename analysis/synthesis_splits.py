@@ -23,7 +23,10 @@ SPLITS = {
     "pairs": "test: programs with a pair of tasks that train has only apart",
     "objects": "test: programs with an object of which train has no program",
 }
-"""What each split holds out. A tenth of the rest is `validation`; near duplicates of a later part have none."""
+"""The held-out part of each split.
+
+A tenth of the rest is `validation`. Near duplicates of a later part have no part.
+"""
 
 _OUT = {"tasks": 10, "pairs": 6, "objects": 30}
 """One name of this number is held out."""
@@ -43,7 +46,7 @@ def splits(programs: Sequence[Synthetic], seed: int = 0) -> list[SplitText]:
 
     Args:
         programs: in the order of their numbers.
-        seed: of what is held out; what `paraphrases` holds out is the same for every seed.
+        seed: of the held-out names; those that `paraphrases` holds out are the same for every seed.
     """
     texts = [(number, place) for number, one in enumerate(programs, 1) for place in range(len(one.descriptions))]
     near = _near([normalised(programs[number - 1].descriptions[place]) for number, place in texts])

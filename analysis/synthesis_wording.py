@@ -84,7 +84,7 @@ class Wording:
         return self._phrases.sub(lambda match: chance.choice(self.synonyms[match[0]]), clause)
 
     def noun(self, name: str, chance: Random) -> str:
-        """What somebody calls a thing."""
+        """Return a person's word for a thing."""
         return chance.choice(self.nouns.get(name) or (plain(name),))
 
 

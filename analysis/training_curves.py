@@ -1,4 +1,4 @@
-"""How trainings of policies went, as a picture: imitation, then practice, a line for each checkpoint."""
+"""The course of policies' trainings, as a picture: imitation, then practice, a line for each checkpoint."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Run:
     Attributes:
         name: of its model.
         seed: of it.
-        scores: by phase, of each epoch; those of practice begin with what imitation had reached.
+        scores: by phase, of each epoch; those of practice begin with the last score of imitation.
     """
 
     name: str
