@@ -43,7 +43,7 @@ BothLcs = tuple[LcsScore, LcsScore]
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How predictions are scored.
+    """Settings for scoring predictions.
 
     Attributes:
         rules: of simulation.

@@ -26,7 +26,7 @@ SIGNATURE = signature("executable", 2, level="program", empty=0)
 class ErrorClass(StrEnum):
     """The class of a program's first failure.
 
-    `wrong order`: the program's own steps could mend it, if the failing step stood at the last place where it was
+    `wrong order`: the program's own steps could fix it, if the failing step stood at the last place where it was
     possible, or if a later step stood before it. `additional step`: its effect already holds. `missing step`: neither.
     """
 
@@ -69,7 +69,10 @@ ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code
 
 
 PLACED: dict[str, Callable[[World, int], int]] = {"ON": rows.on, "INSIDE": rows.inside}
-"""Where a thing may be put, and the row with the result; repeated, such actions are additional steps."""
+"""Relations in which a thing may be put, each with the row of the result.
+
+A repeated action of this kind is an additional step.
+"""
 
 First = tuple[int, ErrorClass, Code]
 

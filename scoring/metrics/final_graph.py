@@ -23,7 +23,7 @@ DOOR = "door"
 Final = EnvironmentGraph | World
 
 Label = int | str | tuple[str, int]
-"""What a node is compared by: its counterpart's id, its own id, or its class."""
+"""The key by which a node is compared: its counterpart's id, its own id, or its class."""
 
 Direction = tuple[str, bool]
 """A relation, and whether its edges go out from the node that is asked about."""
@@ -40,7 +40,7 @@ class Nodes:
         classes: class name by id.
         instances: ids by class name, ascending.
         left_out: rooms and doors (a door's parts too, such as `doorjamb`), which are not scored.
-        characters: who acts.
+        characters: the acting characters.
         labels: what each is compared by as long as it does not move: rooms, doors, characters by id, else by class.
     """
 
@@ -148,7 +148,7 @@ _READ: tuple[tuple[Direction, Callable[[World, int], int], str, str], ...] = (
     (("FACING", True), rows.facing, "facing", "faced"),
     (("FACING", False), rows.faced, "faced", "facing"),
 )
-"""How edges are read: those between things, a character's own, and those of characters with the node."""
+"""Readers of edges: of edges between things, of a character's own, and of those of characters with the node."""
 
 
 def _world_rows(world: World, i: int) -> EdgeRows:

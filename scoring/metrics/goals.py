@@ -17,7 +17,7 @@ LASTING = ("ON", "INSIDE", *HANDS)
 
 
 def goal_of(start: World, final: World) -> Goal:
-    """What an execution achieved, as class literals: states set, and objects that it put ON, INSIDE or in a hand.
+    """Return the achievements of an execution as class literals: states set, and objects put ON, INSIDE or in a hand.
 
     Literals that held at the start, and INSIDE a room, do not count. Both worlds are of one home.
     """

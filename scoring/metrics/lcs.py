@@ -21,7 +21,7 @@ Level = Literal["step", "action", "object"]
 LEVELS: tuple[Level, ...] = get_args(Level)
 
 By = Literal["class", "number", "node"]
-"""What identifies an object."""
+"""The kind of key that identifies an object."""
 
 Sequences = list[list[int]]
 
@@ -84,7 +84,7 @@ def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -
 
 
 def _identity(*programs: Lines) -> By:
-    """What identifies the instances of some programs: nodes, if all of them name any."""
+    """Return the kind of key for the instances of some programs: nodes, if all of them name nodes."""
     steps = ([line for line in lines if isinstance(line, Step)] for lines in programs)
     named = all(any(ref.node is not None for step in found for ref in step.objects) for found in steps)
     return "node" if named else "number"

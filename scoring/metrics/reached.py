@@ -44,12 +44,12 @@ class GoalScore:
 
     @property
     def fraction(self) -> float:
-        """The share of what was left to do, and of what was broken, that is done."""
+        """Return the share of the missing and of the broken literals that is done."""
         return self.gained / (self.left + self.broken) if self.left + self.broken else 1.0
 
 
 class Achieved(NamedTuple):
-    """What a reference brings about.
+    """The achievements of a reference.
 
     Attributes:
         start: its goal in the world before it.
