@@ -181,7 +181,7 @@ def table(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them beside its text.
+    """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them next to its text.
 
     What the folder has already is not run again. Intervals are of 95 %; t, p and effect compare lengths with those of
     the main agent alone, task by task.

@@ -1,4 +1,4 @@
-"""`challenge watch | learn | curves`: goals read from demonstrations, and the training of what helpers have learnt."""
+"""`challenge watch | learn | curves`: goals read from demonstrations, and training of the learned parts of helpers."""
 
 from __future__ import annotations
 

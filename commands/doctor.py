@@ -165,7 +165,7 @@ def browser() -> Finding:
 
 
 def web() -> Finding:
-    """What pages of `serve` use: libraries, and the scripts that `make web` fetches."""
+    """Return the state of the parts that pages of `serve` use: libraries, and the scripts that `make web` fetches."""
     if lacking("web"):
         return Finding("web", MISSING, f"without {', '.join(lacking('web'))}", f"no `serve`; {remedy('web')}")
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing

@@ -193,7 +193,7 @@ def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "
 def read_programs(
     path: Path, known: Knowledge, name: str, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
 ) -> Iterator[Given | Reject]:
-    """The programs of a file or folder that is called `name` in diagnostics, and rejects for what is none.
+    """Yield the programs of a file or folder that is called `name` in diagnostics, and rejects for the rest.
 
     Raises:
         HearthError: nothing in it can be read.
@@ -218,7 +218,7 @@ def read_programs(
 
 
 def name_of(file: Path) -> str:
-    """What a file is called in diagnostics."""
+    """Return the name of a file in diagnostics."""
     return "standard input" if str(file) == "-" else str(file)
 
 
@@ -276,8 +276,8 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
 def read_rules(name: str, home: Home) -> Rules:
     """The rules of that name (see `simulation.rules.CHOICES`); of `auto` those that fit the home, said if not ours.
 
-    A graph of VirtualHome 2.x says of no two things that they are CLOSE: its simulator knows what is near by what is ON
-    and INSIDE what, and so do the rules `evolving_graph`.
+    A graph of VirtualHome 2.x has no CLOSE edges between things: its simulator infers closeness from ON and INSIDE, and
+    so do the rules `evolving_graph`.
     """
     from hearth.commands import output
     from hearth.simulation.rules import CHOICES, EVOLVING_GRAPH

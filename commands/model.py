@@ -204,7 +204,7 @@ def examples(
     sketches: str = "annotated",
     as_json: bool = False,
 ) -> None:
-    """Write a page of predictions beside what people wrote: text, sketch, programs, scores, and pictures of the run.
+    """Write a page of predictions next to people's programs: text, sketch, programs, scores, and pictures of the run.
 
     They are taken at equal steps of LCS from the best to the worst, each of another activity.
 
@@ -232,7 +232,7 @@ def examples(
 
 @app.command()
 def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool = False) -> None:
-    """Draw figure 4-4 (SVG: what actions are taken for) or 4-7 (HTML: films, what was done, and what is read).
+    """Draw figure 4-4 (SVG: actions and their predictions) or 4-7 (HTML: films, true and predicted programs).
 
     \b
     Examples:

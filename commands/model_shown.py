@@ -1,4 +1,4 @@
-"""What `model show` prints: a text or a sketch, the programs that models write for homes, alone or side by side."""
+"""The output of `model show`: a text or a sketch, and programs that models write for homes, alone or side by side."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hearth.simulation.engine import Execution
 
 WIDTH = 46
-"""Of a program beside another."""
+"""Width of a program next to another, characters."""
 
 
 def shown(

@@ -81,7 +81,7 @@ def say(text: str, document: Any, as_json: bool) -> None:
 
 
 def note(text: str) -> None:
-    """Print information about the work itself, beside its result."""
+    """Print information about the work itself, apart from its result."""
     print(shown(text), file=sys.stderr)
 
 

@@ -26,8 +26,8 @@ def replay(
     Prints the number of executed programs and of end graphs reproduced exactly, in every state and relation, and the
     edges of each mismatch. The release is read in place, one program at a time.
 
-    Episodes are done again and compared tick by tick, with the state of the home, the poses and the failures as they
-    were recorded; the status is 1 if one differs.
+    Episodes are replayed and compared tick by tick, with the recorded state of the home, poses and failures; the status
+    is 1 if one differs.
 
     \b
     Examples:

@@ -1,4 +1,4 @@
-"""A run as text and as JSON: what each step changed, why it stopped, and what would fix it."""
+"""A run as text and as JSON: the changes of each step, the reason why it stopped, and the fix."""
 
 from __future__ import annotations
 

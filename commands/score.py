@@ -198,7 +198,7 @@ def dataset(
 
 @app.command("baselines")
 def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_json: bool = False) -> None:
-    """All scores of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
+    """Print all scores of simple baselines on a dataset's split, next to the thesis's tables 4.4, 4.5 and 5.2.
 
     The thesis's rows have the source `thesis`: they are its figures, of its own data.
     Needs scikit-learn.
