@@ -1,4 +1,4 @@
-"""What reading a damaged dataset raises, as ours."""
+"""Errors of Hearth in place of those that reading a damaged dataset raises."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -30,7 +30,7 @@ def using(place: Path | str) -> Iterator[None]:
     """The same where something is made of rows: faults of the machine, as a full disk, stay what they are.
 
     Raises:
-        HearthError: DAMAGED_FILE, in place of what our own use of values raised that no build writes.
+        HearthError: DAMAGED_FILE, in place of errors that our own code raises for values that no build writes.
     """
     try:
         yield
@@ -41,7 +41,7 @@ def using(place: Path | str) -> Iterator[None]:
 
 
 def unreadable(error: Exception, place: Path | str) -> HearthError:
-    """What is said of a dataset whose tables cannot be read."""
+    """Return the error for a dataset whose tables cannot be read."""
     said = str(error).split("\n", 1)[0]
     message = f"its tables cannot be read: {type(error).__name__} {said}"
     remedy = "`verify` names the files that are damaged; fetch or publish the dataset again"

@@ -1,4 +1,4 @@
-"""The user's own homes of a dataset: recorded in its manifest; their files are stored beside the tables."""
+"""The user's own homes of a dataset: recorded in its manifest; their files are stored next to the tables."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""The knowledge of a dataset: recorded in its manifest; the user's overlay is stored beside the tables."""
+"""The knowledge of a dataset: recorded in its manifest; the user's overlay is stored next to the tables."""
 
 import shutil
 from collections.abc import Callable, Iterable

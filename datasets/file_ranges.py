@@ -33,7 +33,7 @@ class Range(NamedTuple):
 
 
 def reading_between(folder: Path, table: str, low: str, high: str) -> str:
-    """What a query reads instead of a table when it asks for a range of ids: the files that may have some.
+    """Return the expression that replaces a table in a query for a range of ids: the files that may have some.
 
     Args:
         folder: of the dataset; of the present format, or one whose table has its own files.

@@ -55,7 +55,7 @@ def _action(name: str) -> str:
 
 
 def call_name(action: str) -> str:
-    """`SwitchOn` -> `switch_on`; Python's own words get an underscore, and what is not a name becomes one."""
+    """Return `switch_on` for `SwitchOn`; Python's own words get an underscore, and any other text becomes a name."""
     name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", action).lower()
     if not (name.isascii() and name.isidentifier()):
         return _identifier(name)

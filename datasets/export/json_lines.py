@@ -20,7 +20,7 @@ _WHERE = {
     **dict.fromkeys(("perturbations", "repairs"), _OF_PARENTS),
     **dict.fromkeys(("frames", "videos", "clips", "demonstration_frames"), _OF_RUNS),
 }
-"""Which rows a selection of programs has, by table; of other tables all."""
+"""The rows of a selection of programs, by table; of other tables all rows."""
 
 
 def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:

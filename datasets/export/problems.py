@@ -4,10 +4,11 @@ A problem has the execution's initial state; its goal is the execution's changes
 INSIDE and HOLDS edges of the things that it moved. CLOSE and FACING, which describe only the character's position, are
 not goals.
 
-Left out of a problem are things that cannot matter to it. What remains: the character and what it holds, what the goal
-names, what these are INSIDE, up to their rooms, what is ON a seat or bed among them, and every door that is closed or
-is to be. A plan of the pruned problem is one of the whole home, too: what was left out could only take up a hand, hide
-something, stop a walk or occupy a seat, and all that does so is kept.
+A problem leaves out the things that cannot matter to it. It keeps the character and the things that it holds, and the
+things that the goal names. It keeps the things that these are INSIDE, up to their rooms, and things ON a seat or bed
+among them. It keeps every door that is closed or is to be. A plan of the pruned problem is a plan of the whole home,
+too. A thing that was left out could only take up a hand, hide something, stop a walk or occupy a seat, and every thing
+with such an effect is kept.
 """
 
 from collections.abc import Iterator

@@ -27,7 +27,10 @@ _BESIDE = (
     r"regexp_replace(regexp_extract(current_setting('temp_directory'), '^(.*[/\\])catalog\.duckdb\.tmp$', 1), "
     r"'([*?\[])', '[\1]', 'g')"
 )
-"""The folder of the opened database: DuckDB sets its folder for temporary files beside it, and gives no other path."""
+"""The folder of the opened database.
+
+DuckDB sets its folder for temporary files next to the database, and gives no other path.
+"""
 
 
 def statements(root: str = "") -> str:
@@ -82,7 +85,7 @@ def earlier(format: int) -> dict[str, Any]:
 
 
 def reading(table: str, format: int = FORMAT, root: str = "") -> str:
-    """What a query reads a table from: its files, or, in a dataset of an earlier format, a query over them.
+    """Return the expression for a table: its files, or, in a dataset of an earlier format, a query over them.
 
     Args:
         table: its name.

@@ -15,9 +15,7 @@ from hearth.storage.files import file_digest, write_json
 from hearth.version import RELEASED, VERSION
 
 NAME = "croissant.json"
-SUMMARY = (
-    "Programs of household activities, run in homes: what was done, what changed, what broke and how it was mended."
-)
+SUMMARY = "Programs of household activities, run in homes: their actions, the changes, the failures and the repairs."
 PARQUET = "application/x-parquet"
 LICENSE = "https://spdx.org/licenses/MIT.html"
 
@@ -118,7 +116,7 @@ def _place(table: str, kind: pa.StructType, path: str) -> dict[str, Any]:
 
 
 def _head(table: str, path: str, name: str, meaning: str, listed: bool) -> dict[str, Any]:
-    """What every field has; `steps[*].objects[0].name` is `programs/steps/objects/0/name`."""
+    """Return the common keys of every field; `steps[*].objects[0].name` is `programs/steps/objects/0/name`."""
     words = path.replace("[*]", "").replace("[", ".").replace("]", "").split(".")
     head = {"@type": "cr:Field", "@id": "/".join([table, *words]), "name": name, "description": meaning}
     return {**head, "repeated": True} if listed else head

@@ -1,4 +1,4 @@
-"""Which of a program's sketches is taken: those of people, or those inferred from what the repairs can restore."""
+"""The choice among a program's sketches: people's, or those inferred from the steps that repairs can restore."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What splits depend on, by column: hundreds of thousands of programs and their runs take some bytes each."""
+"""The inputs of splits, by column: hundreds of thousands of programs and their runs take some bytes each."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class Near:
         return found
 
     def among(self, values: NDArray[np.bool_], programs: NDArray[Any]) -> NDArray[np.bool_]:
-        """Which of some programs have one of some values; `values` as `around` gives them."""
+        """Return whether each of some programs has one of some values; `values` as `around` gives them."""
         found: NDArray[np.bool_] = values[self.numbers[programs]]
         return found
 
@@ -200,7 +200,7 @@ def _different(texts: Texts) -> tuple[NDArray[np.int32], Texts]:
 
 
 def _taken(column: array[int] | NDArray[Any], rows: NDArray[np.int32]) -> NDArray[Any]:
-    """What a column has in some rows, `NOTHING` in the row `NOTHING`."""
+    """Return a column's values in some rows, `NOTHING` in the row `NOTHING`."""
     values = np.append(np.array(column), np.array([NOTHING], np.array(column).dtype))
     return values[rows]
 

@@ -2,7 +2,7 @@
 
 Near duplicates are assigned together, whatever their activity: a program and its repaired descendants, programs with
 nearly the same steps, and programs with nearly the same description. If a rule would still separate such a group, its
-programs outside the latest part have none. The leakage that remains is measured, beside that of a random split.
+programs outside the latest part have none. The remaining leakage is measured and compared with that of a random split.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ class SplitRows(Iterable[SplitRow]):
         return self._programs.ids[original]
 
     def _rule(self, split: str) -> Callable[[int, str], str | None]:
-        """What gives the part of a run in a split, by the place of its program and its home."""
+        """Return a function that gives the part of a run in a split, by the place of its program and its home."""
         if split == "activities":
             return lambda place, home: part_name(self._part[place])
         if split == "held_out_home":

@@ -15,7 +15,7 @@ _QUERY = "SELECT file FROM frames WHERE modality = 'rgb' UNION SELECT file FROM 
 
 
 def shown_as(dataset: Dataset) -> dict[str, str]:
-    """What the report calls each picture and film that the tables name and the folder holds."""
+    """Return the report's name for each picture and film that the tables name and the folder holds."""
     found = [name for (name,) in dataset.rows(_QUERY)[1] if name and _source(dataset, name)]
     return {name: f"{FOLDER}/{number}{PurePosixPath(name).suffix}" for number, name in enumerate(found)}
 

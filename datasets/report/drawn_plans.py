@@ -67,7 +67,7 @@ def _names(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
 
 
 def _room_name(node: Node, box: Box) -> Rectangle:
-    """What the name of a room covers; its height is the letters'."""
+    """Return the area of a room's name; its height is the letters'."""
     x, y, width, _ = _rectangle(box)
     length = max(len(node.class_name), 1)
     size = min(0.35, 1.6 * (width - 0.3) / length)

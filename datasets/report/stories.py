@@ -31,7 +31,7 @@ class Stories:
 
     @cached_property
     def pictures(self) -> dict[str, str]:
-        """What the report calls each picture and film."""
+        """Return the report's name for each picture and film."""
         return shown_as(self.dataset)
 
     @cached_property
@@ -133,8 +133,8 @@ def _about(change: Change, shown: set[int]) -> Change:
 
 
 def _graph(graph: WorkingGraph, names: dict[int, str], shown: set[int], people: set[int]) -> Row:
-    # Rooms contain everything, and pictures face everything: only locations of named things, and what characters face,
-    # are shown.
+    # Rooms contain everything, and pictures face everything. Only locations of named things, and nodes that characters
+    # face, are shown.
     kept = sorted(e for e in graph.edges if e.source in shown and (e.relation != "FACING" or e.source in people))
     kept = kept[:_MOST_RELATIONS]
     nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & graph.nodes.keys())})
