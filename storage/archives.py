@@ -22,7 +22,7 @@ LARGEST_MEMBER = 4_000_000_000
 """Bytes that a packed file may unpack to while it is read as a stream."""
 
 MOST_PACKED = 50
-"""How many times its size a packed file may unpack to, once that is more than `_HARMLESS` bytes."""
+"""Largest ratio of a packed file's contents to its size, once the contents exceed `_HARMLESS` bytes."""
 
 _HARMLESS = 8_000_000
 
@@ -48,7 +48,7 @@ class Member:
 
 
 Place = Path | Member
-"""Where a file is."""
+"""The place of a file."""
 
 
 class DamagedError(HearthError):
@@ -74,7 +74,7 @@ def archive(path: Path) -> zipfile.ZipFile:
 
 
 def members(found: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
-    """What an archive holds, folders left out; `is_dir` itself breaks at a name that is empty."""
+    """Return the files of an archive, without folders; `is_dir` itself breaks at a name that is empty."""
     return [info for info in found.infolist() if not info.filename.endswith("/")]
 
 

@@ -1,4 +1,4 @@
-"""A folder takes the place of another in one step: whoever opens it finds the old or the new one, never none."""
+"""A folder takes the place of another in one step: a reader that opens it finds the old or the new one, never none."""
 
 import ctypes
 import os

@@ -61,7 +61,7 @@ def fetched(path: str | Path) -> Path:
 
 
 def _places(folder: str) -> tuple[str, ...]:
-    """Return where a dataset is: in its folder or, while a build replaces it, beside it."""
+    """Return the possible places of a dataset: its folder and, while a build replaces it, the folder next to it."""
     path = PurePosixPath(folder)
     return (folder, str(path.with_name(f".{path.name}"))) if len(path.parts) > 1 else (folder,)
 
@@ -140,7 +140,7 @@ def _versions(infos: dict[str, dict[str, Any]]) -> dict[str, str]:
 
 
 def _version(info: dict[str, Any]) -> str:
-    """What changes when a file in a store is written anew."""
+    """Return a digest that changes when a file in a store is written anew."""
     return value_digest([str(info.get(key)) for key in ("size", "ETag", "etag", "mtime", "created", "LastModified")])
 
 

@@ -21,13 +21,13 @@ TEMPORARY = ".tmp"
 
 
 def is_temporary(name: str) -> bool:
-    """Return whether a file's name is that of something half written, or of what a library keeps beside such a file."""
+    """Return whether a file's name is that of a half-written file, or of a file that a library keeps next to one."""
     return TEMPORARY in Path(name).suffixes
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary name beside `path`; on success it is fsynced and takes the place of `path`."""
+    """Yield a temporary name next to `path`; on success it is fsynced and takes the place of `path`."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}{TEMPORARY}")
     try:
         yield temporary
@@ -113,7 +113,7 @@ def files_digest(files: Iterable[Path], folder: Path) -> str:
 
 
 SERVED = ".server"
-"""Folder in which `serve` keeps its store, in the folder of what it collects."""
+"""Folder of `serve`'s store, in the folder of the files that it collects."""
 
 
 def walk(folder: Path) -> Iterator[Path]:

@@ -22,7 +22,7 @@ LARGEST_TABLE = 1 << 30
 
 
 _INHERITED = ("/dev/stdin", "/dev/fd/")
-"""Where a shell puts what it opened for a command, as in `check <(make_programs)`."""
+"""Places of the files that a shell opens for a command, as in `check <(make_programs)`."""
 
 
 def read_input(path: Path, largest: int = LARGEST) -> bytes:
@@ -80,7 +80,7 @@ def _lines(file: BinaryIO, name: str, longest: int) -> Iterator[bytes]:
 def _opened(path: Path) -> Iterator[BinaryIO]:
     inherited = str(path).startswith(_INHERITED)
     try:
-        # Not waiting for whoever writes into a pipe; of regular files the flag changes nothing.
+        # The call does not wait for the writer of a pipe; of regular files the flag changes nothing.
         descriptor = os.open(path, os.O_RDONLY | (0 if inherited else os.O_NONBLOCK))
     except (OSError, ValueError) as error:
         missing = isinstance(error, FileNotFoundError | NotADirectoryError | PermissionError)
@@ -99,7 +99,7 @@ def _opened(path: Path) -> Iterator[BinaryIO]:
 
 @contextmanager
 def placed(path: Path) -> Iterator[Path]:
-    """The path itself of a file or folder; else a temporary file with what standard input or a shell's pipe holds.
+    """Yield the path of a file or folder itself; else a temporary copy of standard input or of a shell's pipe.
 
     Raises:
         HearthError: as of `read_input`.

@@ -32,7 +32,7 @@ class Manifest:
 
     @property
     def counts(self) -> Counts:
-        """What became of its records."""
+        """Return the counts of its records."""
         return Counts.from_json(self.content["counts"])
 
     @property

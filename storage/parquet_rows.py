@@ -13,7 +13,7 @@ HARMLESS_ROWS = 1_000_000
 """Rows that any file may have; more only if it has as many bytes: each row has an id of its own."""
 
 MOST_PACKED = 200
-"""How many times its size a file may unpack to, once that is more than `LARGEST_TABLE` bytes."""
+"""Largest ratio of a file's contents to its size, once the contents exceed `LARGEST_TABLE` bytes."""
 
 BATCH = 1_000
 """Rows in memory at a time, where none is large."""

@@ -64,7 +64,7 @@ class Reject:
 
     @property
     def code(self) -> str:
-        """What it counts under."""
+        """Return the code that it is counted under."""
         return INTERNAL_ERROR if self.internal else str(self.diagnostics[0].code)
 
     def rows(self) -> list[Row]:

@@ -38,7 +38,7 @@ def filesystem(url: str) -> tuple[Any, str]:
 
 
 def listed(fs: Any, root: str) -> dict[str, dict[str, Any]]:
-    """What a store lists below a folder, by names within it, sorted; nothing where the folder does not exist.
+    """Return a store's entries below a folder, by names within it, sorted; none where the folder does not exist.
 
     Raises:
         HearthError: DAMAGED_FILE: a name leaves the folder, or a link leads out of it.

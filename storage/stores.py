@@ -1,8 +1,8 @@
 """Folders at URLs (S3 or any other store of fsspec) that are built in, worked on in a local copy.
 
-Complete parts go to the store at once, a stage's manifest last, so that the store, too, only ever holds what is whole;
-a build on another machine takes up what it finds there. A folder that is read while it is replaced is written beside
-itself, and its place is taken inside the store.
+Complete parts go to the store at once, a stage's manifest last. So the store, too, only ever holds complete parts, and
+a build on another machine continues from them. The replacement of a folder that may be read is written next to it, and
+takes its place inside the store.
 """
 
 import os
@@ -133,15 +133,15 @@ class Store:
             self._sync(stage, stage)
 
     def tidy(self, stage: str) -> None:
-        """Remove what a stopped build left beside a stage's folder."""
+        """Remove the files that a stopped build left next to a stage's folder."""
         with reported(self.url):
             self._remove(_following(stage), self._under(_following(stage)))
 
     def replace(self, stage: str) -> None:
         """Make a stage's folder in the store the same as the local one; readers find the old or the new one throughout.
 
-        Until the new one is complete beside the old one, nothing of the old one changes; until it has taken its place,
-        it stays there. See `fetching`.
+        Until the new one is complete next to the old one, nothing of the old one changes. The new one stays there until
+        it has taken the place of the old one. See `fetching`.
         """
         with reported(self.url):
             self._sync(stage, _following(stage))
@@ -158,7 +158,7 @@ class Store:
         self._remove(_following(stage), [NAME, *sorted(new - {NAME})])
 
     def _go_on_replacing(self) -> None:
-        """Let every version that is complete beside its folder take its place: a build was stopped meanwhile."""
+        """Let every version that is complete next to its folder take its place: a build was stopped meanwhile."""
         for folder, _, name in (path.rpartition("/") for path in self._names()):
             if name == NAME and folder.startswith(".") and "/" not in folder:
                 self._take_place(folder.removeprefix("."))
