@@ -42,11 +42,11 @@ ORIGINAL = "original"
 """By which rows of originals in perturbed environments are counted; others are counted by their number of repairs."""
 
 _DONE = frozenset({Code.DUPLICATE, Code.UNPERTURBED})
-"""Why a program that runs and reaches its goal is refused."""
+"""Reasons to refuse a program that runs and reaches its goal."""
 
 
 class Context:
-    """What a record is processed with."""
+    """The resources for processing a record."""
 
     def __init__(self, settings: Settings, plan: Plan) -> None:
         self.homes = Homes(settings)

@@ -40,11 +40,11 @@ _SHOWN = 20
 
 @dataclass(frozen=True, slots=True)
 class Funnel:
-    """What became of every record.
+    """The counts of records through the stages of a build.
 
     Attributes:
         stages: counts by stage, in order, of the stages that have run.
-        records: what a record of each of them is, and what was left out.
+        records: the meaning of a record of each of them, and a note of the records that were left out.
         fresh: stages that were not up to date.
         dataset: the folder of the published dataset; None before it is published.
         columns: the columns of each table that was read, by field.

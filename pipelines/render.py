@@ -44,7 +44,7 @@ FILMS = "films"
 
 
 class Context(NamedTuple):
-    """What a case is filmed with."""
+    """The resources for filming a case."""
 
     homes: Homes
     job: Job
@@ -294,7 +294,7 @@ def _sample_files(settings: Settings) -> list[str]:
 
 
 def _steps(settings: Settings) -> dict[str, Hashable]:
-    """What distinguishes the steps of each program: actions and classes."""
+    """Return the keys that distinguish the steps of each program: actions and classes."""
     files = [settings.folder("sample") / file for file in _sample_files(settings)]
     return {each.program_id: each.steps for each in programs_of(files, settings.seed)}
 

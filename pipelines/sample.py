@@ -38,7 +38,7 @@ SHARED_BY = 32
 
 
 class Context(NamedTuple):
-    """What a record is processed with."""
+    """The resources for processing a record."""
 
     homes: Homes
     names: tuple[str, ...]

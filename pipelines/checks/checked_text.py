@@ -1,4 +1,4 @@
-"""The faults and warnings of program text: what `check` prints, and what annotators see while they write."""
+"""The faults and warnings of program text: the output of `check`, which annotators see while they write."""
 
 from __future__ import annotations
 

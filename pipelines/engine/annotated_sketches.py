@@ -1,4 +1,4 @@
-"""Annotated sketches of published programs, and what their augmented programs inherit of them (thesis 5.5.1)."""
+"""Annotated sketches of published programs, and those that their augmented programs inherit (thesis 5.5.1)."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
 
 PARENT = "_parent"
-"""What the origin of an inherited annotation ends with."""
+"""Ending of the origin of an inherited annotation."""
 
 
 ANNOTATED = ("kind", "program_id", "place", "description_id", "keep", "text")
-"""Columns of what `ingest` reads that an annotation has."""
+"""Columns of an annotation, among those that `ingest` reads."""
 
 
 class Annotations(NamedTuple):

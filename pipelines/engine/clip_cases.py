@@ -1,4 +1,4 @@
-"""Which executions are filmed for clips, and in which homes: a step list is in one part, and so is a test's home.
+"""The executions that are filmed for clips, and their homes: a step list is in one part, and so is a test's home.
 
 The thesis films training in homes 1-4, validation in home 5 and tests in all (4.4). Homes count in their order; without
 seven of them the last two are still never seen in training.

@@ -1,4 +1,4 @@
-"""Which executions are pictured from above: one of each of some programs, in a home drawn for it."""
+"""The executions that are pictured from above: one of each of some programs, in a home drawn for it."""
 
 from __future__ import annotations
 

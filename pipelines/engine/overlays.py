@@ -1,4 +1,4 @@
-"""What is the user's own in a build, knowledge and homes: kept for stages run alone, named in plans and manifests."""
+"""The user's own parts of a build, knowledge and homes: kept for stages run alone, named in plans and manifests."""
 
 from dataclasses import replace
 from pathlib import Path

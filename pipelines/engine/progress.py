@@ -138,7 +138,7 @@ class Bars(Progress):
 
 
 def line(stage: str, counts: Counts, seconds: float, fresh: bool) -> str:
-    """What became of a stage's records, in one line."""
+    """Return the outcomes of a stage's records, in one line."""
     if not fresh:
         return f"{stage:>8}  up to date"
     rate = counts.records_in / max(seconds, 1e-3)

@@ -1,4 +1,4 @@
-"""Which columns of a table, or keys of a JSON record, hold which field: as given, or guessed from their names."""
+"""The columns of a table, or keys of a JSON record, by field: as given, or guessed from their names."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -47,7 +47,7 @@ def read_columns(text: str) -> dict[str, str]:
 
 
 class Asked(dict[str, str]):
-    """The columns that `--columns` gives, and what is found in one file.
+    """The columns that `--columns` gives, and the findings in one file.
 
     Attributes:
         found: the column of each field so far.

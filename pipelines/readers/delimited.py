@@ -30,7 +30,7 @@ csv.field_size_limit(LARGEST_FILE)  # of the process: a cell is refused by the l
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The columns of a table and what separates them."""
+    """The columns of a table and their separator."""
 
     columns: tuple[str, ...]
     delimiter: str

@@ -117,7 +117,7 @@ class _Scanner:
 
     def _begin(self, token: str, at: int) -> None:
         if self._began or token not in _OPENS or uncommented(self._buffer[:at]).strip():
-            raise BrokenError("text beside the list or object", self._here(at))
+            raise BrokenError("text next to the list or object", self._here(at))
         self._began = True
         self._stack.append(token)
 

@@ -47,9 +47,9 @@ def _are_plans(value: dict[str, Any], given: FieldColumns) -> bool:
 
 
 def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> Iterator[tuple[str, Any]]:
-    """Yield the records of the parts of an object; a part that can't be a record stands beside the others.
+    """Yield the records of the parts of an object; a part that can't be a record is yielded as one of the others.
 
-    A record without a title has the title beside it, or its key.
+    A record without a title has the title among the object's keys, or its own key.
     """
     titled = guessed([key for key, part in value.items() if isinstance(part, str)], {}, exact=True).get("title", "")
     is_asked = plain_name(titled) not in ("", "title", "name")  # as those may be of the whole file

@@ -69,8 +69,10 @@ def pair_of(value: Any) -> tuple[JsonObject, Change | None]:
 
 
 def _by_texts(data: bytes) -> tuple[JsonObject, Change | None]:
-    """Both, most edges looked up by their texts: exact, because each text is a list of objects by itself, and what is
-    left is JSON in which the number of each run of texts stands where a graph has its edges.
+    """Return both, with most edges looked up by their texts.
+
+    The result is exact, because each text is a list of objects by itself. The rest is JSON in which the number of each
+    run of texts stands where a graph has its edges.
     """
     rest, runs = _cut(data)
     pair = orjson.loads(rest)
@@ -138,7 +140,7 @@ def _sorted(portions: Portions) -> Any:
 
 
 def _missing(some: Any, edges: Any) -> Any:
-    """Which are not among edges in order."""
+    """Return the items that are not among some ordered edges."""
     import numpy as np
 
     return some[edges[np.minimum(np.searchsorted(edges, some), len(edges) - 1)] != some]

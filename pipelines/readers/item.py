@@ -22,7 +22,7 @@ _HASHED = re.compile(r"[0-9a-f]{16}", re.ASCII)
 
 
 def worker_hash(worker: str, salt: str) -> str:
-    """What stands for the id of a crowd's worker: 16 hexadecimal digits; an id that is such a hash already stays."""
+    """Return the substitute for a crowd worker's id: 16 hexadecimal digits; an id that is such a hash already stays."""
     if _HASHED.fullmatch(worker):
         return worker
     return blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest()

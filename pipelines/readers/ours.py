@@ -120,7 +120,7 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
 
 
 def _version(value: dict[str, Any]) -> str:
-    """What changes when the places of a record's program do."""
+    """Return a text that changes when the places of a record's program do."""
     texts = (value[key] for key in ("steps", "program", "text") if key in value)
     found = [f"{text.line}.{text.column}.{len(text.raw)}" for text in texts_in(list(texts))]
     return " ".join(found[:1] + found[-1:])

@@ -99,7 +99,7 @@ def text_at(value: str, line: int, column: int, raw: str, unit: str = "") -> Tex
 
 
 class Composed(Text):
-    """A line made of texts from several places, and of what stands between them."""
+    """A line made of texts from several places, and of the characters between them."""
 
     __slots__ = ("parts",)
     parts: list[tuple[int, Text]]

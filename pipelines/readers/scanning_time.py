@@ -66,7 +66,7 @@ class ScanningTime:
 
 
 def _packed(path: Place) -> Path | None:
-    """The packed file that a place is in or is; None for what is not packed."""
+    """Return the packed file that a place is in or is; None for a file that is not packed."""
     if isinstance(path, Member):
         return path.archive
     if not path.is_file():

@@ -20,7 +20,7 @@ class StepRow(NamedTuple):
     Attributes:
         key: of its task; "" where the row says nothing of it.
         number: of the step; None where rows are not numbered.
-        is_sure: whether it is a step also where no other row of its task stands beside it.
+        is_sure: whether it is a step also where no row next to it has its task.
         value: the record so far, with `steps`.
     """
 
@@ -97,7 +97,7 @@ def row_of_json(found: Any, given: FieldColumns) -> StepRow | None:
 
 
 def _step(value: Mapping[str, Any], others: Container[str], number: str) -> str | None:
-    """Return the step of an object beside its other keys."""
+    """Return the step of an object, given its other keys."""
     rest = {key: part for key, part in value.items() if key not in others}
     return step_of(rest) if is_action(rest) else text_of({**rest, number: value[number]})
 

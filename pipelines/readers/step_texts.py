@@ -8,13 +8,13 @@ from hearth.pipelines.readers.json_actions import looks_like_mapping, mapped_ste
 from hearth.pipelines.readers.placed_texts import Text, pieces_of
 
 Places = list[list[int]] | None
-"""Where the lines of a program's text stand in the file, as in `hearth.schemas.text_places`."""
+"""Positions of the lines of a program's text in the file, as in `hearth.schemas.text_places`."""
 
 IN_LINE = re.compile(r"\s*(?:plan|steps|answer)\s*:\s*1[.)]\s+\S.*\s2[.)]\s", re.IGNORECASE)
 """A whole plan on a line, as `Plan: 1. walk to kitchen 2. find milk`."""
 
 SAID = re.compile(r"\s*(?:[\w'’]+\s+){0,3}(?:plan|steps|routine|actions)\s*:\s*(?=\S)", re.IGNORECASE)
-"""What is said before a plan on its line, as in `my plan: wake up, drink coffee`."""
+"""The words before a plan on its line, as in `my plan: wake up, drink coffee`."""
 
 _NUMBERS = re.compile(r"(?<!\S)\d{1,3}[.)]\s+")
 _ENDS = frozenset({"done", "end", "stop", ""})
