@@ -216,7 +216,7 @@ class Conduct:
         return self._append(standing, "answered", {**named, "answers": given})
 
     def leave(self, person: str, why: str = "left") -> Standing:
-        """Let a person leave; the place goes to the next person who joins. A person who is done has nothing to leave."""
+        """Let a person leave, unless the person is done; the place goes to the next person who joins."""
         standing = self.standing(person)
         if standing.stage in (DONE, LEFT):
             return standing
