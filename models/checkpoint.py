@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 FORMAT = 1
-"""Of checkpoints; it changes when older ones can no longer be read."""
+"""Version of the format of checkpoints; it changes when older ones can no longer be read."""
 
 NAME = "model.json"
 WEIGHTS = "weights.safetensors"
@@ -29,7 +29,7 @@ LARGEST_WEIGHTS = 2_000_000_000
 """Bytes of weights that are read."""
 
 LICENCE = "MIT"
-"""Of checkpoints trained on our own corpora, which are ours; `trained.data_licence` has that of the data."""
+"""License of checkpoints trained on our own corpora, which are ours; `trained.data_licence` has that of the data."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Checkpoint:
         settings: of the model, as JSON.
         content: vocabularies and whatever else is not weights, as JSON.
         weights: arrays by name.
-        trained: what it was trained on and how: `dataset`, `digest`, `split`, `seed`, `epochs`, `minutes`, `curves`.
+        trained: its data and its training: `dataset`, `digest`, `split`, `seed`, `epochs`, `minutes`, `curves`.
     """
 
     model: str
@@ -118,7 +118,7 @@ def identity(folder: Path) -> str:
     document = _document(folder / NAME)
     if not isinstance(document, dict):
         return file_digest(folder / NAME)
-    value_digest(document)  # refuses what stands too deep for the next line
+    value_digest(document)  # refuses values nested too deep for the next line
     return value_digest({**document, "trained": _without_minutes(document.get("trained"))})
 
 
@@ -129,7 +129,7 @@ def _without_minutes(trained: Any) -> Any:
 
 
 def _facts_fit(trained: Mapping[str, Any]) -> bool:
-    """Return whether what is computed with, or drawn, of how a model was trained is numbers."""
+    """Return whether the facts about a training that are computed with or drawn are numbers."""
     phases = [trained, trained.get("imitation", {})]
     return all(isinstance(phase, dict) and _phase_fits(phase) for phase in phases)
 
@@ -276,4 +276,4 @@ _ABOUT = {
         (_NOT_REAL, "It knows the things and furniture of one challenge's goals, and helps with no others."),
     ),
 }
-"""By the first word of a model's name."""
+"""Texts of cards, by the first word of a model's name."""

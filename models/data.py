@@ -77,9 +77,9 @@ class Corpus:
         split: by which they were parted.
         train: to learn from.
         validation: to decide when to stop; their activities are not in `train`.
-        shared: what of `train` is in the split's test parts, too; see `shared`.
+        shared: the part of `train` that is in the split's test parts, too; see `shared`.
         instead: how many examples the split's own part `validation` has of other activities, where they were too few.
-        writes: what models learn to write from it.
+        writes: the output that models learn to write from it.
     """
 
     dataset: Dataset
@@ -106,7 +106,7 @@ class Corpus:
         return self.validation
 
     def of_sketches(self) -> Corpus:
-        """The same with sketches in the place of programs; programs without one are left out."""
+        """Return the corpus with sketches in the place of programs; programs without one are left out."""
         train, validation = (
             tuple(replace(each, steps=each.sketch, keep=()) for each in part if each.sketch)
             for part in (self.train, self.validation)

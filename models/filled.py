@@ -48,5 +48,5 @@ class _Uninitialised(TorchFunctionMode):
 
 
 def _shape(array: np.ndarray | torch.Tensor) -> tuple[int, ...]:
-    """Of an array; of a single number that of a list of one, which is how it is stored."""
+    """Return the shape of an array, and for a single number that of a list of one, which is how it is stored."""
     return tuple(array.shape) or (1,)

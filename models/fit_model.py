@@ -33,7 +33,7 @@ def fit(
     how: Mapping[str, Any],
     seen: Seen = unseen,
 ) -> dict[str, Any]:
-    """Train a model and write its checkpoint; what the checkpoint records of the training.
+    """Train a model and write its checkpoint, and return the checkpoint's record of the training.
 
     Args:
         name: in the registry.

@@ -23,8 +23,10 @@ MOST = {
     **dict.fromkeys(("d", "h", "hidden", "size", "vector", "width"), 10_000),
     **dict.fromkeys(("dropout", "joined", "light", "share", "unnamed"), 1),
 }
-"""The largest numbers of some settings: what is done in turn, sizes whose squares are in memory, and shares. A greater
-`sharpness` makes weights 0."""
+"""Largest values of some settings.
+
+Repetitions, sizes whose squares are in memory, and shares. A greater `sharpness` makes weights 0.
+"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -274,7 +274,7 @@ def restore(model: str | Path) -> tuple[str, Trained]:
 
 
 def restore_any(model: str | Path) -> tuple[str, Any]:
-    """The same of any model.
+    """Return the name and the trained model of a checkpoint of any kind.
 
     Raises:
         HearthError: there is none, it is broken or of another version, or the extra is not installed.

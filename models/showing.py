@@ -1,4 +1,4 @@
-"""From words or a sketch to a program that runs in a home, each stage by itself: words, sketch, program, execution."""
+"""The way from words or a sketch to a program that runs in a home: words, sketch, program, execution."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def show_text(trained: Trained, text: str, world: World, writer: Trained | None 
 
     Args:
         trained: a model of texts.
-        text: what is to be done.
+        text: the task to do.
         world: where the program runs.
-        writer: a model of sketches, which takes what the first wrote for a sketch; without one the planner does.
+        writer: a model of sketches, which reads the output of the first as a sketch; without one the planner does.
         beam: programs followed at once.
     """
     request = Request("text", "", text, (), world)
@@ -61,7 +61,7 @@ def show_sketch(writer: Trained | None, sketch: Steps, world: World, text: str =
         writer: a model of sketches; None for the planner.
         sketch: without nodes.
         world: where the program runs.
-        text: what the sketch is of, for models that read it.
+        text: the text of the sketch, for models that read it.
         beam: programs followed at once.
     """
     request = Request("sketch", "", text, sketch, world)

@@ -27,13 +27,13 @@ LSTM = ("mle", "mle-composed")
 CRITICS = ("pg-lcs", "pg-lcs-sim")
 
 CLASSIFIERS = ("clips-seen", "clips-context")
-"""Of clips by true masks."""
+"""Classifiers of clips by true masks."""
 
 PREDICTED = "clips-predicted"
 """The one that learns from predicted masks, too."""
 
 WRITERS = ("films-mle", "films-pg-lcs", "films-pg-lcs-sim")
-"""Of programs of films."""
+"""Writers of programs of films."""
 
 STARTS: Mapping[str, str] = MappingProxyType({
     **dict.fromkeys((*CRITICS, "consensus"), "mle-composed"),
@@ -44,7 +44,7 @@ STARTS: Mapping[str, str] = MappingProxyType({
 """Models that go on from another one of the same seed, or read its answers."""
 
 ONCE = ("masks",)
-"""Of these, those that are trained with one seed alone: films of all seeds' classifiers are the same."""
+"""Models that are trained with one seed alone: films of all seeds' classifiers are the same."""
 
 GRAPHS = ("unaries", "graph", "fcactgraph", "gruactgraph", "resactgraph")
 
@@ -78,7 +78,7 @@ class Needed(NamedTuple):
     """A setting that is not the usual one, as `model train --set` takes it."""
 
     def folder(self, out: Path) -> Path:
-        """Of its checkpoint; tables share them."""
+        """Return the folder of its checkpoint; tables share the checkpoints."""
         name = ".".join(part for part in (self.name, self.changed) if part)
         return inside(out / "models", f"{self.data}.{self.split}.{name}.{self.seed}")
 
@@ -91,7 +91,7 @@ class Needed(NamedTuple):
         return self._replace(name=name, changed="", seed=0 if name in ONCE else self.seed)
 
     def settings(self, out: Path) -> list[str]:
-        """Those that are not the usual ones, as `model train --set` takes them."""
+        """Return the settings that are not the usual ones, as `model train --set` takes them."""
         many = DRAWN_SETTINGS if self.data == "drawn" and self.name in LSTM else ()
         word = "masks" if self.name == PREDICTED else "start"
         start = [f"{word}={self.before.folder(out)}"] if self.before else []
@@ -144,7 +144,7 @@ class Plan:
         return self.table if self.split == "activities" else f"{self.table}-{self.split}"
 
     def needed(self, seeds: int) -> Iterator[Needed]:
-        """Its models, each after the one that it goes on from."""
+        """Yield its models, each after the one that it goes on from."""
         for name in self.once:
             yield Needed(self.data, self.split, name, 0)
         for name, changed in (*((name, "") for name in self.seeded), *self.varied):
@@ -168,7 +168,10 @@ PLANS: dict[str, Plan] = {plan.name: plan for plan in (
     Plan("4.3b", "clips", "activities", (), ("clips-rgb",)),
     Plan("4.6", "clips", "activities", (), ("clips-context", *WRITERS)),
 )}  # fmt: skip
-"""By name: `4.4-pairs`, `4.5`. A pair of tasks, or the paraphrases, of the test are not in training."""
+"""The parts of tables by name: `4.4-pairs`, `4.5`.
+
+A pair of tasks, or the paraphrases, of the test are not in training.
+"""
 
 
 def chosen(names: Sequence[str], without: Sequence[Data] = ()) -> list[Plan]:

@@ -50,7 +50,7 @@ class Task(Generic[B]):
         batches: the batches of an epoch, in an order drawn from the generator.
         loss: the mean loss of a batch, a tensor of one number.
         validate: a score of the module as it is, the greater the better.
-        identity: what the task is made of, as JSON; a kept state of another task is not continued.
+        identity: the parts of the task, as JSON; a kept state of another task is not continued.
     """
 
     module: torch.nn.Module
@@ -101,7 +101,7 @@ def train(task: Task[B], how: Training, seen: Seen = unseen) -> Outcome:
     same weights; a GPU adds some gradients in another order each time.
 
     Args:
-        task: what is trained.
+        task: the task to train.
         how: how long and how.
         seen: reports progress: epochs done, and their greatest number.
 
@@ -201,7 +201,7 @@ class _State:
             self.module.load_state_dict(self.best)
 
     def keep(self, epochs: Sequence[Epoch]) -> None:
-        """One file, so that whoever is stopped has the weights of the epochs that it says, or those before."""
+        """Write one file, so that a stopped run has the weights of the epochs that it lists, or those before."""
         if self.folder is None:
             return
         self.folder.mkdir(parents=True, exist_ok=True)

@@ -31,13 +31,13 @@ class Partial(NamedTuple):
 
 
 NONE = -1
-"""In place of a node: the step has no such object."""
+"""Number in place of a node: the step has no such object."""
 
 NOTHING = Partial()
 
 
 class Affordances:
-    """For each argument of each action, the nodes of a home whose class the grammar allows: constant for a home.
+    """The nodes of a home that each argument of each action may be, by the grammar: constant for a home.
 
     Executability requires affordances as well as the engine (A.3). If every step is legal but affordances are ignored,
     about half of the programs are executable.

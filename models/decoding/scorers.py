@@ -29,7 +29,7 @@ class Asked(NamedTuple):
         state: the scorer's own, of the steps so far.
         chosen: the parts of the next step chosen before.
         world: after the steps so far; as at the start where decoding is free.
-        options: what may come next; None where decoding is free.
+        options: the allowed next steps; None where decoding is free.
         steps: so far.
     """
 

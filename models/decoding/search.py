@@ -31,7 +31,7 @@ class Search:
     Attributes:
         beam: programs kept at a time.
         temperature: of sampling; 0 takes the best.
-        constrained: whether only what can be done is chosen.
+        constrained: whether only possible steps are chosen.
         least: steps at least, where something can be done; the empty program runs, too, and says nothing.
         longest: steps at most.
         free_moves: steps in a row at most that only go, look or prepare. Of 1,771 references three have more.
@@ -231,7 +231,7 @@ class _Decoder:
         world = draft.world
         if draft.options is not None:
             after = act(world, step, self.starts[draft.row].rules)
-            assert not isinstance(after, Failure), after.message()  # the mask is exactly what the engine does
+            assert not isinstance(after, Failure), after.message()  # the mask is exact, as the engine is
             world = after
         free = draft.free + 1 if step.action in self.free else 0
         return replace(draft, world=world, steps=(*draft.steps, step), chosen=NOTHING, whole=None, free=free)
@@ -263,7 +263,7 @@ def _allows(options: Options, step: Step, home: Home) -> bool:
 
 
 def _mean(draft: _Draft) -> float:
-    """Its score by step: a sum would prefer short programs."""
+    """Return a draft's score by step: a sum would prefer short programs."""
     return draft.score / (len(draft.steps) + 1)
 
 

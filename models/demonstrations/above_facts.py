@@ -15,10 +15,10 @@ MOST_SEEN = 16
 """Classes of a picture at most: those that are nearest to the person or have changed most."""
 
 NUMBERS = 10
-"""Of a class in a picture, see `_numbers`."""
+"""Number of features of a class in a picture, see `_numbers`."""
 
 PEOPLE = 8
-"""Of the person in a picture, see `_person`."""
+"""Number of features of the person in a picture, see `_person`."""
 
 AROUND = 32
 """Half the width of the area that is read around the person, pixels."""
@@ -187,8 +187,11 @@ def _person(
     number: int,
     count: int,
 ) -> NDArray[np.float32]:
-    """Of the person: seen; size; how much larger than before; how far it moved, and whether; what else has changed;
-    how much of the demonstration is over; how long it is."""
+    """Return the person's features.
+
+    Visible; size; growth since the picture before; distance moved, and whether; area that has changed elsewhere; share
+    of the demonstration that is over; its length.
+    """
     size, past = np.count_nonzero(body), np.count_nonzero(body_before)
     moved = float(np.hypot(middle[0] - old[0], middle[1] - old[1]))
     return np.array(

@@ -30,7 +30,7 @@ class Done(NamedTuple):
 
 
 class DoneBatch(NamedTuple):
-    """The same of B demonstrations.
+    """The steps of B demonstrations.
 
     Attributes:
         real: (B, L) bool, whether a step is before the picture.

@@ -177,7 +177,7 @@ class TrainedDemoModel:
         return Task(self.writer, batches, self.loss, validate, identity)
 
     def loss(self, batch: Batch) -> torch.Tensor:
-        """Of the steps of sketches; `guided` times that of the steps before each picture."""
+        """Return the loss of the steps of sketches, plus `guided` times that of the steps before each picture."""
         frames, sketches, done = batch
         memory: Any = self.writer.body.encode(frames)
         total = self.writer.loss(memory, sketches)

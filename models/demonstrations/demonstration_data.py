@@ -26,10 +26,11 @@ FILE = "above.npz"
 """Name of a demonstration's arrays in its folder."""
 
 MOST_PICTURES = 2_000
-"""Of a demonstration, which has one for each tick: programs of people have less than a hundred."""
+"""Pictures of a demonstration at most; it has one for each tick, and programs of people have less than a hundred ticks.
+"""
 
 MOST_CLASSES = 2_048
-"""That pictures show: each is looked at by itself. The knowledge has some hundreds."""
+"""Classes in pictures at most: each is looked at by itself. The knowledge has some hundreds."""
 
 
 class Pictures(NamedTuple):
@@ -82,13 +83,13 @@ class Demonstrations:
         """The pictures of an execution.
 
         Raises:
-            HearthError: DAMAGED_FILE, if its arrays are not what the table says.
+            HearthError: DAMAGED_FILE, if its arrays differ from the table's facts.
         """
         file = self.files[execution]
         return arrays(read_input(inside(self.dataset.folder, file), LARGEST), file)
 
     def pictures_of(self, example: Example, execution: str) -> Pictures:
-        """The pictures of an example's execution, to learn what is done between them.
+        """Return the pictures of an example's execution, to learn the steps between them.
 
         Raises:
             HearthError: DAMAGED_FILE, as of `pictures`, or if they are not one more than the ticks of the program, or

@@ -59,7 +59,7 @@ class FrameBatch(NamedTuple):
 
     @property
     def words(self) -> Tensor:
-        """The same."""
+        """Return the same tensor as `inputs`."""
         return self.inputs
 
     @property
@@ -175,7 +175,10 @@ class FrameBody(Seq2SeqBody):
         nn.init.normal_(self.vector.weight, std=0.1)
 
     def encode(self, batch: FrameBatch | FrameMemory) -> FrameMemory:  # type: ignore[override]
-        """Read demonstrations; what was read already stays as it is. No state depends on another demonstration."""
+        """Read demonstrations, and return a batch that was read already as it is.
+
+        No state depends on another demonstration.
+        """
         if isinstance(batch, FrameMemory):
             return batch
         tokens = self._tokens(batch)  # (B, L, K, H)

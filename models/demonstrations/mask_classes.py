@@ -50,13 +50,13 @@ class MaskClasses:
         )
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return the classes as JSON."""
         return {"ids": [*self.ids], "properties": [[*each] for each in self.properties],
                 "serves": [[*each] for each in self.serves], "person": self.person}  # fmt: skip
 
     @classmethod
     def read(cls, document: Mapping[str, Any], classes: int) -> MaskClasses:
-        """Those of `document`, which may be a stranger's, for a vocabulary of some classes.
+        """Return the classes of `document`, which may be a stranger's, for a vocabulary of some classes.
 
         Raises:
             KeyError: a part is missing.

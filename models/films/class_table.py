@@ -35,7 +35,7 @@ class ClassTable:
         properties: of the classes, as sorted lists, from row 1.
         actions: that training has, sorted.
         objects: how many objects each of them takes.
-        named: rows that are objects in training: what can be named although it is not seen.
+        named: rows that are objects in training: things that can be named although they are not visible.
         afforded: (actions, 2, rows) whether an action's first or second object may be of a class.
     """
 
@@ -61,7 +61,7 @@ class ClassTable:
         for number, action in enumerate(actions):
             for place in range(counts[action]):
                 afforded[number, place, 1:] = [knowledge.affords(action, place, thing.name) for thing in things]
-        for each in done:  # what is done in training can be done
+        for each in done:  # an action of training affords its objects
             for place, name in enumerate(each.objects):
                 afforded[actions.index(each.action), place, row[name]] = True
         return cls(
@@ -75,7 +75,7 @@ class ClassTable:
         )
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return the table as JSON."""
         packed = ["".join("01"[bit] for bit in row) for row in self.afforded.reshape(-1, len(self) + 1).astype(int)]
         classes = [[*row] for row in zip(self.ids, self.names, map(list, self.properties), strict=True)]
         actions = [[*row] for row in zip(self.actions, self.objects, strict=True)]
@@ -83,7 +83,7 @@ class ClassTable:
 
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> ClassTable:
-        """That of `document`, which may be a stranger's.
+        """Return the table of `document`, which may be a stranger's.
 
         Raises:
             KeyError: a part is missing.

@@ -78,7 +78,7 @@ class Clips:
             coloured: only films that have colours, as all have if colours are read.
 
         Raises:
-            HearthError: UNKNOWN_ID, if there are none; DAMAGED_FILE, when a film's arrays are not what rows say.
+            HearthError: UNKNOWN_ID, if there are none; DAMAGED_FILE, when a film's arrays differ from the rows.
         """
         columns = "execution_id, file, first, frames, action, objects, kind, tick"
         where = "part = $part AND list_contains(modalities, $array)"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "clips-rgb"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 AT_ONCE = 128
 """Clips that are classified at once."""
@@ -128,7 +128,7 @@ class TrainedClipModel:
         return self.scores_of(clips, pictures_of(clips), relations)
 
     def scores_of(self, clips: Clips, pictures: Pictures, relations: Iterable[Sequence[int]]) -> NDArray[np.float32]:
-        """The same by the pictures of the clips' films."""
+        """Return the same scores, from the pictures of the clips' films."""
         rows = torch.from_numpy(self.labels.rows).to(place_of(self.network))  # (I, 3)
         ways = list(relations)
         self.network.eval()

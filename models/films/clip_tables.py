@@ -36,7 +36,7 @@ class ClipTable(NamedTuple):
     """A table of the thesis.
 
     Attributes:
-        line: what is looked at.
+        line: the input of the table's models.
         kind: of the models that are compared.
         array: of a film that is looked at.
         thesis: the thesis's figures by homes.
@@ -65,7 +65,7 @@ TABLES = {
         "all": (0.5460, 0.4044, 0.3517, 0.4340),
     }),
 }  # fmt: skip
-"""By number; 4.3 is its part (a)."""
+"""The tables by number; 4.3 is its part (a)."""
 
 
 class ClipRow(NamedTuple):

@@ -32,10 +32,10 @@ MOST_BYTES = 1 << 29
 """Bytes of an array of a film in memory."""
 
 MOST_PIXELS = 1 << 20
-"""Of a picture."""
+"""Largest number of pixels of a picture."""
 
 MOST_PICTURES = 6_000
-"""Of a film: twenty minutes have 5,400."""
+"""Largest number of pictures of a film: twenty minutes have 5,400."""
 
 HEADER = 512
 """Characters of an array's header; the longest of `FORMS` has 128."""
@@ -104,5 +104,5 @@ def _check_size(header: _Header, file: str, array: str, most: int) -> None:
 
 
 def damaged(file: str, message: str) -> HearthError:
-    """The error of a film's file that is not what it should be."""
+    """Return the error for a damaged film file."""
     return HearthError.of(Code.DAMAGED_FILE, message, file=file, suggestion="fetch the dataset again")

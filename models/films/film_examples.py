@@ -24,8 +24,8 @@ class FilmExample(NamedTuple):
 
     Attributes:
         execution: its id.
-        clips: what a classifier says of its clips: all that a writer reads.
-        steps: what is done, by the classes of its objects.
+        clips: a classifier's probabilities for its clips: all that a writer reads.
+        steps: its steps, by the classes of their objects.
         trial: its execution, in which other programs may be tried.
     """
 

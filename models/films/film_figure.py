@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 FRAMES = 8
-"""Of a film."""
+"""Number of pictures that the figure shows of a film."""
 
 STYLE = (
     "body{font:14px sans-serif;max-width:1100px;margin:1em auto}img{width:130px;margin:2px;image-rendering:pixelated}"

@@ -32,7 +32,7 @@ MOST_RATE = 240
 """Pictures a second of a video at most."""
 
 MOST_PIXELS = 4096 * 2304
-"""Of a picture of a video."""
+"""Largest number of pixels of a video's picture."""
 
 
 def read_masks(path: Path) -> NDArray[np.uint16]:

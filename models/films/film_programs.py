@@ -1,7 +1,7 @@
-"""From the clips of a film to a program: by each clip alone, or with the engine as transition model.
+"""The program of a film from its clips: by each clip alone, or with the engine as transition model.
 
-With the engine the question is which instruction that can be done now explains what is seen: every program that is
-followed runs, because each step was done in the world that the steps before it made.
+With the engine, each clip gets the possible instruction that best explains it. Every program that is followed runs,
+because each step was done in the world that the steps before it made.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ MOST_INSERTED = 3
 NO_STEPS = FilmProgram((), ())
 
 Moves = NDArray[np.float32]
-"""(I + 1, I) what it costs to go from an instruction, the last row from none, to another one."""
+"""(I + 1, I) costs of going from an instruction to another one; the last row is for the first step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class Filter:
         beam: worlds at a time, each with its best program.
         options: instructions that each of them may go on with in a clip.
         repaired: of those options, the first ones may be repaired where they can't be done: steps are inserted.
-        inserted: what an inserted step costs, as a logarithm.
+        inserted: cost of an inserted step, as a logarithm.
     """
 
     beam: int = 48
@@ -74,7 +74,7 @@ class Filter:
 
 
 def even_moves(count: int, change: float = CHANGE) -> Moves:
-    """The same cost for every change of `count` instructions; the first is free."""
+    """Return the same cost for every change of `count` instructions; the first is free."""
     moves = np.full((count + 1, count), change, np.float32)
     moves[-1] = 0
     return moves
@@ -101,7 +101,7 @@ def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves 
     Args:
         scores: of the clips.
         instructions: by number.
-        moves: what changes cost; by default all the same.
+        moves: costs of changes; by default all the same.
     """
     if not len(scores):
         return NO_STEPS
@@ -142,7 +142,7 @@ def followed(
         scores: of the clips.
         instructions: by number.
         world: at the film's start.
-        moves: what changes cost; by default all the same.
+        moves: costs of changes; by default all the same.
         how: the search.
         rules: of the engine.
     """
@@ -160,7 +160,7 @@ def followed(
 
 
 class _Search:
-    """The ways in which programs go on; what an instruction does in a world is computed once."""
+    """The search over continuations of programs; the effect of an instruction in a world is computed once."""
 
     def __init__(self, instructions: Sequence[Instruction], moves: Moves, how: Filter, rules: Rules) -> None:
         self.instructions, self.moves, self.how, self.rules = instructions, moves, how, rules
@@ -194,7 +194,7 @@ class _Search:
         return self.after[key]
 
     def _repaired(self, world: World, step: Step) -> tuple[Steps, World] | None:
-        """The same where steps have to be inserted, and none is needed afterwards."""
+        """Return the steps and the world after insertions before a step; None if steps are needed after it."""
         done = complete((step,), world, world.home.knowledge, self.rules)
         runs = not done.left_out and done.sources[-1:] == (0,) and len(done.sources) <= 1 + MOST_INSERTED
         return (done.execution.program.steps, done.execution.final) if runs else None

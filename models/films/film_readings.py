@@ -16,7 +16,7 @@ OF_A_CLIP = 8
 """Instructions that a clip adds."""
 
 TRUST = 0.5
-"""By which logarithms are multiplied: neighbouring clips share frames, and networks are surer than they are right."""
+"""Factor of logarithms: neighboring clips share frames, and networks are surer than they are right."""
 
 OBJECTS = 4
 """Objects of an action that are tried."""

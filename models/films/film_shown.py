@@ -59,7 +59,7 @@ def cut(masks: NDArray[np.uint16]) -> Clips:
 
 
 def show_film(trained: TrainedSeenModel, masks: NDArray[np.uint16], home: Home, seed: int = 0) -> FilmShown:
-    """Name the steps of a film, and follow it with the engine in a home that has what it shows.
+    """Name the steps of a film, and follow it with the engine in a home that has the film's things.
 
     Args:
         trained: a classifier of clips.
@@ -80,7 +80,7 @@ def show_film(trained: TrainedSeenModel, masks: NDArray[np.uint16], home: Home, 
 
 
 def _world(steps: Steps, home: Home, seed: int) -> World:
-    """A world in which some steps can be done; where none is found, what the steps that can be repaired begin in."""
+    """Return a world in which some steps can be done, else the world in which the repairable steps begin."""
     start = World.start(home)
     completion = complete(steps, start, home.knowledge)
     kept = Program(steps=completion.execution.program.unbound().steps or steps)

@@ -92,7 +92,7 @@ WAYS: dict[str, Way] = {
         found.scores, found.instructions, world, found.moves(order)
     ),
 }
-"""From the reading of a film to a program."""
+"""The ways from the reading of a film to a program, by name."""
 
 
 def film_table(

@@ -1,4 +1,4 @@
-"""The encoder-decoder over clips: what a classifier says of each is read, a program written (thesis 4.3.3).
+"""The encoder-decoder over clips: it reads a classifier's probabilities and writes a program (thesis 4.3.3).
 
 It is the network of texts with clips in the place of words: the encoder, the attention, the decoder and the heads are
 those of `models.text`. The network can copy the contents of a clip, as it copies words that a text mentions.
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "films-mle"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 READER = "classifier."
 """Before the names of the classifier's weights in a checkpoint."""

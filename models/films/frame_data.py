@@ -20,7 +20,7 @@ class Labels:
     Attributes:
         actions: sorted.
         objects: sorted; they get the numbers from 1, no object `NOTHING`.
-        instructions: those of training, sorted: what a clip can be taken for.
+        instructions: those of training, sorted: the possible predictions for a clip.
     """
 
     actions: tuple[str, ...]
@@ -29,7 +29,7 @@ class Labels:
 
     @classmethod
     def of(cls, clips: Clips) -> Labels:
-        """Those of training clips."""
+        """Return the labels of training clips."""
         done = {clip.done for clip in clips.clips}
         return cls(
             tuple(sorted({each.action for each in done})),
@@ -38,13 +38,13 @@ class Labels:
         )
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return the labels as JSON."""
         rows = [[each.action, *each.objects] for each in self.instructions]
         return {"actions": [*self.actions], "objects": [*self.objects], "instructions": rows}
 
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> Labels:
-        """Those of `document`, which may be a stranger's.
+        """Return the labels of `document`, which may be a stranger's.
 
         Raises:
             KeyError: a part is missing.
@@ -82,7 +82,7 @@ class Labels:
 
 
 WIDTH = 64
-"""Of the pictures that a network of whole frames looks at."""
+"""Width of the pictures that a network of whole frames looks at, pixels."""
 
 Pictures = Sequence[NDArray[np.uint8]]
 """(T, H, W, 3) colours of each film's frames, `WIDTH` wide."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "masks"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 AT_ONCE = 16
 """Pictures that are read at once."""

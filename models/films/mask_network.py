@@ -1,7 +1,7 @@
 """A small network with dilated convolutions that predicts the class of each pixel of a picture (thesis 4.3.3).
 
-Its layers see a picture whole, at half and at a quarter of its size; those in the middle are dilated, and know the mean
-of the picture, which says what room it is. What they find is brought back to the whole size, where most things that are
+Its layers see a picture whole, at half and at a quarter of its size. Those in the middle are dilated, and know the mean
+of the picture, which identifies the room. Their output is brought back to the whole size, where most things that are
 grabbed are a few pixels.
 """
 
@@ -12,10 +12,10 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 DILATIONS = (1, 2, 4, 8, 1)
-"""Of the layers in the middle."""
+"""Dilations of the layers in the middle."""
 
 GROUPS = 8
-"""Of numbers that are normed together; every width is a multiple."""
+"""Groups of numbers that are normed together; every width is a multiple."""
 
 LARGE, MEDIUM = 24, 48
 """Numbers for a pixel at the whole size and at half of it."""

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 NUMBERS = 14
-"""Of a class in a frame, see `_numbers`."""
+"""Number of features of a class in a frame, see `_numbers`."""
 
 PEOPLE = 9
-"""Of the person in a frame, see `_person`."""
+"""Number of features of the person in a frame, see `_person`."""
 
 CROP = 20
 """Width and height of the array of the area around the person, cells."""
@@ -66,7 +66,10 @@ def seen_film(masks: NDArray[np.uint16], person: int) -> SeenFilm:
 
 
 def _person(body: NDArray[np.bool_], changed: float) -> NDArray[np.float64]:
-    """Of the person: seen, left, right, top, bottom, middle (x, y), share of the picture; how much of this changed."""
+    """Return the person's features.
+
+    Visible, left, right, top, bottom, middle (x, y), share of the picture; share that changed.
+    """
     height, width = body.shape
     found = np.zeros(PEOPLE)
     found[8] = changed

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "clips-seen"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 AT_ONCE = 128
 """Clips that are classified at once."""

@@ -20,10 +20,10 @@ LOOKED_AT = slice(0, FRAMES, 2)
 """Frames in which the network reads the area around the person: all frames would take twice as long."""
 
 HEADS = 4
-"""Of the attention among classes."""
+"""Heads of the attention among classes."""
 
 CHANNELS = (10, 24, 32)
-"""Of a class and of the convolutions around the person."""
+"""Channels of a class and of the convolutions around the person."""
 
 NEAR = 48
 """Numbers in the vector of the area around the person in a frame."""
@@ -153,7 +153,7 @@ class SeenNetwork(nn.Module):
 
 
 def loss_of(network: SeenNetwork, batch: SeenBatch, wanted: Tensor, weights: Tensor) -> Tensor:
-    """Of the actions, and of their objects given them.
+    """Return the loss of the actions, and of their objects given the actions.
 
     Args:
         network: that is trained.

@@ -34,7 +34,7 @@ class StepOrder:
 
     @classmethod
     def of(cls, programs: Iterable[Sequence[Instruction]]) -> StepOrder:
-        """That of programs."""
+        """Return the order of steps in programs."""
         counts: defaultdict[str, Counter[tuple[str, tuple[int, ...]]]] = defaultdict(Counter)
         for program in programs:
             for one, other in pairwise([START, *program]):
@@ -42,7 +42,7 @@ class StepOrder:
         return cls({action: dict(found) for action, found in counts.items()})
 
     def document(self) -> list[Any]:
-        """As JSON."""
+        """Return the order as JSON."""
         return sorted(
             [one, other, [*places], count]
             for one, found in self.counts.items()
@@ -51,7 +51,7 @@ class StepOrder:
 
     @classmethod
     def read(cls, document: Any) -> StepOrder:
-        """That of `document`, which may be a stranger's.
+        """Return the order of `document`, which may be a stranger's.
 
         Raises:
             TypeError, ValueError: it is not one.

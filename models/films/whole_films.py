@@ -25,7 +25,7 @@ def named_in_films(trained: TrainedSeenModel, clips: Clips, learned: Sequence[In
     Args:
         trained: the classifier, of single clips.
         clips: in the order of their films.
-        learned: what is done in the clips of training, of which classes have their shares.
+        learned: the instructions of the training clips, which give the shares of classes.
     """
     worth = ClassWorth.of(learned, 1 - trained.settings.balance)
     found: list[Instruction] = []
@@ -41,11 +41,11 @@ def posteriors(scores: Scores, moves: Moves) -> NDArray[np.float64]:
 
     Args:
         scores: (N, I) logarithms of how probable each is in a clip alone.
-        moves: (I + 1, I) what it costs to go from one to another, the last row from none; staying is free.
+        moves: (I + 1, I) costs of going from one to another, the last row for the first clip; staying is free.
     """
     change = -moves[:-1].astype(np.float64)
     np.fill_diagonal(change, 0)
-    before, after = np.empty(scores.shape), np.zeros(scores.shape)  # sums over what comes before, and after, a clip
+    before, after = np.empty(scores.shape), np.zeros(scores.shape)  # sums over the past and the future of a clip
     for number, row in enumerate(scores):
         before[number] = row + (_summed(before[number - 1][:, None] + change) if number else -moves[-1])
     for number in range(len(scores) - 2, -1, -1):
@@ -76,10 +76,10 @@ class ClassWorth(NamedTuple):
 
     @classmethod
     def of(cls, learned: Sequence[Instruction], power: float) -> ClassWorth:
-        """That of training clips.
+        """Return the gains of training clips.
 
         Args:
-            learned: what is done in them.
+            learned: the instructions of these clips.
             power: 1 if probabilities are those of clips; less by the weights that training has already given its loss.
         """
         return cls({name: Counter(map(part, learned)) for name, part in MEASURED.items()}, power)

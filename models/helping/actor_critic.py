@@ -47,7 +47,7 @@ def actor_critic(network: nn.Module, batch: Batch) -> Tensor:
 
 
 def entropy(seen: Outlook) -> Tensor:
-    """Of both choices together, (B, T)."""
+    """Return the entropy of both choices together, (B, T)."""
     first, second = seen.first.exp(), seen.second.exp()
     of_second = -(second * seen.second.clamp(min=-1e3)).sum(-1)
     return -(first * seen.first.clamp(min=-1e3)).sum(-1) + (first * of_second).sum(-1)
@@ -65,7 +65,7 @@ def _value_error(seen: Outlook, batch: Batch, there: Tensor) -> Tensor:
 
 
 def _close_error(seen: Outlook, batch: Batch, there: Tensor) -> Tensor | float:
-    """Return how well the low-level policy knows what is within its reach (B.3.4)."""
+    """Return the loss of the low-level policy's predictions of the nodes within its reach (B.3.4)."""
     if seen.close is None:
         return 0.0
     nodes = there[..., None] & (torch.as_tensor(batch.classes) > 0)

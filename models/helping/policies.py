@@ -1,4 +1,4 @@
-"""Policies over subgoals and over actions: their settings, what they choose, their checkpoints."""
+"""Policies over subgoals and over actions: their settings, their choices, their checkpoints."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class TrainedPolicy:
 
     Attributes:
         settings: its own.
-        words: what its subgoals are about.
+        words: the vocabulary of its subgoals.
         network: with its weights.
         facts: how it was trained.
     """
@@ -88,7 +88,7 @@ class TrainedPolicy:
         return (first, second), seen.state
 
     def with_facts(self, facts: Mapping[str, Any]) -> TrainedPolicy:
-        """The same, with how it was trained."""
+        """Return the same policy with facts about its training."""
         return replace(self, facts=facts)
 
     def checkpoint(self) -> Checkpoint:
@@ -126,7 +126,7 @@ def restored(model: str, chooses: str) -> TrainedPolicy:
 
     Args:
         model: a checkpoint's folder, or the name of one that comes with Hearth.
-        chooses: what it is to choose.
+        chooses: the kind of its choices.
 
     Raises:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; BAD_ARGUMENT: it chooses something

@@ -42,8 +42,8 @@ class Scene(NamedTuple):
         classes: numbers of the classes of N visible nodes.
         features: (N, FEATURES).
         wanted: (thing, place, how many are missing) of each part of the goal, or of the subgoal alone.
-        legal: (KINDS, N), what could be done; empty where subgoals are chosen.
-        close: (N,), what is within reach: what the low-level policy is also to predict.
+        legal: (KINDS, N), the possible actions; empty where subgoals are chosen.
+        close: (N,), the nodes within reach, which the low-level policy is also to predict.
     """
 
     classes: tuple[int, ...]

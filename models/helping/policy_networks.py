@@ -15,7 +15,7 @@ from torch import Tensor, nn
 from hearth.models.helping.policy_inputs import FEATURES, KINDS, MOST_CLASSES, Batch
 
 State = tuple[Tensor, Tensor]
-"""Of the LSTM."""
+"""State of the LSTM."""
 
 
 class Outlook(NamedTuple):
@@ -52,7 +52,7 @@ class SceneEncoder(nn.Module):
         self.together = nn.TransformerEncoder(layer, 1, enable_nested_tensor=False)
 
     def forward(self, batch: Batch) -> tuple[Tensor, Tensor]:
-        """Of each node a vector, (B, T, N, width), and their mean, (B, T, width); zeros where there is no scene."""
+        """Return vectors of nodes, (B, T, N, width), and their mean, (B, T, width); zeros where there is no scene."""
         at = torch.as_tensor(batch.there)
         classes, features = torch.as_tensor(batch.classes)[at], torch.as_tensor(batch.features)[at]  # (scenes, N)
         nodes = self.node(torch.cat([self.classes(classes), features], -1))
@@ -167,5 +167,5 @@ class ActionNetwork(Trunk):
 
 
 def _masked(scores: Tensor, allowed: Tensor) -> Tensor:
-    """The logarithms of probabilities, where what is not allowed has next to none."""
+    """Return the logarithms of probabilities, with next to no probability for forbidden choices."""
     return scores.masked_fill(~allowed, -1e9).log_softmax(-1)

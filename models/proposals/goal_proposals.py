@@ -1,4 +1,4 @@
-"""Training the goal proposal network on episodes of somebody alone, and asking it (thesis 7.3.3, C.3.2)."""
+"""Training of the goal proposal network on episodes of an agent alone, and its use (thesis 7.3.3, C.3.2)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ VALIDATION = 10
 """One of how many episodes is for validation."""
 
 Increases = tuple[int, ...]
-"""By how much the count of each predicate has grown since the start."""
+"""The growth of each predicate's count since the start."""
 
 
 class Episode(NamedTuple):
@@ -72,7 +72,7 @@ class GoalProposals(Settings):
         """The network trained on one state of each episode in each pass, drawn uniformly; a tenth is for validation.
 
         Args:
-            episodes: of somebody alone.
+            episodes: of an agent alone.
             how: long and how.
             seen: reports progress.
         """

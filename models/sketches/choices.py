@@ -19,7 +19,7 @@ class Candidate(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """A choice: what all its candidates share, the candidates, and which of them is right (-1 if unknown).
+    """A choice: the common features of its candidates, the candidates, and the index of the right one (-1 if unknown).
 
     Attributes:
         names: numbers of names, each with a meaning of its own.

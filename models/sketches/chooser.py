@@ -186,7 +186,7 @@ class TrainedChooser:
         return Clues.of(request, world.home.knowledge) if self.settings.text else NO_CLUES
 
     def scorer(self) -> PlanScorer:
-        """The model as a scorer of steps; its input is the bound sketch, what the text says, and the rules."""
+        """Return the model as a scorer of steps; its input is the bound sketch, the text's clues, and the rules."""
         return PlanScorer(self.rankers.get("steps"), self.habits if self.settings.style else NO_HABITS, self.words)
 
     def bound(self, sketches: Sequence[Steps], worlds: Sequence[World]) -> list[Steps]:

@@ -1,6 +1,7 @@
 """Graphs of environments for graph networks: only nodes that matter to a sketch, with their labels and edges (5.4.1).
 
-Of 450 nodes some 40 matter: the character, the rooms, what the sketch may mean, what bears and holds it, what is on it.
+Of 450 nodes some 40 matter: the character, the rooms, the candidates of the sketch, the nodes that bear and hold these,
+and the nodes on them.
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ def _edges(world: World, place: dict[int, int]) -> list[tuple[int, int, int]]:
 
 
 class Batch(NamedTuple):
-    """B graphs and sketches, filled up to the longest; masks say what is real.
+    """B graphs and sketches, padded to the longest; masks mark the real entries.
 
     Attributes:
         classes: (B, N). labels: (B, N, LABELS). real: (B, N) bool.
@@ -140,8 +141,9 @@ def batched(inputs: Sequence[GraphInput], steps: Sequence[np.ndarray] = ()) -> B
 
 
 PAD, NO_NODE, END = -3, -1, -2
-"""In place of a position: nothing to be predicted; a step without objects, or an object that the graph leaves out; the
-program's end.
+"""Numbers in place of a position: nothing to predict; a step without a node in the graph; the program's end.
+
+A step of the second kind has no object, or an object that the graph leaves out.
 """
 
 

@@ -40,7 +40,7 @@ class GraphModel(Settings):
         hidden: of encoder and decoder.
         batch: programs at a time.
         programs: that are learned from, at most.
-        constrained: whether only what can be done is written; the thesis's models are free.
+        constrained: whether only possible steps are written; the thesis's models are free.
     """
 
     change: Change = "residual"
@@ -126,7 +126,7 @@ class TrainedGraphModel:
         return [found.get(each.id, ()) for each in requests]
 
     def free(self) -> TrainedGraphModel:
-        """The same model without the mask, as the thesis has it."""
+        """Return the same model without the mask, as the thesis has it."""
         return replace(self, settings=replace(self.settings, constrained=False))
 
     def scorer(self) -> GraphScorer:

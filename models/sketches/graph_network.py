@@ -1,7 +1,8 @@
 """The networks of chapter 5: a graph network over nodes, a sketch encoder, a decoder of steps (eq. 5.4-5.8, table 5.2).
 
-First the first object, then the action given it, then the second object given both. `change` is what a step does to the
-states of the character and of its objects: nothing (Graph, Unaries), or by a residual, a layer or a recurrent cell.
+The network chooses the first object, then the action given it, then the second object given both. `change` is the
+effect of a step on the states of the character and of its objects: nothing (Graph, Unaries), or a residual, a layer or
+a recurrent cell.
 """
 
 from __future__ import annotations
@@ -105,18 +106,18 @@ class GraphNetwork(nn.Module):
         return Memory(nodes, real, found, self.decoder(start, found))
 
     def scores_first(self, memory: Memory) -> Tensor:
-        """Of each node, of no object, and of the end, (B, N + 2)."""
+        """Return the scores of each node, of no object, and of the end, (B, N + 2)."""
         query = self.first(torch.cat([memory.hidden, memory.sketch], 1))  # (B, H)
         nodes = torch.einsum("bnh,bh->bn", memory.nodes, query).masked_fill(~memory.real, -torch.inf)
         return functional.log_softmax(torch.cat([nodes, query @ self.special.T], 1), 1)
 
     def scores_action(self, memory: Memory, first: Tensor) -> Tensor:
-        """Of each action given the first object, (B, A)."""
+        """Return the scores of each action given the first object, (B, A)."""
         given = torch.cat([memory.hidden, memory.sketch, self._at(memory, first)], 1)
         return functional.log_softmax(self.act(given), 1)
 
     def scores_second(self, memory: Memory, first: Tensor, action: Tensor) -> Tensor:
-        """Of each node given action and first object, (B, N)."""
+        """Return the scores of each node given action and first object, (B, N)."""
         given = [memory.hidden, memory.sketch, self._at(memory, first), self.action(action.clamp(min=0))]
         nodes = torch.einsum("bnh,bh->bn", memory.nodes, self.second(torch.cat(given, 1)))
         return functional.log_softmax(nodes.masked_fill(~memory.real, -torch.inf), 1)

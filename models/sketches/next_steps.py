@@ -1,7 +1,7 @@
 """The steps that may come next: those of plan and sketch, and optional ones about nodes that play a role.
 
-The exact planner makes a program run; optional steps are what people and repairs do besides: walk to the room first,
-find, look, put back, close. Their choice is learned.
+The exact planner makes a program run. Optional steps are the additional steps of people and repairs: walk to the room
+first, find, look, put back, close. Their choice is learned.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ STYLE = 9
 """Habitual actions, the commonest, whose counts so far show how a program is written."""
 
 SHOWN = 3
-"""Things of one kind whose steps are offered: what is held, is done before, comes later."""
+"""Largest number of things of one kind whose steps are offered: held things, things of earlier and of later steps."""
 
 TOOLS = 5
 """Largest number of classes outside the sketch whose things are offered."""
@@ -89,7 +89,7 @@ class NextSteps:
 
     Args:
         progress: so far.
-        options: what can be done now.
+        options: the possible steps now.
         habits: the steps of programs that their sketches leave out.
     """
 

@@ -23,11 +23,11 @@ class Progress:
         sketch: bound to nodes.
         world: as it is now.
         next: the number of the sketch's step that comes next.
-        plan: what the planner would do from here.
+        plan: the planner's steps from here.
         steps: done so far.
         since: how many of them since the last step of the sketch.
         rules: of the engine.
-        clues: what the text says.
+        clues: the clues of the text.
     """
 
     sketch: Steps

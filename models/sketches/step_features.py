@@ -25,7 +25,7 @@ class Offer:
 
     Args:
         progress: so far.
-        options: what can be done now.
+        options: the possible steps now.
         habits: the steps of programs that their sketches leave out.
         words: numbers of names.
     """
@@ -50,7 +50,7 @@ class Offer:
         return self._choice(range(len(self.candidates)), -1)
 
     def known_choice(self, right: Step | None, most: int, random: Random) -> Choice | None:
-        """The choice whose right step is known, with some random others; None if the right one is not offered.
+        """Return the choice whose right step is known, with random others; None if the right step is not offered.
 
         Against random candidates a network learns the same order as against all, and in a third of the time.
         """
@@ -71,7 +71,7 @@ class Offer:
         return Candidate([self.words.code(0), *[0] * (2 + AROUND)], [1.0, *NOTHING[1:]])
 
     def _names(self) -> list[int]:
-        """Three actions before, what the sketch and the plan want next, how far it is, and where the character is."""
+        """Return the last three actions, the next steps of sketch and plan, the progress, and the character's place."""
         word, progress = self.words, self.progress
         before = [step.action for step in progress.steps[:-4:-1]] + ["", "", ""]
         classes = [ref.name for ref in (self.coming.objects if self.coming else ())] + ["", ""]
@@ -182,7 +182,7 @@ class Offer:
         return known
 
     def _looked(self, node: int) -> _OfNode:
-        """Its class and the words about its mention; its roles, where it is, its states, where the text mentions it."""
+        """Return a node's class, the words about its mention, its roles, place, states, and place in the text."""
         clues, name = self.progress.clues, self.home.classes[node]
         states = [float(state >> node & 1) for state in self.world.states]
         place = clues.place(name)

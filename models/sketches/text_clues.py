@@ -40,7 +40,7 @@ class Clues:
 
     @classmethod
     def of(cls, request: Request, knowledge: Knowledge) -> Clues:
-        """Those of a request's title and description."""
+        """Return the clues of a request's title and description."""
         return cls(words_of(request), _spelt(knowledge))
 
     @cached_property

@@ -70,7 +70,7 @@ class TrainedConsensus:
     neighbours: TrainedRetrieveEdit
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """For each text the program that is most like all that were drawn or found for it."""
+        """Return for each text the program most similar to all that were drawn or found for it."""
         best = self.writer.predict(requests, beam)
         found = self.neighbours.candidates(requests)
         return [self._answer(*each) for each in zip(requests, best, found, strict=True)]

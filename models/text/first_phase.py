@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hearth.models.data import Corpus
 
 STARTS = {"program": ("programs", "mle-composed"), "sketch": ("sketches", "desc2sketch")}
-"""For each kind of output, its plural name and the usual model to go on from."""
+"""The plural name of each kind of output, and the usual model to go on from."""
 
 
 def first_phase(start: str, corpus: Corpus) -> TrainedTextModel:

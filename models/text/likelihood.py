@@ -33,7 +33,7 @@ def likelihood(
 
     Args:
         writer: that is trained.
-        data: what is asked, and the numbers of its program's steps.
+        data: inputs, and the numbers of their programs' steps.
         read: see `Read`.
         batch: examples in a batch.
         longest: steps of the longest program.
@@ -71,7 +71,7 @@ def written(
 
     Args:
         writer: trained.
-        asked: what programs are written for.
+        asked: the inputs that programs are written for.
         read: see `Read`; without noise here.
         length: of an input: inputs of similar length are read together.
         width: programs followed at once; 1 is greedy.

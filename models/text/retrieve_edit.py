@@ -1,8 +1,9 @@
 """Retrieve and edit: the programs of the most similar texts, with the objects that the new text asks for (ours).
 
-Each retrieved program is edited: an object that its own text mentions, and the new one does not, gives way to one that
-the new text alone mentions, if every action done with it takes that, too. Of the edited programs the answer is the one
-most like the others by LCS, each weighted by the similarity of its text: what one neighbour alone does is left out.
+Each retrieved program is edited. An object that its own text mentions, and the new text does not, is replaced by one
+that the new text alone mentions, if every action done with it takes that, too. The answer is the edited program most
+similar to the others by LCS, each weighted by the similarity of its text. A step of one neighbor alone is thus left
+out.
 """
 
 from __future__ import annotations
@@ -69,11 +70,11 @@ class TrainedRetrieveEdit:
     vocabulary: StepVocabulary
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """For each text the edited program that is most like the others."""
+        """Return for each text the edited program most similar to the others."""
         return [consensus(*each) for each in self.candidates(requests)]
 
     def candidates(self, requests: Sequence[Request]) -> list[tuple[list[Steps], list[float]]]:
-        """For each text the edited programs of its neighbours, and how much each counts."""
+        """Return for each text the edited programs of its neighbors, and their weights."""
         texts = [text_of(each.title, each.description) for each in requests]
         found = self.similarity.nearest(texts, self.settings.neighbours)
         return [self._edits(text, *neighbours) for text, neighbours in zip(texts, found, strict=True)]

@@ -39,7 +39,7 @@ class Learner(Protocol):
 
     @property
     def settings(self) -> Any:
-        """With `longest`, the steps of its longest program."""
+        """Return its settings; `longest` has the steps of its longest program."""
 
     @property
     def writer(self) -> Writer:
@@ -123,7 +123,7 @@ def rewarding(
 
 
 def go_on(model: Learner, task: Task[Drawn], how: Training, seen: Seen) -> None:
-    """Train a model on, at a tenth of the rate; what it records of its training is kept as its first phase."""
+    """Train a model on, at a tenth of the rate; the record of its former training is kept as its first phase."""
     before = {"first_phase": dict(model.trained)}
     model.trained.clear()
     model.trained.update({**train(task, replace(how, rate=how.rate / 10), seen).record(), **before})

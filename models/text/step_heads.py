@@ -1,4 +1,4 @@
-"""From the decoder's state at a step to probabilities of steps: whole ones of a list, or composed of their parts."""
+"""The heads of decoders, from a state to probabilities of steps: whole ones of a list, or composed of their parts."""
 
 from __future__ import annotations
 
@@ -200,12 +200,12 @@ class ClosedHead(nn.Module):
         return scores.masked_fill(numbers < 0, NEVER)
 
     def best(self, context: Context, width: int) -> tuple[torch.Tensor, torch.Tensor]:
-        """As of `ComposedHead`."""
+        """Return the most probable steps, as `ComposedHead` does."""
         scores, numbers = self.every(context).topk(min(width, len(self.steps)))
         return scores, self.steps[numbers]
 
     def sample(self, context: Context, generator: torch.Generator) -> torch.Tensor:
-        """As of `ComposedHead`."""
+        """Return drawn steps, as `ComposedHead` does."""
         return self.steps[_drawn(self.every(context), generator)]
 
 

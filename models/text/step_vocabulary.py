@@ -29,7 +29,7 @@ class StepVocabulary:
         words: of the training texts that occur at least twice, sorted.
         actions: those that are executed or occur in training, sorted.
         arity: of each action.
-        classes: all of the knowledge and of training, sorted: what no training program has can be copied from a text.
+        classes: all of the knowledge and of training, sorted: a text can give a class that no training program has.
         takes: for each action and argument, the numbers of the classes that it takes by the grammar, or in training.
         spelt: spelling -> class.
     """
@@ -100,7 +100,7 @@ class StepVocabulary:
         return found
 
     def _fits(self) -> dict[str, bool]:
-        """Return whether each part is what the others need it to be."""
+        """Return whether each part fits the others."""
         last = len(self.classes)
         return {
             "words": _names(self.words),

@@ -51,7 +51,7 @@ class Noise:
     """The parts of training texts to leave out, so that a model does not rely on them.
 
     Attributes:
-        title: the share of texts without their title: what people ask has none.
+        title: the share of texts without their title: people's requests have none.
         word: the share of words that count as unknown.
     """
 

@@ -54,7 +54,10 @@ class TextScorer:
         self._nodes: dict[int, dict[str, list[tuple[int, float]]]] = {}
 
     def begin(self, worlds: Sequence[World], inputs: Sequence[Any]) -> list[Place]:
-        """The places before the first steps; the inputs are what `read` reads: requests, of films their clips."""
+        """Return the places before the first steps.
+
+        The inputs are those that `read` reads: requests, of films their clips.
+        """
         with torch.no_grad():
             return self._places(self.writer.begin(self.read(inputs)))
 

@@ -15,7 +15,7 @@ from hearth.models.text.seq2seq import Memory, State
 from hearth.models.text.text_batches import InputBatch
 
 HEADS = 4
-"""Of its attention."""
+"""Heads of its attention."""
 
 
 class TransformerBody(nn.Module):

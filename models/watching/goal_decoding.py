@@ -30,7 +30,7 @@ class PossibleGoals:
 
     @cached_property
     def set_of(self) -> tuple[int, ...]:
-        """For each predicate the number of its goal set; predicates of one goal are of one set."""
+        """Return for each predicate the number of its goal set; predicates of one goal are of one set."""
         found = list(range(len(self.goals[0])))
         for goal in self.goals:
             joined = {found[i] for i, count in enumerate(goal) if count}

@@ -1,4 +1,4 @@
-"""Goal inference from states (thesis 6.4, B.3.1): what somebody wants, from where things were seen."""
+"""Goal inference from states (thesis 6.4, B.3.1): a person's goal, from the observed places of things."""
 
 from __future__ import annotations
 
@@ -179,7 +179,7 @@ class TrainedGoalInference:
         """The goal of a demonstration.
 
         Args:
-            ticks: what happened.
+            ticks: of a demonstration.
             predicates: in the network's order, with the nodes of the demonstration's home; the goal is made of them.
             goals: all of single goal sets that there are, with the names of furniture.
 

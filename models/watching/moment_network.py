@@ -1,7 +1,8 @@
 """The thesis's network that infers goals (figure B-6): a transformer over the things of a moment, an LSTM over time,
 and a classifier for each predicate's count.
 
-`thing_network` asks of each thing whether it counts instead. `challenge learn wah --what goals-moments` trains it.
+`thing_network` classifies each thing instead: whether it counts. `challenge learn wah --what goals-moments` trains this
+network.
 """
 
 from __future__ import annotations

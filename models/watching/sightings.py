@@ -1,7 +1,7 @@
 """A demonstration as states show it: where each thing that goals are about was seen, one place after the other.
 
-Only what the watcher sees counts: it goes where the character goes, and sees what is in its room and not inside
-something closed. Instructions and failures are never read.
+Only things in the watcher's view count. The watcher goes where the character goes, and sees the things in its room that
+are not inside a closed container. Instructions and failures are never read.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ class Watched:
     """A demonstration with its goal.
 
     Attributes:
-        things: what was seen (see `sightings`).
+        things: the observed things (see `sightings`).
         counts: of the goal.
     """
 
@@ -73,7 +73,7 @@ def packed(examples: Sequence[Watched], predicates: int) -> Packed:
 
 @dataclass(frozen=True)
 class Joining:
-    """Makes one demonstration of two, as if somebody had had both goals.
+    """A function that joins two demonstrations into one, as if one person had had both goals.
 
     A network that has only seen single activities takes whatever belongs to another for a distraction.
 
@@ -117,7 +117,7 @@ class Joining:
 
 
 def _within(things: Sequence[Seen], chooser: Random) -> list[Seen]:
-    """The same in a part of the time: of two activities one begins later, or ends earlier."""
+    """Return the things in a part of the time: of two activities one begins later, or ends earlier."""
     length = chooser.uniform(0.5, 1.0)
     start = chooser.uniform(0.0, 1.0 - length)
     return [thing._replace(times=tuple(start + length * time for time in thing.times)) for thing in things]
