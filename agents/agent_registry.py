@@ -29,7 +29,7 @@ class Helper:
         goal: which it is given: `true`, `inferred` (from the task's demonstration), `random` (that of another task,
             which the runner gives), or `none`.
         main: name of the main agent that it is made for; '' for any.
-        about: what it is, for tables.
+        about: a description, for tables.
         network: the policy that it asks, which needs the extra `models`; "" for none.
     """
 

@@ -1,7 +1,7 @@
 """An agent's beliefs about the places and states of objects (thesis 6.4, B.1.1).
 
-A thing that was not seen yet is in any of the rooms and closed containers with equal probability. One world is drawn
-from that belief and kept; a thing is drawn anew only once what is seen refutes its place.
+A thing that the agent has not observed is in any of the rooms and closed containers with equal probability. One world
+is drawn from that belief and kept. A thing is drawn anew only once an observation refutes its place.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def containers(home: Home) -> int:
 
 
 def usual_containers(home: Home, name: str) -> int:
-    """Those of `containers` in which things of a class belong according to the knowledge; all where none is known."""
+    """Return the containers in which things of a class belong, by the knowledge; all where none is known."""
     every = containers(home)
     known = home.knowledge
     names = {placement.destination for placement in known.placements(name) if placement.edge == "INSIDE"}
@@ -80,7 +80,7 @@ class Belief:
         where: the place of each in the world that was drawn.
         known: those that were seen at that place.
         states: the believed sets of `World.states`.
-        seen: what is in view.
+        seen: the set of nodes in view.
         room: index of the room that the agent is in, or -1.
     """
 
@@ -164,8 +164,9 @@ class Belief:
         return bool((self.seen & ~hidden) >> place.node & 1)
 
     def _draw(self, thing: int, empty: int) -> None:
-        """A place among those that nothing seen refutes: where such things belong, or else anywhere; once every one is
-        refuted, it begins anew.
+        """Draw a place among those that no observation refutes: where such things belong, or else anywhere.
+
+        Once every place is refuted, the draw begins anew.
         """
         possible = self._possible[thing] or self._rest[thing]
         if not possible:

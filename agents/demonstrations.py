@@ -33,12 +33,13 @@ class Question:
 
 
 Reader = Callable[[Sequence[Tick], Question, Random], Goal]
-"""(what happened, what is asked, chooser) -> the inferred goal, of the question's predicates with their counts."""
+"""(ticks, question, chooser) -> the inferred goal, of the question's predicates with their counts."""
 
 
 def by_actions(ticks: Sequence[Tick], question: Question, chooser: Random, agent: int = 0) -> Goal:
-    """Counts the different things that an agent put, took or rested on where a predicate names them; what it took away
-    again counts, too.
+    """Count the different things that an agent put, took or rested on where a predicate names them.
+
+    A thing that the agent took away again counts, too.
     """
     if not ticks:
         return Goal()
@@ -73,7 +74,7 @@ def _made(action: str, nodes: tuple[int, ...], some: Candidates, home: Home) -> 
 
 
 def by_last_frame(ticks: Sequence[Tick], question: Question, chooser: Random) -> Goal:
-    """Counts what holds in the end and did not hold at the start."""
+    """Count the literals that hold in the end and did not hold at the start."""
     if not ticks:
         return Goal()
     first, last = ticks[0].before, ticks[-1].world

@@ -53,7 +53,7 @@ class Distances:
         return field.distance[start], _end(field, start)
 
     def after(self, start: int, node: int, metres: float) -> int:
-        """The cell at which one is after some metres of the walk to something."""
+        """Return the cell that an agent reaches after some meters of the walk to a node."""
         if self._here is None or start < 0:
             return start
         field = self._here.ground.ways.field(self._here.ground.stands(node))

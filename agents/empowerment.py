@@ -1,4 +1,4 @@
-"""Help by empowerment: what would be done for most goals, whatever the goal is (thesis 7.4, a baseline)."""
+"""Help by empowerment: the actions that most goals need, whatever the goal is (thesis 7.4, a baseline)."""
 
 from __future__ import annotations
 

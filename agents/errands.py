@@ -1,4 +1,4 @@
-"""Errands: what somebody does for a while that has nothing to do with their goal."""
+"""Errands: actions of an agent for a while that have nothing to do with its goal."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Errand:
 
         Args:
             wanted: about ids of nodes.
-            view: what is seen now.
+            view: the current view.
             ticks: after which it is given up.
             seed: of all that it does at random.
             habits: of planning.

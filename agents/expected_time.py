@@ -1,4 +1,4 @@
-"""A helper that does what lets its partner finish soonest, in expectation over the exact posterior.
+"""A helper that minimizes the expected time until its partner has finished, over the exact posterior.
 
 Beyond the thesis: NOPA (eq. 7.1) weighs one edge at a time by a few particles. This helper simulates each possible next
 thing, under goals that represent the posterior, until the goal is reached (see `forecast`). It uses both hands and
@@ -37,7 +37,7 @@ class Settings:
         needless: ticks that a thing costs which turns out not to be wanted, or not where it is put.
         loyalty: ticks by which a new subgoal must be better than the present one.
         nearest, paired: how many heaps are looked at for a single thing, and for two at once.
-        sure: how probable a thing must be under a goal to be what the partner goes for.
+        sure: the least probability under a goal of a thing that the partner goes for.
     """
 
     goals: int = 10
@@ -170,7 +170,7 @@ class ExpectedTime(OnlineHelper):
         return Edge(self.space.relations[stop.row], thing, int(self.space.targets[stop.row]))
 
     def _back(self, view: View) -> Edge | None:
-        """Bring back what it holds and nobody wants."""
+        """Return the edge that brings back a thing in its hands that no goal wants."""
         wanted = {
             self.space.things[number]: probability
             for heap, probability in zip(self._now.heaps, self._wanted, strict=True)

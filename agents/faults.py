@@ -26,10 +26,10 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import CLOSED
 
 MOST_TICKS = 20
-"""Ticks after which an agent gives up what is not for its goal."""
+"""Ticks after which an agent gives up an errand."""
 
 ERRANDS = replace(PLAIN, closes=False)
-"""Habits while it does that: what it opens it leaves open."""
+"""Habits during an errand: the agent leaves open the things that it opens."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Faults:
 
 
 class Faulty(HumanLike):
-    """The human-like agent with faults; of none, it does what that one does."""
+    """The human-like agent with faults; without faults, it acts as the human-like agent."""
 
     def __init__(self, faults: Faults, habits: Habits = PLAIN) -> None:
         super().__init__(habits)
@@ -105,7 +105,7 @@ class Faulty(HumanLike):
         return subgoals[self.chooser.choices(list(values), weights)[0]]
 
     def _happens(self, probability: float) -> bool:
-        """Return whether something happens now; what never does draws nothing."""
+        """Return whether an event of some probability happens now; probability 0 draws no random number."""
         return probability > 0 and self.chooser.random() < probability
 
     def _forget(self, view: View) -> None:

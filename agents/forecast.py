@@ -69,7 +69,7 @@ class Forecast:
         """Ticks until the goal is reached, with a little for all that is brought late.
 
         Args:
-            stops: what the helper does first; after that it does what seems best to it.
+            stops: the helper's first stops; after them it takes the best one by its estimate.
             wait: ticks until it begins, because it watches; where nothing is left for the other, for nothing.
         """
         heaps = self.at.heaps
@@ -152,7 +152,7 @@ class Forecast:
             self._carry(errand.heap, errand.row)
 
     def _main_again(self) -> None:
-        """Turn the one who is helped to something else, where it is now, if what it is at is of no more use."""
+        """Turn the main agent to another thing, from its present place, if its errand has become useless."""
         errand = self.errand
         if errand is None or (errand.row in self.lacking and (errand.carried or self.left[errand.heap])):
             return
@@ -234,7 +234,7 @@ class Forecast:
         return Stop(number)
 
     def _overtaking(self) -> Stop | None:
-        """Bring what the one who is helped is about to bring, where the helper is faster."""
+        """Return the helper's stop for the main agent's current thing, where the helper is faster."""
         errand = self.errand
         if errand is None or len(self.hands) == HANDS:
             return None

@@ -1,4 +1,4 @@
-"""The goals that somebody may have, as arrays over the things of a home: what inference and helping reckon with."""
+"""The possible goals of an agent, as arrays over the things of a home, for inference and helping."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Scene(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """An edge of the graph that somebody brings about.
+    """An edge of the graph that an agent brings about.
 
     Attributes:
         relation: `ON` or `INSIDE` furniture; HOLDS for a thing that a character is to have; "" for taking a thing
@@ -68,7 +68,7 @@ class GoalSpace:
     Attributes:
         goals: all of them.
         prior: (G,) their probabilities.
-        predicates: (P) what goals count, naming furniture of the home.
+        predicates: (P) the counted literals of goals, naming furniture of the home.
         targets: (P,) index of the furniture of each.
         counts: (G, P) how many are wanted.
         things: indices of the things.
@@ -118,12 +118,12 @@ class GoalSpace:
 
     @cached_property
     def relations(self) -> tuple[str, ...]:
-        """Of each predicate."""
+        """Return the relation of each predicate."""
         return tuple(each.name for each in self.predicates)
 
     @cached_property
     def classes(self) -> tuple[str, ...]:
-        """Of the things that each predicate counts."""
+        """Return the classes of the things that each predicate counts."""
         return tuple(str(each.subject) for each in self.predicates)
 
     @cached_property
@@ -156,7 +156,7 @@ class GoalSpace:
         return bool(self.targets[row] == node) and self.relations[row] == relation
 
     def places(self, world: World) -> Places:
-        """(T) where each thing is now: what it is on or in, who holds it, or its room."""
+        """Return (T) the place of each thing now: the node it is on or in, its holder, or its room."""
         return [place_of(world, thing) for thing in self.things]
 
     def scene(self, world: World) -> Scene:

@@ -27,12 +27,12 @@ OPENING = 6
 
 @dataclass(frozen=True, slots=True)
 class Weights:
-    """Of equation 7.1.
+    """Weights of equation 7.1.
 
     Attributes:
         reward, cost, moves: w_r, w_c and w_m.
         ahead: L_max, ticks after which an edge is expected that no predicted plan brings about.
-        returns: whether what is not wanted is brought back; if not, w_m is 0.
+        returns: whether unwanted things are brought back; if not, w_m is 0.
         hands: how many things it carries at once.
         looked: edges of the highest value that are combined with each other.
     """
@@ -97,7 +97,7 @@ class HelpingPlans:
 
         Args:
             helper: the helper whose plans are weighed.
-            view: what it sees.
+            view: its view.
             prospects: goals with their shares, and the prediction under each.
             weights: of equation 7.1.
         """
@@ -197,7 +197,7 @@ class HelpingPlans:
         return self._helper.arrivals(self._view, ((leg.node, leg.ticks) for leg in legs))
 
     def _value(self, legs: Sequence[_Leg]) -> float:
-        """V(s, e) of equation 7.1, summed over the edges of a plan; what is held already is away as it is."""
+        """Return V(s, e) of equation 7.1, summed over the edges of a plan; a thing in hand counts as away already."""
         weights, times = self._weights, self._times(legs)
         value, brought = -weights.cost * times[-1], set()
         for leg, time in zip(legs, times, strict=True):

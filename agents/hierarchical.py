@@ -22,7 +22,7 @@ class Partner(Protocol):
 
 
 HELPING = Habits(closes=False, gives=True)
-"""Habits of helpers: closing what one has opened is a habit of people (thesis B.1.1) that helps nobody."""
+"""Habits of helpers: to close opened things is a habit of people (thesis B.1.1) that helps no agent."""
 
 
 class Hierarchical(HumanLike):
@@ -40,7 +40,7 @@ class Hierarchical(HumanLike):
             partner: whose subgoal it leaves alone. The thesis gives a helper with the true goal its partner's plan;
                 without one, as with a goal that was inferred or is random, it leaves nothing.
             habits: of planning.
-            timed: it leaves to the partner only what the partner reaches first, as far as it knows.
+            timed: it leaves to the partner only the things that the partner reaches first, as far as it knows.
         """
         super().__init__(habits)
         self.partner = partner
@@ -57,7 +57,7 @@ class Hierarchical(HumanLike):
         return super().act(observation, legal)
 
     def _note_other(self, view: View) -> None:
-        """Return where the other one is: as last seen; in any other room, if it is not where it was."""
+        """Update the place of the other agent: as last seen; in any other room, if it is no longer there."""
         self._other = view.others[-1] if view.others else self._other
         note_others(self.belief, view, self.chooser)
 
@@ -77,8 +77,9 @@ class Hierarchical(HumanLike):
         return mine.part == theirs.part and missing[mine.part][0] < 2
 
     def _left_to_partner(self, view: View, theirs: Subgoal) -> bool:
-        """Return whether the partner is at the thing of its subgoal before oneself; it is if it has it, or if one knows
-        neither where the partner nor where the thing is.
+        """Return whether the partner reaches the thing of its subgoal before this agent.
+
+        It does if it has the thing, or if neither the partner's place nor the thing's is known.
         """
         place, other = self.belief.where.get(theirs.thing), self._other
         if place is None or other is None or not self.belief.known >> theirs.thing & 1:

@@ -28,10 +28,10 @@ class Habits:
 
     Attributes:
         search: settings of the tree search.
-        closes: whether it closes what it opened, once nothing wanted is left there.
+        closes: whether it closes the containers that it opened, once no wanted thing is left there.
         looks_in: the containers in which it looks first (see `belief.Extent`); in the thesis any.
         doubt: ticks that a subgoal counts more if its thing was not seen.
-        gives: it hands over what another character is to hold.
+        gives: it hands over the things that another character is to hold.
         sees_all: it knows the whole world as it is (the oracles of 6.5).
     """
 
@@ -50,7 +50,7 @@ class HumanLike:
     """An agent that brings its goal about by its beliefs about the places of things.
 
     Attributes:
-        subgoal: what it is doing now; None before its first tick, and when nothing is left to be done.
+        subgoal: its current subgoal; None before its first tick, and when none is left.
     """
 
     def __init__(self, habits: Habits = PLAIN) -> None:
@@ -176,7 +176,7 @@ class HumanLike:
         return search.first(Literal(HANDS[0], (self.me, search.spare[0]), negated=True))
 
     def _note_opened(self, view: View) -> None:
-        """Remember what it opened; forget what is closed again, and doors, which it needs open."""
+        """Remember the containers that it opened; forget closed ones, and doors, which it needs open."""
         last, home = view.me.last, view.world.home
         if last is not None and last.failure is None:
             instruction = last.instruction
@@ -185,7 +185,7 @@ class HumanLike:
         self.opened &= self.belief.states[OPEN] & ~home.doors
 
     def _closing(self, search: Regression, step: Step | None, open_now: Sequence[Subgoal], needed: int) -> Step | None:
-        """Close what it opened before it walks away, if nothing wanted is left there and nothing more is to go in."""
+        """Close an opened container before it walks away, if no wanted thing is left there and none is to go in."""
         if not self.habits.closes or not self.opened or not self._leaves(search, step):
             return None
         where = self.belief.where
@@ -195,5 +195,5 @@ class HumanLike:
         return search.first(Literal("CLOSED", (container,))) if container >= 0 else None
 
     def _leaves(self, search: Regression, step: Step | None) -> bool:
-        """Return whether an instruction ends what there was to do here."""
+        """Return whether an instruction ends its work at this place."""
         return step is None or step.action in search.home.knowledge.group("goes")

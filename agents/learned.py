@@ -82,7 +82,7 @@ class Hybrid(HumanLike):
 
 
 class Learned(Hybrid):
-    """HRL: what to do for a subgoal is chosen by a second policy, action by action.
+    """HRL: a second policy chooses the actions for a subgoal, one by one.
 
     Attributes:
         actions: its choices since the episode began.

@@ -29,7 +29,7 @@ class Settings:
 
     Attributes:
         proposals: of goals.
-        model: the network that proposes them, where one does: a checkpoint's folder, or a name of `model list`.
+        model: the network that proposes them, if one does: a checkpoint's folder, or a name of `model list`.
         particles: K, how many goals are proposed at once.
         horizon: T_prop, ticks for which a plan is predicted and after which goals are proposed anew.
         weights: of equation 7.1.

@@ -1,4 +1,4 @@
-"""Helping somebody whose goal is unknown (thesis chapter 7): watch, infer, choose a helping subgoal, act on it."""
+"""Helping a partner with an unknown goal (thesis chapter 7): watch, infer, choose a helping subgoal, act on it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MOST_PROPOSED = 100
 
 
 class OnlineHelper(ABC):
-    """A helper that sees everything and infers what is wanted; `choose` says how it helps.
+    """A helper that sees everything and infers the partner's goal; `choose` gives its way of helping.
 
     While its partner is out of view it waits.
 
@@ -42,7 +42,7 @@ class OnlineHelper(ABC):
         other: how its partner stands, as last seen; None before that.
         scene: where things are, as far as it knows.
         first_places: where it saw things first.
-        subgoal: what it is doing; None if it waits.
+        subgoal: its current subgoal; None if it waits.
     """
 
     def __init__(self, goals: GoalsIn, model: ActionModel = USUAL_MODEL) -> None:
@@ -66,7 +66,7 @@ class OnlineHelper(ABC):
         self._puts_down = False
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """The first instruction towards what helps most."""
+        """Return the first instruction towards the most helpful edge."""
         if not self.look(observation):
             return None
         self.subgoal = self.choose(observation)
@@ -141,7 +141,7 @@ class OnlineHelper(ABC):
         return tuple(i for i in rows.held_indices(view.world.agents[view.agent]) if i in self.space.number)
 
     def planner(self) -> Planner:
-        """Of the partner's plans, from where it was last seen."""
+        """Return a planner of the partner's plans, from its last observed place."""
         assert self.other is not None
         return Planner(self.space, self.scene, self.partner, self.other, self.posterior.distances)
 

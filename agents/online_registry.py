@@ -22,7 +22,7 @@ class OnlineKind:
 
     Attributes:
         make: makes the helper of the goals that there may be.
-        about: what it is, for tables.
+        about: a description, for tables.
         network: the goal proposal network that it asks, which needs the extra `models`; "" for none.
         talks: whether it says something, which challenges allow by `messages`.
     """

@@ -1,4 +1,4 @@
-"""The exact posterior over all goals that somebody may have, by the likelihood of each action that is seen.
+"""The exact posterior over all goals that an agent may have, by the likelihood of each observed action.
 
 A model of the one who acts says how probable an action is under a goal: it goes for one of the things that the goal
 still lacks, a near one rather than a far one, takes it, and carries it to where the goal wants it. Chapter 7
@@ -54,7 +54,7 @@ class _Lacking(NamedTuple):
     """The missing predicates of goals, as long as the same things count.
 
     Attributes:
-        missing: (G, P) what each goal lacks.
+        missing: (G, P) the count that each goal lacks.
         possible: (G,) 1 where it lacks something, and there are as many things as it lacks.
         able: (P, T) whether a thing fits a predicate and does not count for it yet.
         row, number: of each pair of a predicate and how many are missing, which many goals share.
@@ -90,8 +90,8 @@ class Posterior:
     Attributes:
         space: the goals.
         weights: (G,) their probabilities now.
-        missing: (G, P) what each goal lacks now.
-        pursued: (G, T) under each goal, the probability that a thing is what is being fetched or carried.
+        missing: (G, P) the count that each goal lacks now.
+        pursued: (G, T) under each goal, the probability that the agent fetches or carries a thing.
     """
 
     def __init__(self, space: GoalSpace, home: Home, stride: float, model: ActionModel = USUAL_MODEL) -> None:
@@ -208,7 +208,7 @@ class Posterior:
         self.pursued = np.where(total > 0, joint / np.where(total > 0, total, 1.0), self.pursued)
 
     def notice(self, row: int) -> None:
-        """Weigh the goals by a thing that somebody has brought unseen to where a predicate wants it."""
+        """Weigh the goals by a thing that the agent has brought, unseen, to the target of a predicate."""
         slip = self.model.slip
         self._keep((1 - slip) * (self.space.counts[:, row] > 0) + slip)
 

@@ -21,7 +21,7 @@ class Prospect:
     """A predicted plan.
 
     Attributes:
-        nodes: what its walks, openings, grabs and puts until the horizon are about.
+        nodes: the nodes of its walks, openings, grabs and puts until the horizon.
         edges: edge -> ticks until it comes about, of those until the horizon.
         later: edges of the goal that come about after it.
     """
@@ -39,7 +39,7 @@ class _Plan:
         lacking: row of a predicate -> how many it still lacks.
         things: numbers of the things that are left.
         cell: where the one who acts is then.
-        opened: what that one has opened.
+        opened: the containers that the agent has opened.
     """
 
     lacking: dict[int, int]
@@ -59,14 +59,14 @@ class Planner:
     """
 
     def __init__(self, space: GoalSpace, scene: Scene, me: int, other: Pose, distances: Distances) -> None:
-        """Ask about somebody.
+        """Make a planner for an agent.
 
         Args:
             space: the goals.
             scene: where things are.
-            me: index of that one's node.
+            me: index of the agent's node.
             other: how that one stands.
-            distances: of that one's ways.
+            other: the agent's pose.
         """
         self.space = space
         self._closed, self._distances, self._me = scene.closed, distances, me

@@ -30,15 +30,15 @@ class Agent(Protocol):
         """Begin an episode.
 
         Args:
-            observation: what it sees before the first tick.
+            observation: its observation before the first tick.
             goal: the goal to reach; None for a helper that does not know it.
             seed: of all that it does at random.
         """
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """The instruction that it tries in this tick, or what it says instead; None to wait.
+        """Return the instruction that it tries in this tick, or its message instead; None to wait.
 
         Args:
             observation: its current observation, with its own last attempt and those of the agents in view.
-            legal: what it could do now, of the actions of the challenge.
+            legal: its possible instructions now, of the actions of the challenge.
         """

@@ -40,7 +40,7 @@ class Regression:
     """The search in one tick.
 
     Attributes:
-        seen: what is in view.
+        seen: the set of nodes in view.
         spare: held things from the one to be put down first, should a hand be needed.
     """
 
@@ -101,7 +101,7 @@ class Regression:
         return Step(name, tuple(ObjectRef(home.classes[i], 0, home.ids[i]) for i in nodes), self.agent)
 
     def _towards(self, node: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A walk to a node, or to where it is believed to be, or what opens the way there."""
+        """Return a walk to a node, or to its believed place, or an instruction that opens the way there."""
         for name in self._moves():
             if (step := self._legal_step(name, node)) is not None:
                 return step
@@ -124,7 +124,10 @@ class Regression:
         return next((step for i in others for name in self._moves() if (step := self._legal_step(name, i))), None)
 
     def _moves(self) -> tuple[str, ...]:
-        """The actions after which one is at, or nearer to, their object: by metres where those are allowed."""
+        """Return the actions after which the agent is at, or nearer to, their object.
+
+        By meters where those are allowed.
+        """
         return _moves(self.home.knowledge)
 
     def place(self, node: int) -> int:
@@ -153,7 +156,7 @@ class Regression:
         return None
 
     def _metres(self, node: int) -> float:
-        """As the crow flies to something that stays where it is; 0 without geometry."""
+        """Return the straight distance to a fixed thing, meters; 0 without geometry."""
         box, pose = self.home.node(node).box, self.me.pose
         return 0.0 if box is None or pose is None else math.dist(pose.point, (box.center[0], box.center[2]))
 
@@ -186,7 +189,7 @@ class Regression:
         return ()
 
     def _holds(self, formula: Formula, bound: Bound) -> bool:
-        """Return whether a condition holds by belief; what an agent has no belief about, does."""
+        """Return whether a condition holds by belief; a condition without a belief about it holds."""
         if isinstance(formula, And):
             return all(self._holds(part, bound) for part in formula.parts)
         if isinstance(formula, Or):
@@ -224,7 +227,7 @@ def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple
     first, and none that only does more than a plainer one.
     """
     found = _effects(knowledge, HANDS[0] if name == HOLDS else name, terms, negated)
-    if not found and negated and terms == 1:  # nothing makes it false but what makes its opposite true
+    if not found and negated and terms == 1:  # only effects that make its opposite true make it false
         found = _effects(knowledge, OPPOSITE[name], terms, negated=False)
     avoided = knowledge.group("variant") | knowledge.group("unplanned")
     ways = {
@@ -236,7 +239,7 @@ def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple
 
 
 def _effects(knowledge: Knowledge, name: str, terms: int, negated: bool) -> list[tuple[Action, Effect]]:
-    """The effects on a predicate of the things that an action names; `ON` of one is its state, of two a relation."""
+    """Return the effects on a predicate of an action's things; `ON` of one thing is its state, of two a relation."""
     return [
         (action, effect)
         for action in knowledge.actions.values()
@@ -256,7 +259,7 @@ def _name(effect: Effect) -> str:
 
 @lru_cache(maxsize=8)
 def _moves(knowledge: Knowledge) -> tuple[str, ...]:
-    """The actions after which one is at, or nearer to, their object: by metres where those are allowed."""
+    """Return the actions after which an agent is at, or nearer to, their object: by meters where those are allowed."""
     goes = knowledge.group("goes") - knowledge.group("variant") - knowledge.group("unplanned")
     return tuple(sorted(goes, key=lambda name: (name not in MOVES, name)))
 

@@ -113,8 +113,9 @@ class SceneReader:
         return Moment(Scene(classes, tuple(features), wanted), nodes)
 
     def _masks(self, view: View, subgoal: Subgoal, legal: Legal) -> list[int]:
-        """The nodes with which each kind of action could be done; what is put is the subgoal's kind of thing, if it is
-        held.
+        """Return the nodes with which each kind of action is possible.
+
+        Only the subgoal's kind of thing is put, if held.
         """
         found = [0] * 5
         thing = self._put(view, subgoal)
@@ -147,7 +148,7 @@ class SceneReader:
         return None
 
     def choice(self, step: Step, moment: Moment) -> Pair | None:
-        """The inverse: what somebody else's instruction is as a choice; None where no choice stands for it."""
+        """Return another agent's instruction as a choice, the inverse; None where no choice stands for it."""
         kind = _kinds(self.home.knowledge).get(step.action)
         if kind is None or not step.objects:
             return None

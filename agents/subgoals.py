@@ -1,4 +1,4 @@
-"""Subgoals: what is still to be done for a goal, by belief, one thing at a time (thesis B.1.1)."""
+"""Subgoals: the remaining parts of a goal, by belief, one thing at a time (thesis B.1.1)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HELD, RESTS = 1, 2
 """Order of the parts of a goal that are about characters, after those about things."""
 
 Missing = dict[int, tuple[int, int]]
-"""By part of a goal that is not reached by belief: the number missing, and the set of nodes that count."""
+"""The missing parts of a goal by belief: part -> the number missing, and the set of nodes that count."""
 
 
 class Subgoal(NamedTuple):
@@ -27,7 +27,7 @@ class Subgoal(NamedTuple):
     Attributes:
         literal: about indices of nodes: `ON(plate, table)`, `HOLDS(me, book)`, `ON(me, sofa)`, `ON(television)`.
         part: which of the goal's literals it is for.
-        thing: what is carried or handled: the index of the plate, the book, the sofa, the television.
+        thing: the index of the carried or handled thing: the plate, the book, the sofa, the television.
         target: where it is to go; -1 if it goes nowhere.
     """
 
@@ -80,7 +80,7 @@ class Aims:
             goal: counted literals; joined parts are not pursued.
             home: of the episode.
             me: index of the agent's node.
-            gives: what another character is to hold, it hands over.
+            gives: it hands over the things that another character is to hold.
         """
         self._home, self._me, self._gives = home, me, gives
         self._handed = 0
@@ -146,8 +146,10 @@ class Aims:
         return found
 
     def open(self, belief: Belief, missing: Missing) -> list[Subgoal]:
-        """The subgoals that would bring a missing part nearer: first those about things, then what it is to hold,
-        then where to rest. What another character holds is left to it.
+        """Return the subgoals that would bring a missing part nearer.
+
+        Those about things come first, then the thing that it is to hold, then the place to rest. A thing that another
+        character holds is left to it.
         """
         for last in range(3):
             found = [

@@ -1,4 +1,4 @@
-"""Talking for the price of a tick: the main agent says what it still wants; a helper asks where that saves time.
+"""Talking for the price of a tick: the main agent says its remaining goal; a helper asks where that saves time.
 
 Beyond the thesis. A question takes the helper's tick. The answer takes one of its partner's, and names one part of the
 partner's goal. Challenges allow talking by `messages`.
@@ -40,7 +40,7 @@ class Answering:
         self._named: set[int] = set()
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """An answer, if it was asked and there is something to answer; otherwise what it does anyway."""
+        """Return an answer, if it was asked and can answer; otherwise its usual choice."""
         if any(message.wanted is None for _, message in observation.messages):
             answer = self._answer(observation)
             if answer is not None:
@@ -48,7 +48,7 @@ class Answering:
         return self.main.act(observation, legal)
 
     def _answer(self, view: View) -> Message | None:
-        """The part of which most is missing, besides what it is doing itself."""
+        """Return the part of which most is missing, apart from its current one."""
         main = self.main
         main.belief.observe(view)
         missing = {part: number for part, (number, _) in main.aims.missing(main.belief, view).items()}
@@ -98,7 +98,7 @@ class Asking(ExpectedTime):
         self._forecasts = []
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """A question, or the first instruction towards what helps most."""
+        """Return a question, or the first instruction towards the most helpful edge."""
         self._hear(observation)
         step = super().act(observation, legal)
         if self._asked is None and not self._silent and self._is_worth_it():
@@ -107,7 +107,7 @@ class Asking(ExpectedTime):
         return step
 
     def _is_worth_it(self) -> bool:
-        """Return whether to know what is wanted soon is better than the best plan without."""
+        """Return whether to know the goal soon is better than the best plan without."""
         if not self._forecasts or self._forecasts[0][0] >= CERTAIN:
             return False
         return self._expected((), self.talk.asking) + self.talk.delay < self.value

@@ -14,7 +14,7 @@ def note_others(belief: Belief, view: View, chooser: Random) -> None:
 
     Args:
         belief: gets the rooms.
-        view: what is seen now.
+        view: the current view.
         chooser: draws rooms.
     """
     home = view.world.home
