@@ -3,7 +3,7 @@
 - `Triples`: (action, first object, second object). The masks give the legal objects of each action, so that a policy
   can choose first the action, then its objects; all of these are legal, but for an object named twice.
 - `Listed`: the number of a legal instruction in the order of `Legal`, with the list itself in the observation. Every
-  number below the list's length can be done; what a number means differs from tick to tick.
+  number below the list's length is possible; the meaning of a number differs from tick to tick.
 - `Fixed`: the number of an instruction in a list that never changes; for small worlds (see `fixed_list`).
 
 Number 0 is to wait, in all three. Objects are numbered by their slots in the arrays (see `slots.Slots`).
@@ -90,7 +90,7 @@ class Triples:
         return MultiDiscrete([1 + len(self.names), self.nodes, self.nodes])
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of the two masks."""
+        """Return the spaces of the two masks."""
         from gymnasium.spaces import MultiBinary
 
         count = 1 + len(self.names)
@@ -144,7 +144,7 @@ class Listed:
 
     Attributes:
         names: the actions; their numbers in `candidates`, from 1.
-        size: length of the padded list. What is legal beyond it has no number.
+        size: length of the padded list. Legal instructions beyond it have no number.
 
     With the mask, `action_mask`, int8 (size), comes `candidates`, int16 (size, 3): each as a triple of `Triples`.
     """
@@ -159,7 +159,7 @@ class Listed:
         return Discrete(self.size)
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of mask and candidates."""
+        """Return the spaces of mask and candidates."""
         from gymnasium.spaces import Box, MultiBinary
 
         shape = (self.size, 1 + MOST_OBJECTS)
@@ -195,7 +195,7 @@ class Listed:
         return found
 
     def number(self, step: Step | None, legal: Legal, slots: Slots) -> int:
-        """Its place in the list."""
+        """Return the instruction's place in the list."""
         if step is None:
             return WAIT
         for place, other in enumerate(islice(slots.instructions(legal), self.size - 1), 1):
@@ -221,7 +221,7 @@ class Fixed:
         return Discrete(1 + len(self.steps))
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of the mask."""
+        """Return the space of the mask."""
         from gymnasium.spaces import MultiBinary
 
         return {"action_mask": MultiBinary(1 + len(self.steps))}
@@ -241,7 +241,7 @@ class Fixed:
         return Step(step.action, step.objects, legal.agent)
 
     def number(self, step: Step | None, legal: Legal, slots: Slots) -> int:
-        """Its place in the list."""
+        """Return the instruction's place in the list."""
         if step is None:
             return WAIT
         for place, other in enumerate(self.steps, 1):

@@ -1,4 +1,4 @@
-"""Answers of agents that are no Python objects: the number or the text of an instruction, read against what is legal.
+"""Answers of agents that are no Python objects: number or text of an instruction, read against the legal ones.
 
 Only legal instructions are tried. The agent's observation alone decides why an answer is refused, so that answers
 reveal nothing about the rest of the home.
@@ -51,7 +51,7 @@ class Fault:
     fault: Diagnostic
 
     def as_json(self) -> dict[str, Any]:
-        """As agents and files get it."""
+        """Return the fault as agents and files get it."""
         code, message = str(self.fault.code), self.fault.message
         return {"tick": self.tick, "code": code, "message": message, "remedy": self.fault.suggestion}
 
@@ -65,7 +65,7 @@ def keep_nothing(row: Mapping[str, Any]) -> None:
 
 
 def row(view: View, answer: int | str | None, choice: Choice, fault: Fault | None) -> dict[str, Any]:
-    """A tick of a transcript: what was answered, what that did or said, and why it meant nothing."""
+    """Return a tick of a transcript: the answer, its action or message, and the reason if it had none."""
     return {
         "tick": view.tick,
         "agent": view.agent,
@@ -182,7 +182,7 @@ def _bound(ref: ObjectRef, view: View) -> ObjectRef:
 
 
 def _need_legal(step: Step, view: View, legal: Legal) -> None:
-    """Refuse what is not legal, and say why it is not in the world as far as the agent sees it."""
+    """Refuse an illegal instruction, and say why it is impossible in the world as far as the agent sees it."""
     if step in legal:
         return
     result = act(as_seen(view.world, view.mask), step)

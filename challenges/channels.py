@@ -1,4 +1,4 @@
-"""Lines to and from somebody else: a child process, a loopback socket, or our own standard input and output.
+"""Lines to and from another program: a child process, a loopback socket, or our own standard input and output.
 
 A line that is too long is left out whole and reported; nobody is waited for longer than a deadline. Deadlines are
 times of `time.monotonic`. Threads read and write, since pipes can be waited for in no other way on every system.
@@ -34,7 +34,7 @@ class Channel:
     Args:
         read: gives at most so many bytes, none once the other end is gone; it may wait.
         write: takes some of the bytes, and says how many; it may wait.
-        ends: called when nothing is read any more, and when nothing is written any more. Nobody else closes what is
+        ends: called when reading has ended, and when writing has ended. No other function closes a file that is
             read or written: its number could be another file's by the time that a thread uses it.
 
     Attributes:
@@ -89,7 +89,7 @@ class Channel:
         return self._skipping or len(self._received) < 2 * LONGEST_LINE
 
     def _writing(self) -> None:
-        """Write what is unsent."""
+        """Write the unsent bytes."""
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: self._ended or bool(self._unsent))
@@ -106,7 +106,7 @@ class Channel:
                 self._changed.notify_all()
 
     def send(self, line: bytes, deadline: float) -> None:
-        """Write a line. What can't be written by the deadline is written first the next time.
+        """Write a line; a rest that can't be written by the deadline is written first the next time.
 
         Raises:
             HearthError: TIMED_OUT; DISCONNECTED.

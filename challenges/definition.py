@@ -52,7 +52,7 @@ class Challenge:
         grammar: its goals.
         never_at: classes of furniture that no thing of a goal is put at.
         ticks: after which an episode ends.
-        partial: whether agents see only what is around them.
+        partial: whether agents see only the area around them.
         messages: whether agents may say something instead of doing something (see `schemas.agent_messages`).
         bodies: whether agents stand in each other's way.
         strides: metres that each agent walks in a tick.

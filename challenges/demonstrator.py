@@ -1,7 +1,7 @@
 """The demonstrator of a task: a human-like agent that sometimes does something else.
 
-A clean demonstration gives the goal away: counting what was put where infers every goal. People open the wrong
-cupboard, put away something in passing, and change their minds.
+A clean demonstration gives the goal away: counting placements infers every goal. People open the wrong cupboard, put
+away something in passing, and change their minds.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Demonstrator:
     """The human-like agent with habits that have nothing to do with its goal.
 
     Attributes:
-        began: what else it began to do, with the tick: the habit's name.
+        began: the habits that it acted on, each with its tick and the habit's name.
     """
 
     def __init__(self, which: Challenge, task: Task, habits: Mapping[str, float]) -> None:

@@ -21,7 +21,7 @@ _OUTWARD = {ON: "ON", INSIDE: "INSIDE", CLOSE: "CLOSE", FACING: "FACING"}
 """The relation of each kind of row of `Moved` that begins at its node."""
 
 _REMOVED = np.array([Moved._fields.index(n.lower()) if n.lower() in Moved._fields else -1 for n in RELATIONS])
-"""By relation id, which field of `Moved` has the nodes removed from it; -1 of BETWEEN and the hands."""
+"""By relation id, the field of `Moved` with the nodes removed from the relation; -1 of BETWEEN and the hands."""
 
 
 def bits(mask: int, count: int) -> NDArray[np.bool_]:

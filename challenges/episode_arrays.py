@@ -1,4 +1,4 @@
-"""Recorded episodes as arrays: what an agent saw, chose and earned in each tick."""
+"""Recorded episodes as arrays: an agent's observation, choice and reward in each tick."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class EpisodeArrays:
     Attributes:
         task: its id.
         seed: number of the episode of its task.
-        goal: what the main agent wants, as text.
+        goal: the main agent's goal, as text.
         observations: T + 1 dicts of arrays (see `seen_arrays.Encoder.spaces`).
         actions: (T, 3) triples (see `action_codes.Triples`); zeros where it waited or spoke.
         rewards: (T,) (see `rewards.Rewards`).
@@ -63,7 +63,7 @@ def session_of(task: Task, record: Record, knowledge: Knowledge) -> Session:
 
 
 def arrays_of(task: Task, record: Record, agent: int, knowledge: Knowledge) -> tuple[EpisodeArrays, Session]:
-    """Do a recorded episode again, and note what an agent had of it.
+    """Replay a recorded episode, and return an agent's part of it.
 
     Raises:
         HearthError: UNKNOWN_AGENT: there was no such agent; every fault of the record's actions.

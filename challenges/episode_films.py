@@ -1,4 +1,4 @@
-"""Episodes as executions, so that what films programs films what agents and people did."""
+"""Episodes as executions, so that the cameras of programs can film agents and people."""
 
 from __future__ import annotations
 

@@ -38,11 +38,11 @@ class Job:
     """An episode to be played.
 
     Attributes:
-        task: what is to be done.
+        task: the task to do.
         seed: number of the episode of its task.
         lineup: the agents that take part.
         helped: whether the helper does.
-        helper_goal: what the helper is asked to do; None if nothing.
+        helper_goal: the helper's goal; None if it has none.
         known: gives the knowledge.
         make: makes the main agent, if it is not the lineup's; a function that other processes find.
     """
@@ -64,8 +64,8 @@ class Record:
         task: id of its task.
         seed: number of the episode of its task.
         helped: whether there was a helper.
-        helper_goal: what that was asked to do, in the words of the grammar; None if nothing.
-        actions: of each tick what each agent tried, `Grab 41`; None where it waited.
+        helper_goal: the helper's goal, in the words of the grammar; None if it has none.
+        actions: of each tick each agent's attempt, `Grab 41`; None where it waited.
         final: digest of the world at the end.
         metrics: the outcome.
         end: why an agent could not go on: its number, a code, a message; None where all could.

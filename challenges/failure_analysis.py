@@ -42,7 +42,7 @@ class Columns:
         false_beliefs: things that an agent had seen where they no longer are, since the other took them unseen.
         needless: things that the helper moved and that in the end neither count for the goal nor are where they were.
         revealed: containers that the helper opened and the main agent then saw open.
-        blocked: ticks that an agent lost to the other, who stood in its way, or had what it reached for.
+        blocked: ticks that an agent lost because the other stood in its way, or had the thing that it reached for.
         idle: ticks in which the helper did nothing, or nothing that could be done.
         failed: instructions that could not be done.
     """
@@ -69,7 +69,7 @@ def analysed(
     Args:
         which: the challenge.
         start: the world at its start.
-        ticks: what happened.
+        ticks: of the episode.
         goals: of each agent, naming furniture of the home; None where an agent has none.
         progress: of the main agent's goal, at the start and after each tick.
     """
@@ -161,7 +161,7 @@ class _Analysis:
             self.columns.blocked += failure.code is Code.CONFLICT or not others.isdisjoint(failure.objects)
 
     def _count_seen(self, did: dict[int, Step], tick: Tick) -> None:
-        """False beliefs and revealed places: what each agent sees, and has seen."""
+        """Count false beliefs and revealed places: each agent's present and past observations."""
         if len(self.start.agents) < 2:
             return
         seen = [self._seen(tick.world, number) for number in range(len(self.start.agents))]

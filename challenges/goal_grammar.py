@@ -32,14 +32,14 @@ TRIES = 1_000
 class GoalSet:
     """A kind of activity: the predicates that its goals are made of.
 
-    Exactly one of `most`, `each` and `pool` says what is wanted.
+    Exactly one of `most`, `each` and `pool` gives the wanted things.
 
     Attributes:
         name: its identifier.
         title: its name in the thesis.
-        asked: what people are asked to do.
+        asked: the instruction for people.
         relation: of things to the target.
-        targets: classes of furniture; one is chosen.
+        targets: classes of furniture; one of them is chosen.
         most: class -> most wanted of it; `total` things in all, every goal equally probable.
         each: classes, or choices of one, of which as many are wanted as there are `people`.
         pool: classes, of which `total` things are wanted in all; how many classes, which and how many of each are
@@ -47,7 +47,7 @@ class GoalSet:
         total: fewest and most things.
         people: fewest and most.
         always: wanted each time, once.
-        free: of these, what is not counted among a goal's predicates.
+        free: of these, the literals that are not counted among a goal's predicates.
     """
 
     name: str
@@ -76,7 +76,7 @@ class GoalSet:
 
     @cached_property
     def goals(self) -> Mapping[Goal, float]:
-        """Its goals with their probabilities, which sum to 1, in a fixed order."""
+        """Return its goals with their probabilities, which sum to 1, in a fixed order."""
         wanted = dict(self._wanted())
         share = 1 / (sum(wanted.values()) * len(self.targets))
         always = tuple((literal, 1) for literal in self.always)
@@ -233,7 +233,7 @@ class Grammar:
         return self.goals.get(goal, 0.0)
 
     def counts(self, goal: Goal) -> tuple[int, ...]:
-        """Return how often each of `predicates` is wanted: what goal inference predicts (appendix B.3.1)."""
+        """Return how often each of `predicates` is wanted: the output of goal inference (appendix B.3.1)."""
         wanted = dict(goal)
         return tuple(wanted.get(literal, 0) for literal in self.predicates)
 

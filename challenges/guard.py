@@ -1,4 +1,4 @@
-"""Agents of others in an episode: what crashes, hangs or answers nonsense ends it with a code, and nothing else."""
+"""Guards around others' agents in an episode: an agent that crashes, hangs or answers nonsense ends it with a code."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def _fault_of(error: BaseException) -> Diagnostic:
 
 @contextmanager
 def _within(seconds: float) -> Iterator[None]:
-    """Interrupt what takes longer, where this is the thread that gets signals."""
+    """Interrupt a longer computation, if this is the thread that gets signals."""
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
         yield
         return

@@ -43,7 +43,7 @@ def train(
 
     Args:
         name: of the challenge.
-        what: one of `WHAT`.
+        what: the subject, one of `WHAT`.
         out: the checkpoint's folder.
         known: gives the knowledge.
         seed: of all that is drawn.

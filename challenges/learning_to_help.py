@@ -38,7 +38,7 @@ from hearth.storage.files import value_digest
 from hearth.storage.parallel import Seen, spread, unseen
 
 DISCOUNT = 0.98
-"""Of a tick."""
+"""Discount of a tick."""
 
 VALIDATION = 30
 """Tasks of training that are for validation only."""
@@ -106,7 +106,7 @@ def beside(task: Task, main: HumanLike, helper: Any, known: Known, seed: int) ->
 
 
 def high_rewards(done: Played) -> list[float]:
-    """Of each tick: 2 for a predicate, whoever brings it about, -0.1 for the tick (B.3.3)."""
+    """Return the reward of each tick: 2 for a predicate, by any agent, -0.1 for the tick (B.3.3)."""
     worlds = [done.env.ticks[0].before, *(tick.world for tick in done.env.ticks)] if done.env.ticks else []
     pairs = list(zip(done.progress, worlds, strict=False))
     return [HIERARCHICAL.of(before, after, 1) for before, after in pairwise(pairs)]
@@ -178,7 +178,7 @@ def learn(
 
 
 Rollout = Callable[[Task, int], tuple[list[Trace], float]]
-"""(task, seed) -> what was chosen in an episode, and all its rewards."""
+"""(task, seed) -> the choices in an episode, and all its rewards."""
 
 
 def _aims_of(task: Task, known: Known) -> Any:
@@ -269,7 +269,7 @@ def _helping(policy: TrainedPolicy, known: Known, task: Task, seed: int) -> tupl
 
 
 def _practising(policy: TrainedPolicy, known: Known, task: Task, seed: int) -> tuple[list[Trace], float]:
-    """An episode in which one is alone, and one predicate of a goal is wanted (B.3.4)."""
+    """Play an episode of an agent alone, with one predicate of a goal (B.3.4)."""
     agent = Practice(policy)
     _, rewards = practised(task, agent, known, seed)
     return ([traced(agent.actions, rewards)] if agent.actions else []), sum(rewards)

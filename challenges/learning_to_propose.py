@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hearth.models.proposals.goal_proposals import TrainedGoalProposals
 
 RATE = 0.0009
-"""Of learning (table C.3)."""
+"""Rate of learning (table C.3)."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Wish:
 
 
 def episode(wish: Wish) -> Episode:
-    """Somebody doing a task alone, as the network sees it; errors as of `Task.start`."""
+    """Play an agent alone at a task, and return it as the network sees it; errors as of `Task.start`."""
     which, knowledge = challenge(wish.task.challenge), wish.known()
     start = wish.task.start(knowledge, 1)
     goal = wish.task.goal_in(start.home)

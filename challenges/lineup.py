@@ -38,7 +38,7 @@ class Lineup:
     Attributes:
         main: the agent that is helped, by name.
         helper: the helper's name; `none`, or `FILE.py:CLASS` for the user's own agent.
-        goal: what the helper is asked to do; as its row in the registry says where empty.
+        goal: the helper's goal; as its row in the registry says where empty.
         seconds: an agent may think about a tick as long as this.
     """
 
@@ -49,11 +49,11 @@ class Lineup:
 
     @property
     def code(self) -> str:
-        """A digest of the file of a helper of one's own; "" for ours."""
+        """Return a digest of the file of a user's own helper; "" for ours."""
         return file_digest(Path(self.helper.rpartition(":")[0]))[:32] if ":" in self.helper else ""
 
     def checked(self) -> Lineup:
-        """The same, with the goal that the helper is asked to reach.
+        """Return the same lineup, with the goal of the helper filled in.
 
         Raises:
             HearthError: BAD_ARGUMENT: there is no such agent or goal; MISSING_FILE.
@@ -72,7 +72,7 @@ class Lineup:
         return Lineup(self.main, self._helper, goal, self.seconds)
 
     def installed(self) -> Lineup:
-        """The same, if the networks that its helper asks can be asked here.
+        """Return the same lineup, if the networks that its helper needs are installed.
 
         Raises:
             HearthError: MISSING_FILE: the extra `models` is not installed.
@@ -85,7 +85,7 @@ class Lineup:
         return self
 
     def fits(self, which: Challenge) -> Lineup:
-        """The same, if its helper can work in a challenge.
+        """Return the same lineup, if its helper can work in a challenge.
 
         Raises:
             HearthError: BAD_ARGUMENT: it would end every episode there: it talks where nobody may, or its network was
@@ -163,7 +163,7 @@ def _unknown(what: str, name: str, known: Any) -> HearthError:
 
 
 def load(place: str) -> Any:
-    """The class of an agent of one's own, as the command line names it: `FILE.py:CLASS`.
+    """Return the class of a user's own agent, named as on the command line: `FILE.py:CLASS`.
 
     Raises:
         HearthError: MISSING_FILE; BAD_ARGUMENT: the file has no such class, or does not run.

@@ -35,7 +35,7 @@ class Outcome:
     columns: Columns
 
     def as_json(self) -> dict[str, Any]:
-        """As result files have it."""
+        """Return the outcome as result files have it."""
         return {
             "success": self.success,
             "ticks": self.ticks,
@@ -85,7 +85,7 @@ class Episodes(Sequence[Mapping[str, float]]):
         self._count = 0
 
     def append(self, metrics: Mapping[str, float]) -> None:
-        """Add an episode; what earlier ones lack, or it lacks, is nan."""
+        """Add an episode; metrics that it or earlier episodes lack are nan."""
         for name in metrics.keys() - self._columns.keys():
             self._columns[name] = array("d", [math.nan] * self._count)
         for name, values in self._columns.items():

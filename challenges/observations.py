@@ -120,7 +120,7 @@ def last_json(last: LastAction, view: View) -> dict[str, Any]:
 
 
 def seen_failure(failure: Failure, view: View) -> Failure:
-    """A failure that names what the agent sees alone: a closed door in another room is not named."""
+    """Return a failure that names visible nodes alone: a closed door in another room is not named."""
     pairs = [pair for pair in zip(failure.objects, failure.names, strict=False) if view.sees(pair[0])]
     objects, names = tuple(node for node, _ in pairs), tuple(name for _, name in pairs)
     return replace(failure, tick=max(0, view.tick - 1), objects=objects, names=names)

@@ -70,11 +70,11 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
         self._np_random = np.random.default_rng()
 
     def observation_space(self, agent: str) -> Dict:
-        """Of an agent's arrays; always the same object."""
+        """Return the space of an agent's arrays; always the same object."""
         return self._observation_spaces[agent]
 
     def action_space(self, agent: str) -> Space[Any]:
-        """Of an agent's actions; always the same object."""
+        """Return the space of an agent's actions; always the same object."""
         return self._action_spaces[agent]
 
     def reset(
@@ -146,7 +146,7 @@ def parallel_env(
 
 
 def env(begin: Opening, max_cycles: int = MOST_TICKS, render_mode: str | None = None, **settings: Any) -> AECEnv:
-    """The same in turns: a tick is done when all agents have chosen."""
+    """Return the same environment in turns: a tick is done when all agents have chosen."""
     from pettingzoo.utils.conversions import parallel_to_aec
 
     return parallel_to_aec(parallel_env(begin, max_cycles, render_mode, **settings))

@@ -27,8 +27,8 @@ class Player:
 
     Attributes:
         agent: the agent that decides.
-        goal: what it is asked to reach; None if nothing.
-        partial: whether it sees only what is around it; as the episode has it where None.
+        goal: the goal it is asked to reach; None if it has none.
+        partial: whether it sees only the area around it; as the episode has it where None.
     """
 
     agent: Agent
@@ -44,7 +44,7 @@ class Played:
         env: with its ticks.
         progress: of the goal in the real world, at the start and after each tick.
         fault: why an agent could not go on, which ended the episode; None where all could.
-        said: what was said in each tick, by number.
+        said: the messages of each tick, by number.
     """
 
     env: Env
@@ -64,18 +64,18 @@ class Played:
 
 
 class Playing:
-    """An episode under way: what each player sees, one tick after the other, and whether it is over.
+    """An episode under way: each player's view, tick by tick, and whether it is over.
 
     Attributes:
         env: with its ticks.
         progress: of the goal in the real world, at the start and after each tick.
-        said: what was said in each tick, by number.
+        said: the messages of each tick, by number.
 
     Args:
         start: a world in which character n belongs to player n.
-        goal: what ends the episode.
-        actions: what may be tried; everything where None.
-        partial: for each player, whether it sees only what is around it.
+        goal: the goal that ends the episode.
+        actions: the allowed actions; all where None.
+        partial: for each player, whether it sees only the area around it.
         limit: ticks after which it ends.
         rules: of actions.
         messages: whether agents may say something instead of doing something; it is dropped otherwise.
@@ -144,11 +144,11 @@ def play(
 
     Args:
         start: a world in which character n belongs to player n.
-        goal: what ends the episode; progress is counted in the real world only.
+        goal: the goal that ends the episode; progress is counted in the real world only.
         players: the agents that act.
         seed: of the episode; each agent gets one derived from it.
-        actions: what may be tried; everything where None.
-        partial: whether agents see only what is around them.
+        actions: the allowed actions; all where None.
+        partial: whether agents see only the area around them.
         limit: ticks after which it ends.
         rules: of actions.
         messages: whether agents may say something instead of doing something.

@@ -1,4 +1,4 @@
-"""Result files: JSON lines. The first is what was run, each other an episode with all that was done in it."""
+"""Result files: JSON lines. The first describes the run, each other is an episode with all its actions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Header:
         seeds: episodes of each task, numbered from 0.
         version: of Hearth.
         episodes: task, seed and kind of those that there are; None where there are all. People do not do all.
-        code: digest of the file of a helper of one's own; "" for ours.
+        code: digest of the file of a user's own helper; "" for ours.
     """
 
     suite: Suite
@@ -56,7 +56,7 @@ class Header:
         return list(self.each_key())
 
     def each_key(self) -> Iterator[tuple[str, int, bool]]:
-        """The same one by one: a short file of a stranger may say that it has millions."""
+        """Yield the same keys one by one: a short file of a stranger may say that it has millions."""
         if self.episodes is not None:
             yield from self.episodes
             return
@@ -70,7 +70,7 @@ class Header:
         return len(self.suite.tasks) * self.seeds * len(self.helped)
 
     def as_json(self) -> dict[str, Any]:
-        """As the first line has it."""
+        """Return the header as the first line has it."""
         agents = {name: value for name, value in asdict(self.lineup).items() if name != "seconds"}
         return {
             "format": FORMAT,
@@ -83,8 +83,9 @@ class Header:
 
 
 class FileRecords(Collection[Record]):
-    """The episodes of a file, read anew each time that somebody goes through them: of many thousands not all fit in
-    memory. A file that has become another meanwhile raises the errors of `read`.
+    """The episodes of a file, read anew in each iteration: of many thousands not all fit in memory.
+
+    A file that was replaced meanwhile raises the errors of `read`.
     """
 
     def __init__(self, header: Header, path: Path) -> None:
@@ -106,7 +107,7 @@ class Results:
     """The results of a run.
 
     Attributes:
-        header: what was run.
+        header: the description of the run.
         records: its episodes.
     """
 

@@ -46,7 +46,7 @@ class Rewards:
 
 
 HIERARCHICAL = Rewards(success=0.0, tick=-0.1, predicate=2.0)
-"""Of a policy over subgoals (B.3.3)."""
+"""Rewards of a policy over subgoals (B.3.3)."""
 
 
 def counted(progress: Progress) -> int:

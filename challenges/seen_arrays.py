@@ -1,6 +1,6 @@
 """An agent's observation as padded arrays; one row for each slot (see `slots`), zeros where nothing is visible.
 
-Of a partial view only what it shows is in the arrays: scrambling the rest of the world changes no byte of them.
+Of a partial view only the visible part is in the arrays: scrambling the rest of the world changes no byte of them.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Sizes:
 
     Attributes:
         nodes: slots; the largest of our homes has 674 nodes.
-        edges: in the order of the ids of source, relation and target; what is seen beyond them is left out.
+        edges: in the order of the ids of source, relation and target; visible edges beyond them are left out.
         agents: characters; the first row is the agent itself, the others follow by number.
         literals: rows of a goal (see `goal_rows`).
         legal: instructions of the padded list (`action_codes.Listed`).
@@ -101,7 +101,7 @@ class Encoder:
     relations: tuple[str, ...] = tuple(name for name in RELATIONS if name != "CLOSE")
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of every array but the masks."""
+        """Return the spaces of every array but the masks."""
         from gymnasium.spaces import Box, MultiBinary
 
         sizes, kinds = self.sizes, len(_categories(self.knowledge))
@@ -149,7 +149,7 @@ class Encoder:
         """A view as arrays that nobody else holds.
 
         Args:
-            view: what an agent sees.
+            view: an agent's view.
             rows: of its home.
             progress: of the goal that the agent knows; None where it knows none.
             time: the part of the episode that has passed.

@@ -80,13 +80,13 @@ class Setting:
         opening: the start of an episode, and its goal.
         actions: names of the actions that may be tried; None: those of challenges (see `action_codes.played`).
         code: how instructions are numbered (see `action_codes`): `triples`, `listed`, or an `ActionCode`.
-        partial: whether agents see only what is around them.
+        partial: whether agents see only the area around them.
         told: the agents that know the goal; all of them where None.
         limit: ticks after which an episode is cut off.
         rewards: of a tick.
         rules: of actions.
         sizes: of the arrays.
-        things: what the arrays and instructions are about (see `Slots.of`); everything where None.
+        things: the nodes of arrays and instructions (see `Slots.of`); all nodes where None.
     """
 
     opening: Opening
@@ -141,13 +141,13 @@ class Session:
         return code
 
     def observation_space(self) -> Dict:
-        """Of every agent's arrays."""
+        """Return the space of every agent's arrays."""
         from gymnasium.spaces import Dict
 
         return Dict({**self.encoder.spaces(), **self.code.spaces()})
 
     def action_space(self) -> Space[Any]:
-        """Of every agent's numbers."""
+        """Return the space of every agent's numbers."""
         return self.code.space()
 
     def begin(self, seed: int) -> None:
@@ -194,7 +194,7 @@ class Session:
         return self._seen[agent]
 
     def observe(self, agent: int) -> Arrays:
-        """The same as arrays."""
+        """Return an agent's observation as arrays."""
         view, legal = self.seen(agent)
         told = self.setting.told is None or agent in self.setting.told
         time = len(self.env.ticks) / self.setting.limit
@@ -257,7 +257,7 @@ class Session:
         return self.act({agent: self.read(agent, number) for agent, number in numbers.items()})
 
     def act(self, read: Mapping[int, Step | Failure | None]) -> dict[int, float]:
-        """The same with instructions instead of numbers."""
+        """Let agents act by instructions instead of numbers, and return the reward of each agent."""
         before = self.progress, self.env.world
         tick = self.env.step({agent: step for agent, step in read.items() if isinstance(step, Step)})
         self.progress = self.progress.then(tick.before, tick.world, done(tick))

@@ -1,4 +1,4 @@
-"""Episodes as an `Env` of Gymnasium: one agent learns, the others are agents of ours or anybody's."""
+"""Episodes as an `Env` of Gymnasium: one agent learns, the others are agents of ours or of a user."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ class Slots:
         Args:
             home: the home.
             size: number of slots.
-            things: what arrays are about: names of classes, and ids; everything where None, in the order of ids.
+            things: the nodes of arrays: names of classes, and ids; everything where None, in the order of ids.
 
         Raises:
             HearthError: BAD_ARGUMENT, where the home has more nodes than there are slots, or nothing of that name.

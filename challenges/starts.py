@@ -59,7 +59,7 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
         goal: of its grammar.
         home: name of one of our homes.
         seed: all the randomness there is.
-        knowledge: what the home is read with.
+        knowledge: the knowledge that the home is read with.
         agents: the first of the challenge's characters only; the world is the same but for the others.
 
     Raises:

@@ -37,8 +37,8 @@ def run(
 ) -> Results:
     """Play every task several times, without the helper and with it, and write all that was done.
 
-    What a stopped run had written is kept; the same call goes on from there. A helper of one's own whose file has
-    changed is another: all is played anew.
+    The episodes that a stopped run had written are kept; the same call continues from there. A user's own helper whose
+    file has changed is another helper: all is played anew.
 
     Args:
         suite: the tasks.
@@ -77,7 +77,7 @@ def run(
 def _kept(header: Header, partial: Path) -> int:
     """Return how many episodes of the same run are in a file that a stopped run left.
 
-    What is half written is cut off.
+    A half-written line is cut off.
     """
     if not partial.exists():
         return 0

@@ -15,7 +15,7 @@ class CountedRow(TypedDict):
 
 
 class TaskRow(TypedDict):
-    """A task: somebody wants something in a home."""
+    """A task: an agent has a goal in a home."""
 
     task_id: Annotated[str, "unique; files of tasks have it, too"]
     challenge: Annotated[str, "wah or owah"]
@@ -44,7 +44,7 @@ class HabitRow(TypedDict):
 
 
 class DemonstrationRow(TypedDict):
-    """A task that somebody did alone, in its demonstration home."""
+    """A task that an agent did alone, in its demonstration home."""
 
     task_id: Annotated[str, "the task"]
     clean: Annotated[bool, "without habits: counting what was put where gives the goal away"]

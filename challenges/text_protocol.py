@@ -1,6 +1,7 @@
 """Agents that read and write text: language models, and people at a terminal.
 
-Each tick they get what is seen as lines of English and the numbered legal actions, and answer by a number or by text.
+Each tick they get the observation as lines of English and the numbered legal actions, and answer by a number or by
+text.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ def _refused(fault: Fault) -> str:
 
 
 def understood(answer: str, view: View, legal: Legal, options: Sequence[Step], messages: bool = False) -> Choice:
-    """The instruction that the last line of an answer means, or what it says; None for `wait`.
+    """Return the instruction that the last line of an answer means, or its message; None for `wait`.
 
     Raises:
         HearthError: EMPTY, NOT_TEXT, and those of `by_number` and `by_words`.

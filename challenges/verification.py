@@ -25,7 +25,7 @@ class Check:
 
     Attributes:
         task: theirs.
-        records: what was done.
+        records: the episodes.
         known: gives the knowledge.
         jobs: to be played anew, so that the agents' choices are compared, too; empty otherwise.
     """
@@ -59,7 +59,7 @@ def verify(
         file: their name in faults.
         known: gives the knowledge.
         workers: processes.
-        agents: also let the agents play each episode anew, and compare what they do.
+        agents: also let the agents play each episode anew, and compare their actions.
         seen: called with the number of episodes done.
     """
     found = [Diagnostic(Code.REPLAY_DIFFERS, fault, file) for fault in _missing(results)]

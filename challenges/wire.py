@@ -112,7 +112,7 @@ class WireAgent:
         return self.faults[-1]
 
     def _notify(self, message: dict[str, Any]) -> None:
-        """Send what needs no answer to whom may be gone, or not reading."""
+        """Send a message that needs no answer; its receiver may be gone, or not reading."""
         if self.channel.open:
             with contextlib.suppress(HearthError):
                 self.channel.send(orjson.dumps(message), time.monotonic() + min(self.within, NOTICE))
