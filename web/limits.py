@@ -27,7 +27,7 @@ MOST_SENDERS = 10_000
 
 
 class Rate:
-    """At most `burst` requests at once and `each_second` in the long run, of each sender.
+    """A limit of each sender: at most `burst` requests at once and `each_second` in the long run.
 
     Args:
         each_second: requests a second.

@@ -1,4 +1,4 @@
-"""A person's socket: messages in are checked, faults are answered, and the room sees what is in order alone."""
+"""A person's socket: messages in are checked, faults are answered, and the room gets only valid messages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Link:
     """A socket of a session.
 
     Attributes:
-        web: what all handlers share.
+        web: the common state of all handlers.
         session: whose it is.
         socket: for the address's parts, and for closing.
     """

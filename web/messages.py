@@ -15,7 +15,7 @@ from hearth.web.web_errors import WebError
 class Inbox:
     """Checks the messages of one connection: JSON objects with a `type`, numbered 1, 2, 3, ... in `n`.
 
-    A refused message does not count: the next one has the number that it should have had.
+    A refused message does not count: the next one has the number that the refused one should have had.
 
     Args:
         rate: the limit that this connection has.

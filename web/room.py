@@ -71,9 +71,9 @@ class Room:
     Attributes:
         name: the first part of its addresses, and the folder of its templates and static files.
         title: as the navigation has it.
-        line: what one does there, for the start page.
-        addresses: what people may ask for.
-        desk: what researchers may ask for, under `/desk/NAME`.
+        line: the purpose, for the start page.
+        addresses: the addresses for people.
+        desk: the addresses for researchers, under `/desk/NAME`.
         needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
         listed: whether the start page and the navigation list it.
         opens: writes the files that follow from the store, when a server starts and after a deletion.

@@ -28,12 +28,12 @@ class Web:
     Attributes:
         store: the database.
         known: the knowledge that programs are checked against.
-        out: the server's folder: what rooms write there is what `build` reads, but for hidden folders.
+        out: the server's folder; `build` reads the files that rooms write there, but for hidden folders.
         templates: the pages.
         study: the file of the study, or None.
         desk: the digest of the desk's token.
         secure: whether people come by https.
-        rates: how fast one may ask, by the names of `RATES`.
+        rates: limits on the rate of requests, by the names of `RATES`.
         films: a dataset whose films people describe, or None.
         follows: write the files of rooms, which follow from the store.
     """
@@ -50,7 +50,7 @@ class Web:
     follows: tuple[Callable[[Web], None], ...] = ()
 
     def written(self) -> None:
-        """Write anew what rooms keep in files, once something that these follow from was deleted."""
+        """Write the rooms' files anew, once data that they follow from was deleted."""
         for write in self.follows:
             write(self)
 
@@ -60,7 +60,7 @@ class Visit:
     """A request.
 
     Attributes:
-        web: what all handlers share.
+        web: the common state of all handlers.
         request: the request as it came; its body is read already.
         session: the sender's session, on addresses of persons; on others maybe None.
         body: at most as many bytes as the address allows.

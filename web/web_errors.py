@@ -30,8 +30,8 @@ class WebError(Exception):
     Attributes:
         code: the kind.
         place: the field, address or message at fault.
-        expected: what had to come.
-        actual: what came instead.
+        expected: the expected value.
+        actual: the received value.
         instead: an address of ours to which browsers are sent, where its page says why; "" for the page of a fault.
     """
 

@@ -1,4 +1,4 @@
-"""The researcher's view of annotating: what there is, which blocks are missing, the files."""
+"""The researcher's view of annotating: the contributions, the missing blocks, the files."""
 
 from __future__ import annotations
 

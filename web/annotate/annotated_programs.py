@@ -37,7 +37,7 @@ def own_program(store: Store, person: str, text: str) -> Row | None:
 
 
 def begun(store: Store, person: str, text: str) -> Row:
-    """The same, begun with an empty scene if there is none."""
+    """Return a person's program, begun with an empty scene if there is none."""
     found = own_program(store, person, text)
     if found is not None:
         return found

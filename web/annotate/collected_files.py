@@ -93,7 +93,7 @@ def _marked(mark: Row) -> Any:
     """The value of a mark.
 
     Raises:
-        HearthError: DAMAGED_FILE: it is none, as in a store that somebody has changed.
+        HearthError: DAMAGED_FILE: it is none, as in a store that was changed by hand.
     """
     try:
         value = orjson.loads(mark["value"])

@@ -22,7 +22,7 @@ Run = Callable[[Draft, str, str, Knowledge], dict[str, Any]]
 
 
 def task_list(visit: Visit) -> Response:
-    """Step one: the descriptions that one may write a program for."""
+    """Return step one: the descriptions that the person may write a program for."""
     return visit.page("annotate/tasks.html", tasks=annotated_programs.tasks(visit.web.store, visit.person))
 
 
@@ -100,7 +100,7 @@ def work(visit: Visit) -> Response:
 
 
 def work_of(visit: Visit, program: Row, draft: Draft) -> dict[str, Any]:
-    """The same of any program."""
+    """Return the work of any program, as JSON."""
     known = visit.web.known
     blocks = {"actions": block_grammar.actions(known), "things": block_grammar.things(draft, known)}
     changes = program["state"] in annotated_programs.CHANGED
@@ -141,7 +141,7 @@ def try_out(visit: Visit) -> Response:
 
 
 def replay(visit: Visit) -> Response:
-    """The same run in 3D."""
+    """Return the same run in 3D."""
     message = visit.json()
     draft = sent(visit, message, _draft(visit))
     return visit.answer(run_of(visit, _text(visit), message, draft, trial_run.replay_draft))

@@ -75,7 +75,7 @@ class Draft:
         return [ObjectRef(name, number) for name, count in both for number in range(1, count + 1)]
 
     def as_json(self) -> dict[str, Any]:
-        """As it is stored and sent."""
+        """Return the draft as it is stored and sent."""
         steps = [
             {"special": block.text}
             if block.action == SPECIAL
@@ -85,11 +85,11 @@ class Draft:
         return {"rooms": self.rooms, "props": self.props, "steps": steps}
 
     def dumped(self) -> str:
-        """As text for the store."""
+        """Return the draft as text for the store."""
         return orjson.dumps(self.as_json()).decode()
 
     def with_scene(self, rooms: dict[str, int], props: dict[str, int]) -> Draft:
-        """With another scene; slots whose thing is no longer declared become empty."""
+        """Return the draft with another scene; slots whose thing is no longer declared become empty."""
         scene = Draft(rooms, props)
         left = set(scene.things())
         return replace(scene, blocks=tuple(
@@ -101,7 +101,7 @@ def stored(text: str) -> Draft:
     """A draft as it was stored.
 
     Raises:
-        HearthError: DAMAGED_FILE: it is none, as in a store that somebody has changed.
+        HearthError: DAMAGED_FILE: it is none, as in a store that was changed by hand.
     """
     try:
         value = orjson.loads(text)
@@ -139,7 +139,7 @@ def read_quantity(text: str, place: str) -> int:
 
 
 def read_blocks(value: Any, scene: Draft, known: Knowledge) -> tuple[Block, ...]:
-    """The steps that a page sends: only declared things, only what the grammar affords.
+    """Return the steps that a page sends: only declared things, and only actions that the grammar affords.
 
     Raises:
         WebError: BAD_ARGUMENT, UNKNOWN_ACTION, WRONG_ARITY, UNDECLARED or NOT_AFFORDED, with the step.
@@ -194,7 +194,7 @@ def _special(text: str, place: str) -> str:
     """The free text of a special block, with single spaces.
 
     Raises:
-        WebError: BAD_ARGUMENT: it is longer than anybody writes.
+        WebError: BAD_ARGUMENT: it is longer than any person's.
     """
     text = " ".join(text.split())
     if len(text) > MOST_KEPT:

@@ -26,7 +26,7 @@ class Found(NamedTuple):
         fault: whether a program with it can't be submitted.
         code: the kind.
         message: for people.
-        remedy: what to do.
+        remedy: the correction.
     """
 
     step: int

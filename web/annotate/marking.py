@@ -140,7 +140,7 @@ def _program_page(visit: Visit, kind: str, template: str, **values: Any) -> Resp
 
 
 def _accepted(visit: Visit) -> Row:
-    """The accepted program of the address, by somebody else.
+    """Return the accepted program of the address, by another person.
 
     Raises:
         WebError: UNKNOWN_ID.

@@ -77,7 +77,7 @@ def try_out(visit: Visit) -> Response:
 
 
 def replay(visit: Visit) -> Response:
-    """The same run in 3D."""
+    """Return the same run in 3D."""
     _, text, draft, message = _mended(visit)
     return visit.answer(composing.run_of(visit, text, message, draft, trial_run.replay_draft))
 
@@ -98,7 +98,7 @@ def _mended(visit: Visit) -> tuple[Row, Row, Draft, dict[str, Any]]:
 
 
 def _waiting(visit: Visit) -> tuple[Row, Row]:
-    """A submitted program of somebody else, and its description, for those who passed the test.
+    """Return another person's submitted program, and its description, for a person who passed the test.
 
     Raises:
         WebError: NOT_ALLOWED or UNKNOWN_ID.
@@ -116,7 +116,7 @@ def _waiting(visit: Visit) -> tuple[Row, Row]:
 
 
 def _store(visit: Visit, program: Row, verdict: str, note: str, version: int, draft: Draft) -> None:
-    """Store a verdict, unless another reviewer was faster; then write what is accepted.
+    """Store a verdict, unless another reviewer was faster; then write the accepted programs.
 
     Raises:
         WebError: LOCKED.

@@ -1,4 +1,4 @@
-"""A program run in a home before it is submitted: what each step changes, and where the character is."""
+"""A program run in a home before it is submitted: the changes of each step, and the character's places."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str
 
 
 def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str, Any]:
-    """The same run in 3D, for `replay.js` of the report: `home`, the address of the home's shapes, and `run`.
+    """Return the same run in 3D, for `replay.js` of the report: `home`, the address of the home's shapes, and `run`.
 
     Raises:
         WebError: NOT_RENDERED: nothing of it runs.

@@ -30,7 +30,7 @@ from hearth.web.play.trials import SIZE
 
 @lru_cache(maxsize=32)
 def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
-    """A home as all games of a challenge have it: what is in sight, without the things of goals and characters.
+    """Return a home as all games of a challenge have it: its visible parts, without the things of goals and characters.
 
     Raises:
         HearthError: BAD_ARGUMENT: the challenge is not played there.
@@ -43,7 +43,10 @@ def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
 
 
 def in_sight(scene: Scene, world: World) -> Iterator[Thing]:
-    """The things of a scene without what closed furniture holds: it costs time to draw, and a page must not know it."""
+    """Yield the things of a scene, without those inside closed furniture.
+
+    These cost time to draw, and a page must not know them.
+    """
     shut = {world.home.ids[i] for i in indices(out_of_sight(world))}
     return (thing for thing in scene.everything if thing.id not in shut)
 
@@ -102,7 +105,7 @@ class DrawnGame:
         return self.sensor.camera(self.game.playing.env, self.number)
 
     def as_json(self) -> dict[str, Any]:
-        """The home's file, which of its nodes are not there now, what else is, and the eyes.
+        """Return the home's file, its nodes that are missing now, the other things, and the eyes.
 
         Each of `on` is node id, class, key of its model, x, y, z in metres, and yaw in degrees. Axes are the scene's:
         x east, y up, z north.

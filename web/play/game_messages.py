@@ -1,4 +1,4 @@
-"""The messages to a person's page: at first all that it sees, then what is different after each tick."""
+"""The messages to a person's page: at first the whole view, then the differences after each tick."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from hearth.web.play.games import Game
 from hearth.web.play.remembered import Counted
 
 USES = ("GRABBABLE", "CAN_OPEN", "HAS_SWITCH", "SURFACES", "CONTAINERS", "SITTABLE", "LIEABLE")
-"""Properties of things that pages show; what has none of them, such as a wall, nobody can do anything with."""
+"""Properties of things that pages show; no action uses a thing with none of them, such as a wall."""
 
 PLAN = ("Walls", "Doors", "Windows")
 """Categories that floor plans show of a whole home, which everybody knows."""
 
 Objects = dict[int, list[Any]]
-"""Node id -> room, relation, holder, states, whether it is close; what changes of a thing."""
+"""Changing facts about things: node id -> room, relation, holder, states, whether it is close."""
 
 
 def thing_group(node: Node) -> str:
-    """The panel of a thing: rooms and doors, furniture, things that one can hold, or people; floors are in none."""
+    """Return the panel of a thing: rooms and doors, furniture, things to hold, or people; floors are in none."""
     if node.category == "Floor":
         return "floor"
     if node.category in (ROOM_CATEGORY, "Doors"):
@@ -59,7 +59,7 @@ class Telling:
         self._named: set[int] = set()
 
     def begin(self) -> dict[str, Any]:
-        """Everything: the trial, the floor plan, what is seen and was seen."""
+        """Return the first message: the trial, the floor plan, the present and past observations."""
         game = self.game
         trial = game.trial
         self._known, self._named = {}, set()
@@ -78,7 +78,7 @@ class Telling:
         }
 
     def now(self) -> dict[str, Any]:
-        """The tick: what changed for this page, what it may do, how far the goal is."""
+        """Return the tick: the changes for this page, the legal actions, and the progress of the goal."""
         game = self.game
         view, legal = game.view(self.number), game.legal(self.number)
         objects = seen_objects(view)
@@ -102,12 +102,12 @@ class Telling:
         }
 
     def tick(self) -> dict[str, Any]:
-        """The same as a message of its own."""
+        """Return the tick as a message of its own."""
         return {"type": "tick", **self.now()}
 
 
 def seen_objects(view: View) -> Objects:
-    """Things that can be used and that a person sees: their room, what they are on or in, states, and whether close."""
+    """Return the usable things in a person's view: their room, place, states, and whether they are close."""
     home, world = view.world.home, as_seen(view.world, view.mask)
     usable = usable_things(home)
     agent = world.agents[view.agent]

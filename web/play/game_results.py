@@ -1,4 +1,4 @@
-"""Games as results: what people did, in the files that `challenge verify`, `score` and `build` read."""
+"""Games as results: people's actions, in the files that `challenge verify`, `score` and `build` read."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class Stored(NamedTuple):
 
     Attributes:
         id: names it.
-        trial: what is played.
+        trial: the trial that is played.
         created: seconds since 1970.
         code: the secret by which a second person joins.
         go_on: address to go on to after its end.
@@ -83,7 +83,7 @@ def join(connection: sql.Connection, session: str, code: str) -> str:
     A person with a seat in the game keeps that seat.
 
     Raises:
-        WebError: UNKNOWN_ID: there is no such game for two; LOCKED: somebody else has the seat.
+        WebError: UNKNOWN_ID: there is no such game for two; LOCKED: another person has the seat.
     """
     found = connection.execute(sql.select(GAMES.c.id, GAMES.c.trial).where(GAMES.c.code == code)).first()
     if found is None or read_trial(orjson.loads(found.trial)).helper != PERSON:
@@ -154,7 +154,7 @@ def decisions(connection: sql.Connection, game: str, since: int = 0) -> dict[int
 
 
 class Turn(NamedTuple):
-    """A tick of a game in which somebody decides."""
+    """A tick of a game in which a character decides."""
 
     game: str
     tick: int
@@ -184,7 +184,7 @@ def end(connection: sql.Connection, game: str, why: Mapping[str, Any]) -> None:
 
 
 def over(connection: sql.Connection, game: str, success: bool, ticks: int, at: float) -> None:
-    """Write that a game is over, and when; what was written first stays."""
+    """Write that a game is over, and when; an earlier result stays."""
     result = orjson.dumps({"success": success, "ticks": ticks, "at": at}).decode()
     query = sql.update(GAMES).where(GAMES.c.id == game, GAMES.c.result.is_(None))
     connection.execute(query.values(result=result))

@@ -32,7 +32,7 @@ HELPER = 1
 
 
 class Person:
-    """A main agent of which nobody knows what it is doing."""
+    """A person as main agent, whose subgoal is unknown."""
 
     subgoal = None
 
@@ -41,15 +41,15 @@ class Game:
     """A trial under way.
 
     Attributes:
-        trial: what is played.
+        trial: the trial that is played.
         playing: the episode.
-        seen: what each person knows by now, by its number.
+        seen: each person's observations so far, by its number.
         end: why it ended before its goal and time, as records have it; None if it did not.
 
     Args:
-        trial: what is played.
+        trial: the trial that is played.
         knowledge: of its home.
-        program: a helper of somebody's own.
+        program: a user's own helper.
     """
 
     def __init__(self, trial: Trial, knowledge: Knowledge, program: Agent | None = None) -> None:
@@ -140,12 +140,12 @@ class Game:
         return agent
 
     def use(self, program: Agent) -> None:
-        """Let a program that has just come be the helper; what it is shown begins with the next tick."""
+        """Let a program that has just connected be the helper; its observations begin with the next tick."""
         self._helper, self._begun = program, False
         self._unasked, self._answer = [], None
 
     def advance(self, texts: Texts) -> Tick:
-        """One tick: what each character tries, which `read` and `helper_decides` gave or the store has."""
+        """Run one tick with each character's attempt, from `read` and `helper_decides` or from the store."""
         if self._answer is None and self._helper is not None and self.trial.helper != PROGRAM:
             self._unasked.append((self.view(HELPER), self.legal(HELPER)))
         self._answer = None
@@ -162,7 +162,7 @@ class Game:
         return done
 
     def stop(self, number: int, code: Code, message: str) -> None:
-        """End it: somebody left, or an agent can't go on."""
+        """End the game: a person left, or an agent can't go on."""
         self.end = {"agent": number, "code": str(code), "message": message}
 
     def record(self) -> Record:

@@ -31,7 +31,10 @@ MOST_GAMES = 300
 """Games that a process keeps; the game unused for longest is forgotten first, and replayed if needed."""
 
 PATIENCE = 15.0
-"""Seconds after which the other of two people waits in a tick, if one has decided and the other is there, undecided."""
+"""Time after which the other of two people waits in a tick, seconds.
+
+It applies if one has decided and the other is there, undecided.
+"""
 
 PROGRAM_WITHIN = 10.0
 """Seconds that a helper's program may think about a tick."""
@@ -142,7 +145,7 @@ class LiveGame:
                 self.hurry()
 
     def _after(self) -> None:
-        """Do what is complete, and write the result once it is over."""
+        """Run the complete ticks, and write the result once the game is over."""
         self.sync()
         self._written_if_over()
 

@@ -1,4 +1,4 @@
-"""The pages of Play: what may be played, a game, joining one, and the recorded episode."""
+"""The pages of Play: the games to choose from, a game, joining one, and the recorded episode."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def model_file(visit: Visit) -> Response:
 
 
 def _model(data: bytes) -> Response:
-    # The address names what the file contains, so that a browser need not ask for it again.
+    # The address depends on the file's contents, so that a browser need not ask for it again.
     return Response(
         data, media_type="model/gltf-binary", headers={"Cache-Control": "private, max-age=604800, immutable"}
     )

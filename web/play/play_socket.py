@@ -51,7 +51,7 @@ class Page:
         self._sending = asyncio.Lock()
 
     async def take(self, message: dict[str, Any]) -> None:
-        """Do what a message asks for.
+        """Answer a message.
 
         Raises:
             WebError: it is refused; nothing changed then.
@@ -74,7 +74,7 @@ class Page:
             raise WebError(Code.BAD_ARGUMENT, "type", "hello, act, finish, picture or pick", kind[:40])
 
     async def _show(self, message: dict[str, Any]) -> None:
-        """A picture, or what a pixel of it shows."""
+        """Send a picture, or the thing at one of its pixels."""
         if message["type"] == "picture":
             await self.link.send_bytes(await in_thread(self._picture))
             return
@@ -165,7 +165,7 @@ class Page:
         return {**self.telling.tick(), **self._waiting(), **self._scene()}
 
     async def tell(self, done: Callable[..., dict[str, Any] | None], *given: Any) -> None:
-        """Do something, and send what is new then."""
+        """Call a function, and send the resulting news."""
         async with self._sending:
             if (news := await in_thread(done, *given)) is not None:
                 await self.link.send(news)
@@ -173,7 +173,7 @@ class Page:
                     await self.link.send_bytes(await in_thread(self._picture))
 
     async def watch(self) -> None:
-        """Tell what others decided, until cancelled."""
+        """Send others' decisions, until cancelled."""
         while True:
             await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
             try:

@@ -54,7 +54,7 @@ class Remembered:
 
 
 def _sees_place(each: SeenLiteral, view: View) -> bool:
-    """Return whether what a literal counts things at is in sight, so that what is not counted does not hold."""
+    """Return whether the place of a literal's things is in sight, so that things not counted do not hold."""
     terms = each.literal.terms
     place = terms[-1] if terms else None
     about_somebody = any(isinstance(term, str) and term.partition(":")[0] == AGENT for term in terms)

@@ -40,13 +40,13 @@ class Trial:
     """A task that a person does.
 
     Attributes:
-        task: what is to be done.
+        task: the task to do.
         helper: `none`, `person`, `program`, or an agent by name (see `helpers`).
-        goal: what the helper is asked to do, one of `challenges.lineup.GOALS`.
+        goal: the helper's goal, one of `challenges.lineup.GOALS`.
         helper_goal: the same in the words of the grammar; None if nothing.
         interface: one of `INTERFACES`.
         seed: number of the episode among those of its task.
-        partial: whether the person sees only what is around it.
+        partial: whether the person sees only the area around it.
         seconds: after which it ends, counted from when it was begun; 0 for never.
     """
 
@@ -76,11 +76,11 @@ class Trial:
 
     @property
     def episode_seed(self) -> int:
-        """Of all that is random in it, as of episodes of agents (see `challenges.episodes.played`)."""
+        """Return the seed of all random choices in it, as of episodes of agents (see `challenges.episodes.played`)."""
         return derive(self.task.seed, "episode", self.seed)
 
     def as_json(self) -> dict[str, Any]:
-        """As the store has it; `read_trial` reads it."""
+        """Return the trial as the store has it; `read_trial` reads it."""
         grammar = self.challenge.grammar
         alone = Suite(self.task.challenge, self.task.split, 0, (self.task,))
         return {
@@ -104,7 +104,7 @@ def helpers() -> dict[str, str]:
 
 
 def offered(which: Challenge) -> dict[str, str]:
-    """Those of `helpers` that can help in a challenge, here: some ask networks, which need the extra `models`."""
+    """Return the helpers that can help in a challenge, here: some use networks, which need the extra `models`."""
     return {name: about for name, about in helpers().items() if _can_help(name, which)}
 
 
@@ -146,13 +146,13 @@ def trial(
     """Return a trial, checked, with its helper's goal.
 
     Args:
-        task: what is to be done.
+        task: the task to do.
         knowledge: with which its homes are read.
         helper: one of `helpers`.
         interface: one of `INTERFACES`.
         seed: number of the episode among those of its task.
-        partial: whether the person sees only what is around it; as the challenge has it where None.
-        goal: what the helper is asked to do; as its row in the registry says where empty.
+        partial: whether the person sees only the area around it; as the challenge has it where None.
+        goal: the helper's goal; as its row in the registry says where empty.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is no such helper, goal or interface, or the helper can't help there;

@@ -64,7 +64,7 @@ def _read(study: str, changed: int) -> Study:
 
 
 def conduct_here(web: Web) -> Conduct:
-    """The same as it goes on.
+    """Return the study of the server, as it goes on.
 
     Raises:
         WebError: MISSING_FILE: the server is for no study.
@@ -129,7 +129,7 @@ def _standing(conduct: Conduct, person: str) -> Standing | None:
 
 
 def _here(visit: Visit, conduct: Conduct) -> Standing | None:
-    """Return where a person is, once a game that is over is recorded; None of somebody who does not take part."""
+    """Return a person's stage, once a game that is over is recorded; None for a person who does not take part."""
     standing = _standing(conduct, visit.person)
     if standing is not None and standing.stage in (PRACTICE, TRIAL) and conduct.study.room != JUDGE:
         return gone_on(visit.web, conduct, standing)
@@ -198,7 +198,7 @@ def _given(visit: Visit, question: Question) -> Any:
 
 
 def leave(visit: Visit) -> Response:
-    """A person leaves the study; what was done is kept, and the place goes to somebody else."""
+    """Let a person leave the study; their data is kept, and the place goes to another person."""
     conduct = conduct_here(visit.web)
     in_turn(conduct.study, _standing(conduct, visit.person), "leave")
     conduct.leave(visit.person)

@@ -1,4 +1,4 @@
-"""The store's tables of studies: their files, who has which place, what happened, and the games of their trials."""
+"""The store's tables of studies: their files, their places, their events, and the games of their trials."""
 
 from __future__ import annotations
 

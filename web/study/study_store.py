@@ -27,7 +27,7 @@ from hearth.web.store import Store, default_url, embedded, usable
 from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, STUDIES
 
 FOLDER = "studies"
-"""In the server's folder, the folders of studies: their films, and the episodes of the human-like agent."""
+"""Folder of studies in the server's folder: their films, and the episodes of the human-like agent."""
 
 UNREADABLE = "the store is not as `serve` keeps it"
 

@@ -58,7 +58,7 @@ def _chosen(web: Web, conduct: Conduct, standing: Standing) -> Trial:
 def gone_on(web: Web, conduct: Conduct, standing: Standing) -> Standing:
     """Return where a person is once the game of the trial, if it is over, is recorded in the study.
 
-    What it took lasts from its beginning to its end, however long the person stays on the page afterwards.
+    The duration lasts from the game's beginning to its end, however long the person stays on the page afterwards.
     """
     key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
     game = web.store.read(lambda connection: connection.execute(_query(key)).scalar())

@@ -21,7 +21,7 @@ from hearth.studies.study import JUDGE, PLAY, Study
 from hearth.web.web_errors import WebError
 
 UNASKED = "unasked"
-"""The field of the address of a person's page that makes it say that what was posted is not asked for."""
+"""The field of an address that makes a person's page say that the last post is not asked for."""
 
 HERE = f"/study/?{UNASKED}=1"
 """The address that browsers are sent to then."""
@@ -32,7 +32,7 @@ TURNS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     PLAY: {**BOTH, "begin": (PRACTICE, TRIAL), "answer": (QUESTIONS, EXIT)},
     JUDGE: {**BOTH, "begin": (), "answer": (TRIAL, QUESTIONS, EXIT)},
 }
-"""For each kind of study, the stages at which each post is expected."""
+"""The stages at which each post is expected, by kind of study."""
 
 FIRST = {
     CONSENT: "First you are asked whether you take part.",
@@ -53,7 +53,7 @@ def in_turn(study: Study, standing: Standing | None, post: str) -> Standing:
 
     Args:
         study: the study.
-        standing: where the person is; None of somebody who has not agreed to take part.
+        standing: the person's stage; None of a person who has not agreed to take part.
         post: the last part of its address, such as `answer`.
 
     Raises:
