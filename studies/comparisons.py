@@ -3,8 +3,8 @@
 These are paired two-tailed t-tests and the normality of their residuals. Differences, effect sizes and intervals of 95
 % are added; the thesis lacks them.
 
-scipy has all of it. statsmodels was weighed and left out: what it would add, mixed models, the thesis does not report,
-and pairs by task take care of tasks that differ.
+scipy has all of it. statsmodels was weighed and left out: the thesis does not report its addition, mixed models, and
+pairs by task account for tasks that differ.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Comparison:
     """A paired comparison over tasks or films.
 
     Attributes:
-        metric: what is compared.
+        metric: the compared metric.
         one, other: the two sides of the comparison.
         pairs: how many.
         difference, low, high: mean of one less other, and its interval.
@@ -35,7 +35,7 @@ class Comparison:
             interval by the noncentral t distribution.
         normality, normality_p: D'Agostino and Pearson's K2 of the residuals, which are the differences, and its p.
         signed_p: of Wilcoxon's signed-rank test, for residuals that are not normal.
-        thesis: what the thesis reports of the same comparison.
+        thesis: the thesis's report on the same comparison.
     """
 
     metric: str
@@ -63,10 +63,10 @@ def compare(
     """Compare two values of each task or film that has both.
 
     Args:
-        metric: what they are.
+        metric: the metric of the values.
         names: of the two.
         one, other: the values by task or film.
-        thesis: what it reports.
+        thesis: the thesis's report.
     """
     from scipy import stats
 

@@ -51,7 +51,7 @@ class Conduct:
 
     Args:
         study: its design.
-        ledger: keeps what happens.
+        ledger: keeps the events.
         known: gives the knowledge.
         clock: the time, in seconds since 1970.
     """
@@ -82,7 +82,7 @@ class Conduct:
         raise HearthError.of(Code.CONFLICT, "too many people join at this moment", suggestion="try again")
 
     def has_room(self) -> bool:
-        """Return whether somebody who joins now gets a place."""
+        """Return whether a person who joins now gets a place."""
         return next(self._open_places(self.ledger.read(PLACES)), None) is not None
 
     def _open_place(self, joined: Sequence[Event]) -> int | None:
@@ -109,7 +109,7 @@ class Conduct:
         return True
 
     def is_silent(self, standing: Standing) -> bool:
-        """Return whether somebody who is under way gave no sign for as long as the study allows."""
+        """Return whether a person under way gave no sign for as long as the study allows."""
         return standing.stage not in (DONE, LEFT) and (
             self.clock() - self.last_sign(standing) >= self.study.limits.idle_hours * 3600
         )
@@ -198,7 +198,7 @@ class Conduct:
         """A person answers the questions after a trial, or those at the end.
 
         Raises:
-            HearthError: BAD_ARGUMENT: nothing is asked, an answer is lacking, or one is not of its question.
+            HearthError: BAD_ARGUMENT: there is no question, an answer is lacking, or one is not of its question.
         """
         standing = self.standing(person)
         if standing.stage not in (QUESTIONS, EXIT):

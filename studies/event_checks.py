@@ -1,4 +1,4 @@
-"""Events of a folder that somebody gave: their form, and whether they are ways through its study."""
+"""Events of a folder that a user gave: their form, and whether they are ways through its study."""
 
 from __future__ import annotations
 

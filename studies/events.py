@@ -30,7 +30,7 @@ class Event:
         number: its place in the stream, from 0; one event has it.
         kind: one of `KINDS`.
         at: seconds since 1970; of simulated people, since they joined.
-        data: what belongs to it.
+        data: the data of its kind.
     """
 
     stream: str
@@ -113,7 +113,7 @@ class FileLedger(MemoryLedger):
 
     Args:
         path: the file; begun if it is not there.
-        header: what its first line says; a file that says something else is refused.
+        header: the contents of its first line; a file with another header is refused.
         salt: of the ids in tables.
 
     Raises:
@@ -143,7 +143,7 @@ class FileLedger(MemoryLedger):
         """Keep an event in the file."""
         if not self._next(event):
             return False
-        with self.path.open("ab") as file:  # first, so that memory never has what the file lacks
+        with self.path.open("ab") as file:  # first, so that memory never has an event that the file lacks
             file.write(_line(event_data(event)))
         return super().append(event)
 
@@ -171,7 +171,7 @@ def event_of(line: bytes, file: str, number: int) -> Event:
 
     try:
         given = orjson.loads(line)
-        orjson.dumps(given)  # what is read may stand deeper in one another than can be written
+        orjson.dumps(given)  # values from a file may be nested too deep to be written
         return Event(str(given["stream"]), int(given["number"]), str(given["kind"]), float(given["at"]), given["data"])
     except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise HearthError.of(Code.BAD_JSON, f"line {number} is not an event", file=file) from error

@@ -115,7 +115,7 @@ def _execution(job: Shoot, knowledge: Knowledge) -> Execution:
 
 
 def _episode(job: Shoot, knowledge: Knowledge) -> Execution:
-    """An episode as the execution of a program: what was tried and failed is left out."""
+    """Return an episode as the execution of a program: failed attempts are left out."""
     assert job.task is not None
     start, ticks = ticks_of(job.task, record_of(job.film.content), knowledge)
     steps, worlds = [], [start]

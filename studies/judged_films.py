@@ -28,10 +28,10 @@ class JudgedFilm:
         item: number of its task or program.
         condition: whose it is, a condition's name.
         name: of its file.
-        group: what films are compared by: the condition, or the band of a program.
+        group: the group of compared films: the condition, or the band of a program.
         about: the text that people read next to it: the goal, or the description.
         home: where it is.
-        measure: what it is worth by itself: the ticks of an episode, or the normalised LCS of a program.
+        measure: its own score: the ticks of an episode, or the normalised LCS of a program.
         content: the episode's record, or the program's lines.
     """
 
@@ -45,12 +45,12 @@ class JudgedFilm:
     content: Any
 
     def as_json(self) -> dict[str, Any]:
-        """As the file of films has it."""
+        """Return the film as the file of films has it."""
         return asdict(self)
 
 
 def films_of(data: Any, file: str) -> tuple[JudgedFilm, ...]:
-    """The inverse of `JudgedFilm.as_json`, of a list that anybody may have written.
+    """Return the films of a list, the inverse of `JudgedFilm.as_json`; the list may be a stranger's.
 
     Raises:
         HearthError: BAD_JSON with the number of the film.
@@ -106,8 +106,8 @@ def of_episodes(
 
     Args:
         study: the judges'.
-        people: what people did, by task.
-        agent: what the human-like agent did, by task.
+        people: people's records, by task.
+        agent: the human-like agent's records, by task.
         titles: a task's goal in words.
 
     Raises:

@@ -47,7 +47,7 @@ class Written(NamedTuple):
 
 
 def judged_programs(study: Study, knowledge: Knowledge, predictions: Path | None = None) -> list[JudgedFilm]:
-    """As many programs of each band as the study asks for; only those that run in a home of testing are taken.
+    """Return as many programs of each band as the study asks for; only those that run in a home of testing.
 
     Args:
         study: its films' bands.

@@ -26,7 +26,7 @@ def prepared(
     workers: int = 1,
     seen: Seen = unseen,
 ) -> dict[str, Any]:
-    """Make what a study needs in the folder of its name; what is there already is kept.
+    """Make the files that a study needs in the folder of its name; existing ones are kept.
 
     Args:
         study: the design.

@@ -104,9 +104,9 @@ def simulate(
     Args:
         study: the design.
         crowd: the people that take part.
-        folder: of the study; what a stopped simulation had written is kept.
+        folder: of the study; events that a stopped simulation had written are kept.
         known: gives the knowledge.
-        films: what is judged.
+        films: the films to judge.
         alone: task -> ticks of the human-like agent alone, by which simulated people judge help.
         workers: processes.
         seen: called with the number of trials done.

@@ -1,7 +1,7 @@
 """Agents in people's places, and the ratings that they give, so that a whole study is tested before anyone is invited.
 
 Nothing of it is a finding about people. A person is the human-like agent with faults whose rates differ from person to
-person. Ratings come of a stated model: what a trial came to, the person's own bias, and chance; see `rated`.
+person. Ratings come of a stated model: the result of a trial, the person's own bias, and chance; see `rated`.
 """
 
 from __future__ import annotations

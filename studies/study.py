@@ -43,7 +43,7 @@ class Question:
         kind: `scale` (whole numbers), `choice` or `text`.
         low, high: ends of a scale.
         labels: number -> its words.
-        choices: of which one is chosen.
+        choices: the possible answers.
         required: whether it must be answered.
         after: one of `AFTER`.
     """
@@ -147,7 +147,7 @@ class Films:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Times after which one does not wait longer.
+    """Times after which the study no longer waits.
 
     Attributes:
         minutes: of a trial.
@@ -169,11 +169,11 @@ class Study:
         room: one of `ROOMS`.
         seed: of all that is drawn.
         people: how many take part.
-        consent: what they agree to.
-        tutorial: what they read first.
+        consent: the text that they agree to.
+        tutorial: the text that they read first.
         practice: trials that do not count.
-        tasks: what is to be done; None where programs are judged.
-        films: what is judged; None where people play.
+        tasks: the tasks; None where programs are judged.
+        films: the films to judge; None where people play.
         interface: in which they play: `symbolic` or `visual`.
         conditions: at least one.
         repeats: how often each task is done under each condition.

@@ -112,7 +112,7 @@ def named(given: str) -> Study:
 def study_of(content: str, file: str, begun: bool = False) -> Study:
     """The study of a text; errors as of `read_study`.
 
-    One that has `begun` is read whatever its helpers could do, so that what was collected stays to be had.
+    A study that has `begun` is read whatever its helpers could do, so that its collected data stays readable.
     """
     tree = located.read(content, file)
     faults = Faults(file)

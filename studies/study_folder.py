@@ -126,7 +126,7 @@ def references(
         folder: of the study.
         known: gives the knowledge.
         workers: processes.
-        watch: for the name of a condition, what is called with the number of episodes done.
+        watch: for the name of a condition, the function that is called with the number of episodes done.
 
     Returns:
         Condition -> results; episodes alone are in each.
@@ -170,7 +170,7 @@ def prepare_films(
     agent: Mapping[str, Record],
     predictions: Path | None = None,
 ) -> list[JudgedFilm]:
-    """List what is judged in the study's folder; see `judged_films`."""
+    """Return the films to judge in the study's folder; see `judged_films`."""
     assert study.films is not None
     if study.films.of == EPISODES:
         films = list(of_episodes(study, people, agent, lambda task: goal_in_words(study, task)))
@@ -182,5 +182,5 @@ def prepare_films(
 
 
 def first_records(results: Results) -> dict[str, Record]:
-    """Task -> what the agent did alone the first time."""
+    """Return the agent's first record alone, by task."""
     return {each.task: each for each in results.records if not each.helped and each.seed == 0}

@@ -6,7 +6,7 @@ from typing import Annotated, TypedDict
 
 
 class ParticipantRow(TypedDict):
-    """Somebody who took part."""
+    """A person who took part."""
 
     study: Annotated[str, "name of the study"]
     participant: Annotated[str, "salted id: equal in all tables of an export, and nothing else is known by it"]

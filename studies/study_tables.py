@@ -50,7 +50,7 @@ def export(collected: Collected, folder: Path) -> dict[str, int]:
 
 
 def archive(collected: Collected) -> bytes:
-    """The same as a zip archive, with the study's file and the meaning of every column."""
+    """Return the tables as a zip archive, with the study's file and the meaning of every column."""
     import pyarrow.parquet as pq
 
     packed = io.BytesIO()
