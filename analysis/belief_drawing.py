@@ -28,7 +28,7 @@ class Believed(NamedTuple):
     places: dict[str, float]
 
     def row(self) -> dict[str, Any]:
-        """The same for a table: the most probable places first."""
+        """Return a row for a table: the most probable places first."""
         shown = sorted(self.places.items(), key=lambda each: (-each[1], each[0]))[:5]
         return {"tick": self.tick, "thing": self.thing, "believed": ", ".join(f"{p} {n:.2f}" for p, n in shown)}
 

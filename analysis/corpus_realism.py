@@ -217,7 +217,7 @@ def _within(found: Sequence[Sample]) -> float | None:
 
 
 def similarities(found: Sequence[Sample]) -> Mapping[str, float | None]:
-    """For each activity, the mean normalised LCS over pairs of its programs; None for one program (table 3.1)."""
+    """Return the mean normalised LCS over pairs of programs of each activity; None for one program (table 3.1)."""
     from rapidfuzz.distance import LCSseq
 
     members: dict[str, list[tuple[str, ...]]] = defaultdict(list)

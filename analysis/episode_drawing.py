@@ -18,7 +18,7 @@ from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world.world import World
 
 COLOURS = ("#d1495b", "#2a6fbb")
-"""Of the main agent and of the helper."""
+"""Colors of the main agent and of the helper."""
 
 
 def episode_of(found: Results, file: str, task: str, episode: int, alone: bool) -> tuple[Task, Record]:

@@ -18,7 +18,7 @@ class FilmedPair(NamedTuple):
     """A program that ran to its end in a home.
 
     Attributes:
-        execution: what happened.
+        execution: the execution that is filmed.
         home: the home's name.
         graph: the home's graph, with boxes.
     """

@@ -146,7 +146,7 @@ def _longest(matches: Sequence[Sequence[bool]]) -> int:
 
 
 def _seats(original: Execution, execution: Execution) -> Iterator[tuple[str, str]]:
-    """For each of a program's actions that the original does seated: `seated`, and `otherwise` if it never does so."""
+    """Yield for each action that the original does seated: `seated`, and `otherwise` if the program never does so."""
     seated = _done_seated(execution)
     for action in sorted(_done_seated(original) & {step.action for step in execution.program.steps}):
         yield action, "seated"

@@ -28,7 +28,7 @@ LEAST = 1e-9
 
 @dataclass(frozen=True)
 class Question:
-    """An episode whose helper is asked what it believes."""
+    """An episode whose helper is asked for its beliefs."""
 
     task: Task
     record: Record

@@ -36,14 +36,14 @@ SHOWN = {
 """The scores of an example, and the page's names for them."""
 
 SIZE = (320, 240)
-"""Of a picture, pixels."""
+"""Size of a picture, pixels."""
 
 
 class PredictionExample(NamedTuple):
     """A prediction that the page shows.
 
     Attributes:
-        request: what the model was asked.
+        request: the model's request.
         home: in which.
         scores: those of `SHOWN`, as text.
         ran: the prediction, as it runs there.
@@ -139,7 +139,7 @@ def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[t
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.scene.with_geometry import with_geometry
 
-    # Not the run's start graph: what the environment moves would be drawn where the home has it.
+    # Not the run's start graph: things that the environment moves would be drawn where the home has them.
     graph = with_geometry(dataset.home(home), home, dataset.knowledge).graph
     trajectory = trajectory_of(ran, graph, dataset.knowledge)
     ticks = list(ran.program.ticks())

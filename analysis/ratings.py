@@ -35,7 +35,7 @@ SAID = {
 }
 
 THESIS = {Completeness.COMPLETE: 0.64, Completeness.MINOR: 0.28, Completeness.CRUCIAL: 0.08}
-"""Of 100 programs, by the median of five raters (thesis 3.4.1)."""
+"""Shares of programs by completeness, by the median of five raters (thesis 3.4.1)."""
 
 MOST_FAULTS = 200
 """Rows without a rating that are reported, at most."""

@@ -1,4 +1,4 @@
-"""Figure 4-9 with automatic scores in the place of judges: what programs of each band of LCS do when they run.
+"""Figure 4-9 with automatic scores in the place of judges: results of running programs of each band of LCS.
 
 In the thesis people rated films of programs, and their ratings rose with LCS. No person was asked here: the engine says
 whether a program runs, how much of the reference's goal it reaches, and how much of its change of the home it makes.
@@ -26,7 +26,7 @@ class BandRow(NamedTuple):
     """The programs of a band of LCS, of steps by class.
 
     Attributes:
-        low, high: the band; only the last one has its upper end.
+        low, high: the band; only the last band includes its upper end.
         programs: in it.
         scores: the mean of each of `JUDGES`; None where no program has the score.
     """

@@ -98,7 +98,7 @@ def _labelled(label: str, values: Iterable[float]) -> dict[str, float]:
 
 
 def _counts(found: Iterable[Example]) -> dict[str, tuple[int, int]]:
-    """By rated name, numbers of steps and of those kept; of all steps under the empty name."""
+    """Return by rated name the numbers of steps and of kept steps; of all steps under the empty name."""
     steps: Counter[str] = Counter()
     kept: Counter[str] = Counter()
     for one in found:
@@ -114,7 +114,7 @@ def fit(found: Sequence[Example], fitted_on: str, base: SketchModel | None = Non
 
     Args:
         found: annotated programs, of two activities at least.
-        fitted_on: what they are, in words; stored in the model.
+        fitted_on: the kind of the programs, in words; stored in the model.
         base: a model of other annotations that this one builds on.
         seed: of the trees.
 

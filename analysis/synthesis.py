@@ -31,7 +31,7 @@ DEFAULT_COUNT = 5_193
 FILE = Path(__file__).parent / "synthesis.yaml"
 
 LARGEST_WEIGHT = 1e12
-"""Of a grammar, at most."""
+"""Largest sum of weights in a grammar."""
 
 _TRIES = 60
 _DRAWS = 10_000
@@ -227,7 +227,7 @@ def _faults(task: Task, known: Knowledge, words: Wording, file: str) -> Iterator
 
 
 def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -> Iterator[Synthetic]:
-    """Distinct programs, the same for the same seed; a larger count begins with a smaller one's.
+    """Yield distinct programs, the same for the same seed; a larger count begins with a smaller one's.
 
     Args:
         count: number of programs.

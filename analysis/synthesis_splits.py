@@ -78,7 +78,7 @@ def _names(split: str, one: Synthetic) -> list[str]:
 
 
 def _near(texts: Sequence[str]) -> list[list[int]]:
-    """For each text, the places of equal and nearly equal ones."""
+    """Return for each text the places of equal and nearly equal ones."""
     found: list[list[int]] = [[] for _ in texts]
     places: dict[str, list[int]] = {}
     for place, text in enumerate(texts):

@@ -38,13 +38,13 @@ class Wording:
     """The words.
 
     Attributes:
-        synonyms: a phrase of the grammar -> what may stand for it.
-        nouns: an object -> what people call it.
+        synonyms: a phrase of the grammar -> its alternatives.
+        nouns: an object -> people's names for it.
         like: adjectives.
         openers, links, endings: beginnings of the first, later and last sentences.
         aims: clauses of purpose and time.
         asides: sentences that name no step.
-        lists: what `<name>` stands for.
+        lists: the alternatives of `<name>`.
         known: other names of objects.
     """
 
@@ -150,7 +150,7 @@ def _with_subject(template: str, subject: str, objects: Collection[str]) -> str:
 
 
 class Speaker:
-    """Somebody who describes a program: remembers the last thing named, and speaks in one person."""
+    """A person who describes a program: remembers the last thing named, and speaks in one grammatical person."""
 
     def __init__(self, words: Wording, first_person: bool, chance: Random) -> None:
         self.words, self.first, self.chance = words, first_person, chance

@@ -265,7 +265,7 @@ def sketch_alone(train: Sequence[Example], example: Example, world: World, rules
 
 
 def planner(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
-    """The sketch so bound, and repaired: what planning without learning achieves."""
+    """Return the sketch so bound, and repaired: the result of planning without learning."""
     return planned_program(example.sketch, world, rules)
 
 

@@ -30,7 +30,7 @@ PART = 250
 """References in memory at a time, the unit of a worker's work."""
 
 _ID = "execution_id::VARCHAR AS execution_id"
-"""As text: a stranger's table may have ids of another type, which no reference has."""
+"""The id as text: a stranger's table may have ids of another type, which no reference has."""
 
 Job = tuple[str, list[Pair], Options]
 """A dataset's folder, pairs without their references, and how to score them."""

@@ -89,7 +89,7 @@ def has_predictions(path: Path) -> bool:
 
 
 HEAD = 100
-"""Lines of a file that tell what it has."""
+"""Lines of a file from which its contents are recognized."""
 
 
 def source_of(value: Any) -> Source | None:

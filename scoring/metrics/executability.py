@@ -105,7 +105,7 @@ class Executability:
 
     @property
     def executable(self) -> bool:
-        """As in A.3: it has steps, the grammar allows every step's objects, and all steps run."""
+        """Return whether the program has steps, the grammar allows every step's objects, and all steps run (A.3)."""
         return not self.empty and self.afforded and self.runs
 
 

@@ -1,6 +1,6 @@
 """A final graph as scorers read it, whether it is a world or a graph from a file: node by node, edges as rows of bits.
 
-Two graphs that are compared number their nodes alike, so that what they share is counted on the rows.
+Two graphs that are compared number their nodes alike, so that their common edges are counted on the rows.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Nodes:
         instances: ids by class name, ascending.
         left_out: rooms and doors (a door's parts too, such as `doorjamb`), which are not scored.
         characters: the acting characters.
-        labels: what each is compared by as long as it does not move: rooms, doors, characters by id, else by class.
+        labels: the key of each as long as it does not move: rooms, doors, characters by id, else by class.
     """
 
     classes: Mapping[int, str]
@@ -51,7 +51,7 @@ class Nodes:
     labels: Mapping[int, Label]
 
     def scored(self, nodes: Iterable[int]) -> frozenset[int]:
-        """Those of some nodes that can be scored."""
+        """Return the nodes that can be scored, among some nodes."""
         return frozenset(node for node in nodes if isinstance(self.labels.get(node), str))
 
     def extended(self, nodes: Iterable[Node]) -> Nodes:
@@ -82,7 +82,7 @@ class Nodes:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A final graph; what is asked of a node is read once.
+    """A final graph; each fact about a node is read once.
 
     Attributes:
         nodes: the table of its nodes.

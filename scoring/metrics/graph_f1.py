@@ -82,12 +82,12 @@ def score(
     graphs; with `own`, each graph's named objects are those of its own program.
 
     Matching: `none` compares ids. `swap1`, as published, is the best over replacing one of the reference's objects by
-    another instance of its class (one object at a time, ids still compared); with scope `own` it gives the numbers of
-    tables 5.2 to 5.5, and almost 0 to an empty program: what remains is the character's place, .1 or so where the
-    reference stays in the room in which it begins. `best` is the best over all alignments of the two graphs (see
+    another instance of its class (one object at a time, ids still compared). With scope `own`, `swap1` gives the
+    numbers of tables 5.2 to 5.5, and almost 0 to an empty program. The rest is the character's place, .1 or so where
+    the reference stays in the room in which it begins. `best` is the best over all alignments of the two graphs (see
     `hearth.scoring.metrics.alignment`); it does not depend on the ids of instances.
 
-    Empty sets: if neither graph has a tuple of a kind, all three numbers are 1; if only one has, 0.
+    Empty sets: if neither graph has a tuple of a kind, all three numbers are 1; if only one graph has, 0.
 
     Args:
         predicted: the graph or world after the predicted program.

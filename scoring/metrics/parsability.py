@@ -46,7 +46,7 @@ class Parsability:
 
     @property
     def parsable(self) -> bool:
-        """As published: every line has the right number of arguments."""
+        """Return whether every line has the right number of arguments, as published."""
         return 0 < self.arity == self.lines
 
     @property

@@ -1,4 +1,4 @@
-"""The part of a goal that a program brought about: what held at the start earns nothing."""
+"""The part of a goal that a program brought about: literals that held at the start earn nothing."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Achieved(NamedTuple):
 
     @classmethod
     def of(cls, goal: Goal, start: World, final: World) -> Achieved:
-        """Return what of a goal newly holds at the end of a reference.
+        """Return the literals of a goal that newly hold at the end of a reference.
 
         A thing that held at the start counts for nothing: where one of two lamps was on, `ON(lamp)` asks for the other.
         """
