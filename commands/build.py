@@ -58,8 +58,8 @@ def build(
 
     Sources are recognised by content: the ActivityPrograms release (zip or folder), tables (CSV), program text, plans
     of language models, JSON or JSON Lines, sketches, scene graphs, a dataset; packed or not. A second build runs only
-    what changed, and a stopped build continues. The last table counts the records of each stage. Folders may be URLs
-    (s3://bucket/folder), with the extra `remote`.
+    the changed parts, and a stopped build continues. The last table counts the records of each stage. Folders may be
+    URLs (s3://bucket/folder), with the extra `remote`.
 
     \b
     Examples:

@@ -1,4 +1,4 @@
-"""`challenge infer | people`: what helpers that are not given the goal believe, and whether they do harm."""
+"""`challenge infer | people`: the beliefs of helpers that are not given the goal, and the test that they do no harm."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def people(
 def draw_beliefs(
     out: Path, task: Task, record: Record, helper: str, actions: Sequence[tuple[int, int, str, str]]
 ) -> None:
-    """Draw what a helper believed (figure 7-4); errors as of `helper_beliefs.beliefs`."""
+    """Draw a helper's beliefs (figure 7-4); errors as of `helper_beliefs.beliefs`."""
     from hearth.analysis.goal_belief_drawing import drawn
     from hearth.challenges.helper_beliefs import beliefs
     from hearth.kb.loading.load import default

@@ -142,7 +142,7 @@ def _check_programs(
 
 
 def _strictly(checked: Checked) -> Checked:
-    """The same with fuzzy matches among the faults."""
+    """Return the findings with fuzzy matches among the faults."""
     fuzzy = tuple(each for each in checked.warnings if each.code == Code.FUZZY_MATCH)
     others = tuple(each for each in checked.warnings if each.code != Code.FUZZY_MATCH)
     return replace(checked, faults=(*checked.faults, *fuzzy), warnings=others)

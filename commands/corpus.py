@@ -233,7 +233,7 @@ def fuzz(seconds: float = 300, seed: int = 0, most: int | None = None, as_json: 
 
 
 def _mutated_input() -> Any:
-    """The module of the tests that mutates input: what is installed does without it."""
+    """Return the module of the tests that mutates input; an installed package is without it."""
     tests = Path(__file__).resolve().parents[1] / "tests"
     if not tests.is_dir():
         raise HearthError.of(Code.MISSING_FILE, "mutated input belongs to the tests", suggestion="run it in a checkout")

@@ -120,7 +120,7 @@ def _codes(faults: Sequence[Diagnostic]) -> dict[str, int]:
 
 
 def met(layout: GraphLayout) -> list[dict[str, Any]]:
-    """For nodes and for each relation, the number in the graph and the number that the layout shows."""
+    """Return for nodes and for each relation the number in the graph and the number that the layout shows."""
     edges = Counter(edge.relation for edge in layout.graph.edges)
     lost = Counter(
         "things" if fault.code == "NO_PLACE" else next(name for name in edges if f") {name} " in fault.message)
@@ -161,7 +161,7 @@ def export(
     homes: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Write what is in a home for other programs, as they draw it: Blender, three.js, MuJoCo.
+    """Write the drawn contents of a home for other programs: Blender, three.js, MuJoCo.
 
     A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colors, in an
     .mtl next to it, and no textures.

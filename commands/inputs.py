@@ -330,7 +330,7 @@ def _goal_text(file: str) -> Any:
 
 
 def _goal(text: Any, file: str) -> Any:
-    """Text as it is; what begins with a brace as JSON."""
+    """Return text as it is; a text that begins with a brace as JSON."""
     from hearth.pipelines.readers.document import parsed
     from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.storage.rejects import Reject

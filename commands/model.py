@@ -163,7 +163,7 @@ def score(
 
 @app.command("bands")
 def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: bool = False) -> None:
-    """Figure 4-9 by automatic scores: what the programs of a file of predictions do, by band of LCS.
+    """Draw figure 4-9 by automatic scores: the results of a file's predicted programs, by band of LCS.
 
     No person is asked: whether a program runs, how much of the goal it reaches and F1 stand for the ratings of films.
     `study figure 4-9` is the figure with people.
@@ -274,7 +274,7 @@ def show(
 ) -> None:
     """Write a program for a text or a sketch and run it in a home: the words, the sketch, the program, each step shown.
 
-    The sketch is what a model of texts writes, or the file of --sketch for a model of sketches. Its objects are bound
+    The sketch is the output of a model of texts, or the file of --sketch for a model of sketches. Its objects are bound
     to the home's, steps that it lacks are inserted as in `repair`, and those that cannot run there are left out. With
     two homes the programs stand side by side, common steps marked and coloured. The status is 1 if nothing is left.
     A model of films reads a film in place of the text, arrays of a dataset of clips or a video, whose masks are

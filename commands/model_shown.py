@@ -159,13 +159,13 @@ def _cell(step: Step | None) -> str:
 
 
 def filmed(found: Mapping[str, Shown], out: Path, homes: Path | None, kb: Path | None) -> dict[str, dict[str, Any]]:
-    """Films of the programs, a folder for each home in `out`; what was made, by home."""
+    """Film the programs, a folder for each home in `out`, and return the files, by home."""
     runs = {home: one.completion.execution for home, one in found.items() if one.failure is None}
     return {home: film_of(execution, home, out, homes, kb) for home, execution in runs.items()}
 
 
 def film_of(execution: Execution, home: str, out: Path, homes: Path | None, kb: Path | None) -> dict[str, Any]:
-    """The film of a program in a home, in a folder of the home's name in `out`; what was made."""
+    """Film a program in a home, in a folder of the home's name in `out`, and return the files."""
     from hearth.commands.inputs import read_knowledge
     from hearth.commands.render import Shooting, videos
     from hearth.homes import library

@@ -141,9 +141,9 @@ def tables(
 ) -> None:
     """Tables 4.2 to 4.6 and 5.2 to 5.4 whole: all their models are trained, each with several seeds, and compared.
 
-    What is trained already is kept, so that the same command goes on after a stop; with the usual budget it takes a
-    night. Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for
-    paraphrases, that are held out of training. Tables of films need a dataset of clips, and are left out without one.
+    Trained models are kept, so that the same command continues after a stop; with the usual budget it takes a night.
+    Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for paraphrases, that
+    are held out of training. Tables of films need a dataset of clips, and are left out without one.
 
     \b
     Examples:

@@ -37,7 +37,7 @@ def emit(value: Any) -> None:
 
 
 def write(file: Path, value: Any) -> None:
-    """Write what `emit` prints into a file."""
+    """Write the output of `emit` into a file."""
     from hearth.storage.files import write_bytes
 
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -57,7 +57,7 @@ _CONTROL = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if
 
 
 def shown(text: str) -> str:
-    """Text of others for a terminal: what would move its cursor, colour it or turn it around is escaped."""
+    """Return a text for a terminal: characters that would move its cursor, color it or turn it around are escaped."""
     return text if text.isprintable() else text.translate(_CONTROL)
 
 

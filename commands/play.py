@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hearth.challenges.play import Played
 
 TEXT, WAIT, LISTEN, STDIO = "text", "wait", "listen", "stdio"
-"""Agents that are not commands: the terminal, nobody, who connects to a port, and whoever started this command."""
+"""Agents that are not commands: the terminal, none, a program that connects to a port, and this command's parent."""
 
 
 def play(

@@ -1,4 +1,4 @@
-"""The name under which the command line was called: help and hints show what the same reader can type."""
+"""The name under which the command line was called: help and hints show the same name to the reader."""
 
 from __future__ import annotations
 

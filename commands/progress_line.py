@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterator[T]:
-    """The same items; each is reported to `seen`."""
+    """Yield the same items; each is reported to `seen`."""
     for number, item in enumerate(items, 1):
         seen(number, total)
         yield item

@@ -143,7 +143,7 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
 def videos(
     shooting: Shooting, names: list[str], fps: float, quality: str = "draft", modalities: Sequence[str] = ("rgb",)
 ) -> dict[str, Any]:
-    """Film what is to be pictured by some cameras; files, pages and steps."""
+    """Film an execution by some cameras, and return files, pages and steps."""
     import orjson
 
     from hearth.rendering.film.contact import caption

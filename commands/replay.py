@@ -49,7 +49,7 @@ def replay(
     from hearth.simulation.rules import DEFAULT, REPLAY
 
     known = default()
-    gc.freeze()  # What is loaded by now stays, and of a program nothing is in circles: looking through it takes time
+    gc.freeze()  # Objects loaded by now stay, and a program's objects form no circles: looking through them takes time
     gc.set_threshold(20_000)  # and finds nothing.
     found = islice(run_all(release, known, DEFAULT if default_rules else REPLAY), limit)
     with bar("programs run") as seen:

@@ -52,7 +52,7 @@ class Additions(NamedTuple):
 
 
 def additions(before: EnvironmentGraph, after: EnvironmentGraph) -> Additions:
-    """Return what `after` has more than `before`, and otherwise."""
+    """Return the additions of `after` to `before`, and the other changes."""
     from hearth.schemas.change import encode
     from hearth.schemas.vocabulary import OPPOSITE
 

@@ -38,7 +38,7 @@ class Outcome(NamedTuple):
     unsampled: str = ""
 
     def additions(self) -> Additions:
-        """Return what the start has more than the home, and otherwise."""
+        """Return the additions of the start to the home, and the other changes."""
         from hearth.simulation.world.world import World
 
         return additions(World.start(self.place).graph(), self.trial.execution.worlds[0].graph())
