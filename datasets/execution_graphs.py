@@ -20,8 +20,11 @@ SHARE = 128
 """Executions that iteration reads together."""
 
 _INHERITED: list[Any] = []
-"""Datasets of the process that this one was forked from. To close their connections would wait for threads of DuckDB
-that the fork left behind, so they stay to the end; what the fork had dropped, but not collected, stays, too."""
+"""Datasets of the process that this one was forked from.
+
+To close their connections would wait for threads of DuckDB that the fork left behind, so they stay to the end. Datasets
+that the fork had dropped, but not collected, stay, too.
+"""
 
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=gc.freeze)

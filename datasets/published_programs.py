@@ -12,7 +12,7 @@ from hearth.storage.parquet_rows import row_batches
 def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
     """The steps of every program of a dataset folder (or of its programs table), one batch in memory at a time.
 
-    Augmented programs are left out: they repeat what their parents say.
+    Augmented programs are left out: they repeat the texts of their parents.
 
     Raises:
         HearthError: MISSING_FILE: no programs table is there. BAD_TABLE: it has no steps, or is damaged.

@@ -64,8 +64,8 @@ class Verdict:
 def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     """Check a dataset from its folder alone; the result is the same for any number of workers.
 
-    Files are checked first: if one is missing, differs from the manifest or has other columns, the other checks, which
-    depend on it, are skipped.
+    Files are checked first: if a file is missing, differs from the manifest or has other columns, the other checks,
+    which depend on it, are skipped.
 
     Args:
         path: of the dataset.

@@ -31,7 +31,7 @@ def coco(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     `load_dataset("imagefolder", data_dir=".../images")` gives the pictures and their columns.
 
     An annotation is one thing in one picture, with its node, box, area and mask (COCO's run lengths). Categories are
-    the classes of `vocabulary`. What a mask shows besides nodes of the graph, as walls, is background.
+    the classes of `vocabulary`. Parts of a mask without a node of the graph, such as walls, are background.
 
     Returns:
         Number of pictures.

@@ -40,7 +40,7 @@ def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def csv(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """The same as comma-separated values; nested values are JSON, and spreadsheets find only text, never formulas.
+    """Write the tables as comma-separated values; nested values are JSON, and spreadsheets find text, never formulas.
 
     Returns:
         Number of rows in all files.

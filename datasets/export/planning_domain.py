@@ -2,9 +2,9 @@
 
 `kb.tools.pddl.domain` writes derived predicates as axioms, which few planners support. Here they are expanded where
 they are used, and the character is an object of type `agent`. Every thing of a problem has an INSIDE edge to its room
-from the start; all actions keep it so, and a room is found without following containers. Left out are two actions
-(the group `unplanned`, which Walk, PutBack and PutIn replace), the place that Grab remembers for one of them, and that
-what is watched must be on, which is an option.
+from the start; all actions keep it so, and a room is found without following containers. Three parts are left out: two
+actions (the group `unplanned`, which Walk, PutBack and PutIn replace), the place that Grab remembers for one of them,
+and the optional precondition that a watched thing is on.
 
 Closed doors stop a walk as in the engine (`Rules.doors`): a problem says by `blocks` which doors part which rooms. To a
 door that is closed between the character and the door's own room it walks on its own side (`this-side`: from where, the
@@ -101,7 +101,7 @@ class _Writer(Writer):
         return f"?{name}{next(self._numbers)}"
 
     def relation(self, name: str) -> str:
-        """As `relation_predicate`."""
+        """Return the name of a relation, as `relation_predicate` does."""
         return relation_predicate(name)
 
     def derived(self, literal: Literal[Term], names: Names) -> str:

@@ -58,7 +58,10 @@ def published() -> str:
 
 
 def describe(connection: Any) -> None:
-    """Comment what a connection of `attach` has; not done there, for it takes as long as all the views."""
+    """Comment the tables and columns of a connection of `attach`.
+
+    A step of its own, for it takes as long as all the views.
+    """
     import duckdb
 
     for statement in comments():
@@ -165,7 +168,7 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
         folder: of the dataset.
         absent: tables without files.
         format: of the dataset.
-        database: its name, where macros are called from others: what they name is looked for where the caller is.
+        database: its name, where macros are called from others: names in a macro are looked up at the caller.
     """
     from hearth.schemas.tables import TABLES
 

@@ -18,7 +18,7 @@ OURS = r"^(?:crowd|written)(:3[DP][0-9]{4}[0-9A-Z]{5})\b"
 
 
 def current_id(name: str) -> str:
-    """The id that a record, or what was made of it, has in this version."""
+    """Return the id that a record, or a row made of it, has in this version."""
     return re.sub(OURS, r"written\1", name)
 
 

@@ -56,7 +56,7 @@ class Members:
 
     @classmethod
     def of(cls, runs: Iterable[tuple[str, int, str | None]], programs: int) -> Members:
-        """Those of the runs of a split, as `SplitRows.parts` gives them; `programs` is the number of ids."""
+        """Return the members of a split's runs, as `SplitRows.parts` gives them; `programs` is the number of ids."""
         found = cls()
         for _, place, part in runs:
             found.runs[part] += 1

@@ -33,7 +33,7 @@ In a split by program, a program has one part, or none in some homes; by executi
 """
 
 LEFT_OUT = "left_out"
-"""In names of files, programs without a part in `activities`."""
+"""Name in files for programs without a part in `activities`."""
 
 _NONE: Mapping[str, Mapping[str, str | None]] = MappingProxyType({})
 
@@ -119,7 +119,7 @@ class SplitRows(Iterable[SplitRow]):
                 yield {"split": split, "execution_id": execution_id, "program_id": ids[place], "part": part}
 
     def parts(self, split: str) -> Iterator[tuple[str, int, str | None]]:
-        """For each run in a split its id, the place of its program, and its part; in the order of the ids."""
+        """Yield for each run in a split its id, the place of its program, and its part; in the order of the ids."""
         part_of = self._rule(split)
         for execution_id, place, home in self._runs:
             if split in RULES or split in self._own.get(self._original(place), ()):

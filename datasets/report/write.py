@@ -34,12 +34,12 @@ _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, pare
 def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unseen, replays: int = 0) -> int:
     """Write the report of a dataset into a folder; the same files for any number of workers.
 
-    `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so data is in scripts:
-    `data/programs.js` has a short row per program, `data/stories-N.js` the data of their pages, `data/home-N.js` and
-    `data/replay-N.js` what some runs look like in 3D.
+    `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so data is in scripts.
+    `data/programs.js` has a short row per program, and `data/stories-N.js` the data of their pages. `data/home-N.js`
+    and `data/replay-N.js` have some runs in 3D.
 
     Args:
-        dataset: what is reported.
+        dataset: the dataset to report on.
         to: the folder.
         workers: processes.
         seen: reports the progress.
