@@ -39,11 +39,11 @@ class Member:
 
     @property
     def suffix(self) -> str:
-        """As of a path."""
+        """Return the suffix of its name, as that of a path."""
         return PurePosixPath(self.name).suffix
 
     def info(self) -> zipfile.ZipInfo:
-        """Its entry in the archive's directory."""
+        """Return its entry in the archive's directory."""
         return archive(self.archive).getinfo(self.name)
 
 
@@ -167,7 +167,7 @@ class _Guarded(io.RawIOBase):
     def readinto(self, buffer: bytearray) -> int:  # type: ignore[override]
         try:
             data = self._stream.read(min(len(buffer), _READ))
-        except Exception as error:  # archives raise what their compression raises: zlib, lzma, EOFError, ArrowIOError
+        except Exception as error:  # archives raise the errors of their compression: zlib, lzma, EOFError, ArrowIOError
             raise _damaged(self._name, f"can't be unpacked: {error}") from error
         self._size += len(data)
         if bomb(self._size, self._packed):

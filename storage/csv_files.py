@@ -1,4 +1,4 @@
-"""Tables that somebody wrote with a spreadsheet or a program: CSV whose first line names the columns."""
+"""Tables from a spreadsheet or a program: CSV whose first line names the columns."""
 
 import csv
 import io

@@ -54,7 +54,7 @@ def sync_folder(folder: Path) -> None:
 
 
 def drop_temporary(files: Iterable[Path]) -> None:
-    """Remove those of some files that somebody who was stopped had written in part."""
+    """Remove those of some files that a stopped process had written in part."""
     for leftover in [path for path in files if is_temporary(path.name)]:
         leftover.unlink(missing_ok=True)
 

@@ -1,4 +1,4 @@
-"""Bytes of a file that somebody names: a regular file, no larger than its kind is."""
+"""Bytes of a file that a user names: a regular file, no larger than its kind is."""
 
 import os
 import stat
@@ -50,7 +50,7 @@ def read_start(path: Path, count: int) -> bytes:
 
 
 def read_lines(path: Path, longest: int = LARGEST) -> Iterator[bytes]:
-    """The lines of a file with their ends, of which one is in memory at a time.
+    """Yield the lines of a file with their ends, with one line in memory at a time.
 
     Args:
         path: as of `read_input`.

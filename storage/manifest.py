@@ -1,4 +1,4 @@
-"""The manifest of a stage: what it was made from, what it counts, and the hash of every file it wrote."""
+"""The manifest of a stage: its inputs, its counts, and the hash of every file it wrote."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,10 +12,13 @@ from hearth.version import ACTION_SET, VERSION
 NAME = "manifest.json"
 TIMING = "timing.json"
 FORMAT = 3
-"""Of datasets; it changes with their tables. `datasets/format/earlier.yaml` says how earlier ones are read."""
+"""Version of the format of datasets; it changes with their tables.
+
+`datasets/format/earlier.yaml` gives the readings of earlier formats.
+"""
 
 UNHASHED = frozenset({NAME, TIMING, "catalog.duckdb"})
-"""The manifest itself, what differs from run to run, and the catalog, whose bytes DuckDB does not fix."""
+"""The manifest itself, files that differ from run to run, and the catalog, whose bytes DuckDB does not fix."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +40,7 @@ class Manifest:
 
     @property
     def parts(self) -> list[dict[str, Any]]:
-        """Its partitions: `rows`, and `files` with their digests by table."""
+        """Return its partitions: `rows`, and `files` with their digests by table."""
         return list(self.content["parts"])
 
     @property

@@ -1,4 +1,4 @@
-"""Folders at URLs, as fsspec opens and lists them. What a store lists is never written outside the local copy."""
+"""Folders at URLs, as fsspec opens and lists them. Listed names never lead outside the local copy."""
 
 import os
 import re

@@ -82,8 +82,8 @@ class Store:
     def settle(self) -> str:
         """Make the local copy and the store agree, and give both a new revision.
 
-        What only this machine built since its last visit goes to the store; where another machine has built there, the
-        local copy is fetched anew.
+        The parts that only this machine built since its last visit go to the store; where another machine has built
+        there, the local copy is fetched anew.
         """
         with reported(self.url):
             self._fs.invalidate_cache()
@@ -171,7 +171,10 @@ class Store:
                 self.replace(stage)
 
     def _sync(self, stage: str, there: str) -> None:
-        """Make a folder in the store the same as a local one, the manifest last; what workers have pushed is there."""
+        """Make a folder in the store the same as a local one, the manifest last.
+
+        Files that workers have pushed are there.
+        """
         self._fs.invalidate_cache()
         known, folder = self._under(there), self.work / stage
         here = {path.relative_to(folder).as_posix(): path for path in _files(folder)}
@@ -244,7 +247,7 @@ def _own_folder() -> Path:
     """A folder of this user's for copies that builds work in.
 
     Raises:
-        HearthError: UNWRITABLE: somebody else made it, or it is open to others.
+        HearthError: UNWRITABLE: another user made it, or it is open to others.
     """
     folder = Path(tempfile.gettempdir()) / f"hearth-{os.getuid()}"
     with suppress(FileExistsError):
