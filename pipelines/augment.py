@@ -39,7 +39,7 @@ from hearth.storage.manifest import read_manifest
 from hearth.storage.rejects import Reject
 
 ORIGINAL = "original"
-"""By which rows of originals in perturbed environments are counted; others are counted by their number of repairs."""
+"""Key of the counts of originals in perturbed environments; other rows are counted by their number of repairs."""
 
 _DONE = frozenset({Code.DUPLICATE, Code.UNPERTURBED})
 """Reasons to refuse a program that runs and reaches its goal."""

@@ -157,7 +157,7 @@ def prepare(settings: Settings) -> Plan:
 
 
 def _parts_by_home(settings: Settings, homes: Homes) -> dict[str, list[tuple[str, Path]]]:
-    """For each home outside the catalog, the first parts (digest, path) with enough start graphs of it."""
+    """Return for each home outside the catalog the first parts (digest, path) with enough start graphs of it."""
     manifest = read_manifest(settings.folder("validate"))
     assert manifest is not None
     found: dict[str, list[tuple[str, Path]]] = {}

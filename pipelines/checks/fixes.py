@@ -16,7 +16,7 @@ SURE = 0.75
 """Similarity by edit distance from which the nearest name replaces a misspelt one."""
 
 MARGIN = 0.1
-"""By how much it must be more similar than any other."""
+"""Least lead of a suggestion's similarity over any other."""
 
 _PASSES = 8
 _NO_INSTANCE = re.compile(r"<[^<>\[\]]*>(?!\s*\()(?!\s*\[)\s*(?:\d+(?=\s|$))?")

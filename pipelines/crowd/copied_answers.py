@@ -17,7 +17,7 @@ ALIKE_WORDS = 0.8
 """Similarity of the words of two descriptions from which they are near-duplicates."""
 
 ALIKE_STEPS = 0.85
-"""The same for the steps of two programs by one worker for one description."""
+"""Least similarity of the steps of two programs by one worker for one description that count as copies."""
 
 PASTED = 3
 """Number of descriptions from which one program by one worker counts as pasted."""

@@ -16,7 +16,7 @@ class Described:
         self._ids = SeenSet()
 
     def noted(self, items: Iterable[Item]) -> Iterator[Item]:
-        """The same items; the ids of the first stage are stored."""
+        """Yield the same items, and store the ids of the first stage."""
         for item in items:
             if item.reader == crowd.NAME and item.value["stage"] == 1:
                 self._ids.add(digest(item.value["cells"]["HITId"].strip()))

@@ -70,7 +70,7 @@ class Marked(NamedTuple):
 
 
 def inherited_annotations(programs: Iterable[ProgramRow], annotations: Mapping[str, SketchRow]) -> Iterator[SketchRow]:
-    """For each child of an annotated program, the steps that the annotation keeps, wherever they now stand.
+    """Yield for each child of an annotated program the steps that the annotation keeps, at their present places.
 
     Args:
         programs: with `program_id`, `parent_id` and `steps`; parents come before their children or after them.
@@ -97,7 +97,7 @@ def _texts(row: ProgramRow) -> tuple[str, ...]:
 
 
 def places(parent: Sequence[str], child: Sequence[str]) -> list[int]:
-    """For each step of a child, which of the parent's it is; -1 for a new one."""
+    """Return for each step of a child the place of the same step in the parent; -1 for a new one."""
     found = [-1] * len(child)
     for first, start, size in SequenceMatcher(None, parent, child, autojunk=False).get_matching_blocks():
         for offset in range(size):

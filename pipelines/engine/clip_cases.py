@@ -16,7 +16,7 @@ SEEN, BETWEEN, UNSEEN = "seen", "validation", "unseen"
 """Kinds of homes: of training, of validation, and of tests alone."""
 
 SHARES = {TRAIN: 0.7, VALIDATION: 0.1, TEST: 0.2}
-"""Of the programs."""
+"""Shares of the programs in each part."""
 
 COLOURED = 0.25
 """The share of films that have colours and depth, too."""

@@ -30,7 +30,10 @@ def code_digest(*modules: str) -> str:
 
 
 def files_of(*modules: str) -> set[str]:
-    """Those files, relative to the package; every import is followed but those under `TYPE_CHECKING`."""
+    """Return the files of some modules, relative to the package.
+
+    Imports are followed but for those under `TYPE_CHECKING`.
+    """
     found: set[str] = set()
     waiting = list(modules)
     while waiting:

@@ -37,7 +37,7 @@ class Lines(Progress):
         self._stream.flush()
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Print what became of the stage's records."""
+        """Print the outcomes of the stage's records."""
         self._stream.write(line(stage, counts, seconds, fresh) + "\n")
         self._stream.flush()
 
@@ -78,7 +78,7 @@ class JsonLines(Progress):
             self._print("progress", done=self._done, rejects=self._rejects, rate=round(rate, 1), seconds_left=left)
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Print what became of the stage's records."""
+        """Print the outcomes of the stage's records."""
         self._stage = stage
         self._print("end", fresh=fresh, seconds=round(seconds, 3), **counts.to_json())
 

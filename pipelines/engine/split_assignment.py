@@ -63,7 +63,7 @@ def programs_of(files: list[Path], seed: int) -> Iterator[SplitProgram]:
 
 
 def _steps(steps: pa.ListArray, letters: dict[str, str]) -> Iterator[str]:
-    """For each program its steps; by columns, because there are hundreds of thousands."""
+    """Yield the steps of each program; by columns, because there are hundreds of thousands of programs."""
     every = steps.flatten()
     actions, objects = every.field("action"), every.field("objects")
     names = pa.ListArray.from_arrays(objects.offsets, objects.values.field("name"))

@@ -30,7 +30,7 @@ from hearth.storage.rejects import Reject, as_text
 Plan = dict[str, Any]
 
 NOTE = "note"
-"""Entry of a plan: what is left out of the records without being a reject; the ledger has it."""
+"""Entry of a plan about records that are left out without being rejects; the ledger has it."""
 
 Output = Row | Reject | tuple[str, Row]
 
@@ -292,7 +292,7 @@ class _Sink:
         """Sort outputs.
 
         Raises:
-            TypeError: one is neither a row of a table that the stage has nor a reject with a fault.
+            TypeError: a row is neither of a table that the stage has nor a reject with a fault.
         """
         rows: list[tuple[str, Row]] = []
         rejects: list[Reject] = []

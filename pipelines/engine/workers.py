@@ -19,7 +19,7 @@ from hearth.storage.partitions import Counts, part_path, rejects_path
 from hearth.storage.stores import store
 
 AHEAD = 2
-"""Partitions assigned to each process, so that the next is ready when one is complete."""
+"""Partitions assigned to each process, so that the next is ready when the first is complete."""
 
 _POLL_SECONDS = 0.2
 

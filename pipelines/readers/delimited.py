@@ -18,7 +18,7 @@ from hearth.storage.archives import Place
 from hearth.storage.csv_files import delimiter_of
 
 LONGEST_RECORD = 2_000
-"""Lines of one row at most: a longer one has a quote that is never closed, and reading continues after its line."""
+"""Lines of one row at most: a longer row has a quote that is never closed, and reading continues after its line."""
 
 LONGEST_ANSWER = 2_000_000
 """Characters of one row at most, likewise."""

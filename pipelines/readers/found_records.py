@@ -83,7 +83,7 @@ _NO_TITLES = frozenset({
     "actions", "output", "answer", "response", "result", "results", "data", "completion", "solution", "message", "body",
     "function calls", "tool calls", "calls", "trajectory", "script", "action sequence", "prediction", "generation",
 })  # fmt: skip
-"""Keys that say what they hold, and are no names of tasks."""
+"""Keys that describe their contents, and are no names of tasks."""
 
 
 def holds_program(value: Any) -> bool:

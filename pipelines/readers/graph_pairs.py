@@ -1,7 +1,7 @@
 """The start and end graph of a program, read from a release's JSON: a megabyte a program, nearly all of it edges.
 
-The graphs of a release have most of their edges in common and in one order: the text of some ten edges is parsed when
-it is first met, and then looked up. What looks otherwise is parsed as it stands, with the same result.
+The graphs of a release have most of their edges in common and in one order. The text of some ten edges is parsed when
+it is first met, and then looked up. Other text is parsed as it stands, with the same result.
 """
 
 import re
@@ -25,14 +25,16 @@ EDGE = itemgetter("from_id", "relation_type", "to_id")
 
 _BETWEEN = re.compile(rb"\}\s*,\s*\{")
 _CUT = b"7"
-"""A file is cut between objects where the last of a text ends in this: some ten edges a text, so that what differs
-between two graphs is in few texts."""
+"""A file is cut between objects where the last of a text ends in this.
+
+A text has some ten edges, so that the differences of two graphs are in few texts.
+"""
 
 _MOST = 50_000
 """Texts that are kept: some 50 MB."""
 
 _RELATION, _SOURCE = 28, 32
-"""From which bit of its number on an edge has its relation and source; the target is below."""
+"""First bits of an edge's number with its relation and its source; the target is below."""
 
 Portions = set[bytes]
 """Edges by the text, each with its ends and relation in one integer of 64 bits."""
@@ -57,7 +59,7 @@ def read_pair(data: bytes) -> tuple[JsonObject, Change | None]:
 
 
 def pair_of(value: Any) -> tuple[JsonObject, Change | None]:
-    """The same of a JSON value, its edges as they are.
+    """Return the pair of a JSON value, with its edges as they are.
 
     Raises:
         KeyError, TypeError, ValueError, AttributeError: it is not a pair of graphs.
@@ -152,7 +154,7 @@ def _columns(numbers: Any) -> EdgeColumns:
 
 
 def _changed(start: JsonObject, final: JsonObject, edges: set[Edge], new: set[Edge]) -> Change:
-    """The change between two sets of edges, which may lack what both have, and in the simulated states."""
+    """Return the change between two sets of edges, without the edges of both, and between the simulated states."""
     nodes = (start["nodes"], final["nodes"])
     past, now = ({(int(one["id"]), *(one.get("states") or ())) for one in each} for each in nodes)
     ids = {one[0] for one in past ^ now}

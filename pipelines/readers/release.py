@@ -129,7 +129,7 @@ def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
             return Diagnostic(Code.FILE_TOO_LARGE, message, place, suggestion="leave it out, or split it")
         with archive(path).open(info) as file:
             return file.read(max(info.file_size, 1))  # Twice as fast as without a size, which is the most there is.
-    except Exception as error:  # archives raise what their compression raises: zlib, lzma, bz2, struct, ...
+    except Exception as error:  # archives raise the errors of their compression: zlib, lzma, bz2, struct, ...
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
 
 

@@ -1,4 +1,4 @@
-"""Sketches: the steps of a program that somebody kept as its gist (thesis 4.2), in the release's annotation file.
+"""Sketches: the steps of a program that an annotator kept as its gist (thesis 4.2), in the release's annotation file.
 
 `prefix` is the name of a program of a release, or the id of one that was written
 (`written:P...`) or that a crowd gave (`crowd:P...`).

@@ -107,13 +107,13 @@ def _record(value: Mapping[str, Any], title: str, step: Any) -> dict[str, Any]:
 
 
 def _key(value: Mapping[str, Any], title: str, number: str) -> str:
-    """Return what rows of one task have in common: its name, else its id."""
+    """Return the common key of the rows of one task: its name, else its id."""
     own = next((key for key in value if key != number and plain_name(key).split()[-1:] == ["id"]), "")
     return str(value[title or own]) if title or own else ""
 
 
 def row_of_table(columns: Mapping[str, str], number: str) -> Callable[[Any], StepRow | None]:
-    """Return what reads a row of a table as a step.
+    """Return a function that reads a row of a table as a step.
 
     Args:
         columns: of the fields; the program's column holds a step, or there are columns of an action and its objects.

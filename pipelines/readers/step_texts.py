@@ -35,7 +35,7 @@ def steps_of(text: str) -> list[str]:
     lines = text.strip().split("\n")
     in_line = next((line for line in lines if IN_LINE.match(line)), "")
     if in_line and not any(plan_line(line).number for line in lines if line != in_line):
-        # What is said before and below such a plan explains it.
+        # The text before and below such a plan explains it.
         steps = [step.strip() for step in _NUMBERS.split(in_line)[1:]]
         return pieces_of(text, [step for step in steps if step.rstrip(".").lower() not in _ENDS])
     if len(lines) > 1:

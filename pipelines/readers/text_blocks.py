@@ -140,5 +140,5 @@ def _started() -> Splitter:
 
 
 def _squeezed(blank: str) -> str:
-    """At most three blank lines, as many as can separate programs; the text after the last line end is kept."""
+    """Return at most three blank lines, as many as can separate programs; the text after the last line end is kept."""
     return "\n" * min(blank.count("\n"), 3) + blank[blank.rfind("\n") + 1 :][-MAX_LINE:]
