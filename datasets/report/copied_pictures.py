@@ -30,7 +30,7 @@ _LOOKS = """SELECT e.program_id, p.file, p.film FROM
 def pictured(dataset: Dataset) -> dict[str, tuple[str, bool]]:
     """Return by program id the report's name for a picture of the program, and whether there is a film.
 
-    The name is "" if there are films only. The picture is one of a step past its middle, not from above if there are others.
+    The name is "" if there are films only. The picture is of a step past its middle, not from above if possible.
     """
     ours = shown_as(dataset)
     found: dict[str, tuple[str, bool]] = {}
