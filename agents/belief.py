@@ -139,12 +139,12 @@ class Belief:
                     self._draw(thing, empty)
 
     def rule_out(self, thing: int) -> None:
-        """A thing can't be looked for where it was believed to be; it is drawn anew."""
+        """Draw the place of a thing anew: the agent can't look for it at the believed place."""
         self._possible[thing] &= ~(1 << self.where[thing].node)
         self._draw(thing, 1 << self.where[thing].node)
 
     def forget(self, thing: int) -> None:
-        """A thing may be anywhere again."""
+        """Forget the place of a thing: it may be anywhere again."""
         self.known &= ~(1 << thing)
         self._possible[thing] = self._usual[thing]
         self._rest[thing] = self._everywhere

@@ -27,7 +27,7 @@ class Distances:
         self._legs: dict[tuple[int, int], Leg] = {}
 
     def cell(self, pose: Pose | None) -> int:
-        """The cell in which an agent stands, or the nearest; -1 without geometry."""
+        """Return the cell in which an agent stands, or the nearest; -1 without geometry."""
         if self._here is None or pose is None:
             return -1
         ways = self._here.ground.ways
@@ -35,7 +35,7 @@ class Distances:
         return at if at >= 0 else ways.nearest(pose.point, ~ways.main)
 
     def leg(self, start: int, node: int) -> Leg:
-        """The walk from a cell to something that stays where it is; doors count as open."""
+        """Return the walk from a cell to something that stays where it is; doors count as open."""
         try:
             return self._legs[start, node]
         except KeyError:
@@ -63,7 +63,7 @@ class Distances:
         return cell
 
     def end(self, node: int) -> int:
-        """A cell at which one stands for something that stays where it is; -1 without geometry."""
+        """Return a cell at which one stands for something that stays where it is; -1 without geometry."""
         if self._here is None or node >= len(self._here.ground.home):
             return -1
         return next(iter(self._here.ground.stands(node)), -1)

@@ -17,7 +17,7 @@ class Empowerment(OnlineHelper):
         self._particles, self._horizon = particles, horizon
 
     def choose(self, view: View) -> Edge | None:
-        """The commonest edge that can still be helped with."""
+        """Return the commonest edge that can still be helped with."""
         planner, theirs = self.planner(), self.theirs
         held = self.held(view)
         found: Counter[Edge] = Counter()

@@ -29,7 +29,7 @@ class Errand:
         self._until = view.tick + ticks
 
     def act(self, view: View, legal: Legal) -> Step | None:
-        """The next instruction; None once it is done, given up, or can't go on."""
+        """Return the next instruction; None once it is done, given up, or can't go on."""
         if view.tick >= self._until or Progress.at(self._agent.goal, view.world).satisfied:
             return None
         return self._agent.act(view, legal)

@@ -70,7 +70,7 @@ class ExpectedTime(OnlineHelper):
         self.value = math.inf
 
     def choose(self, view: View) -> Edge | None:
-        """The first step of the best plan; None to wait."""
+        """Return the first step of the best plan; None to wait."""
         self._look(view)
         if not self._forecasts:
             return self._back(view)
@@ -90,7 +90,7 @@ class ExpectedTime(OnlineHelper):
         return self._expected((), self.settings.patience), None
 
     def _look(self, view: View) -> None:
-        """The situation, the goals that stand for all, and how probably the things of each heap are wanted."""
+        """Compute the situation, the goals that stand for all, and how probably each heap's things are wanted."""
         posterior, space, other = self.posterior, self.space, self.other
         assert other is not None
         giving = self.ticks(view, [(self.partner, 1)])
@@ -141,7 +141,7 @@ class ExpectedTime(OnlineHelper):
                         yield Stop(one), Stop(other)
 
     def _nearest(self) -> list[int]:
-        """The heaps that are worth a look: probably wanted, and brought in few ticks."""
+        """Return the heaps that are worth a look: probably wanted, and brought in few ticks."""
         found = []
         for number, heap in enumerate(self._now.heaps):
             if heap.holder < 0 and self._wanted[number] >= self.settings.take:

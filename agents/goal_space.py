@@ -85,7 +85,7 @@ class GoalSpace:
 
     @classmethod
     def of(cls, goals: Mapping[Goal, float], home: Home) -> GoalSpace:
-        """The goals of a home; literals about characters are left out."""
+        """Return the goals of a home; literals about characters are left out."""
         places = {
             literal: home.index[literal.target]
             for goal in goals
@@ -128,26 +128,26 @@ class GoalSpace:
 
     @cached_property
     def wanted(self) -> tuple[Counts, ...]:
-        """(G) how many each goal wants of each predicate."""
+        """Return (G) how many each goal wants of each predicate."""
         return tuple(map(tuple, self.counts.tolist()))
 
     def goal(self, counts: Counts) -> Goal:
-        """The goal of some counts of predicates."""
+        """Return the goal of some counts of predicates."""
         return Goal(tuple((each, count) for each, count in zip(self.predicates, counts, strict=True) if count))
 
     @cached_property
     def rows_of(self) -> tuple[tuple[int, ...], ...]:
-        """(T) the predicates that each thing may count for."""
+        """Return (T) the predicates that each thing may count for."""
         return tuple(tuple(np.flatnonzero(column).tolist()) for column in self.fits.T)
 
     @cached_property
     def number(self) -> dict[int, int]:
-        """The number of each thing, by its index."""
+        """Return the number of each thing, by its index."""
         return {thing: number for number, thing in enumerate(self.things)}
 
     @cached_property
     def row_at(self) -> dict[Edge, int]:
-        """The predicate that each thing counts for at each place."""
+        """Return the predicate that each thing counts for at each place."""
         pairs = zip(self.things, self.rows_of, strict=True)
         return {Edge(self.relations[r], thing, int(self.targets[r])): r for thing, rows in pairs for r in rows}
 
@@ -164,7 +164,7 @@ class GoalSpace:
         return Scene(self.places(world), world.states[CLOSED])
 
     def counted(self, places: Places) -> Flags:
-        """(P, T) whether a thing counts for a predicate where it is."""
+        """Return (P, T) whether a thing counts for a predicate where it is."""
         inside = np.array([relation == "INSIDE" for relation, _ in places], np.bool_)
         nodes = np.array([-1 if relation == HOLDS else node for relation, node in places], np.int64)
         here: Flags = self.fits & (self.targets[:, None] == nodes) & (self._inside[:, None] == inside)
@@ -172,10 +172,10 @@ class GoalSpace:
 
     @cached_property
     def _inside(self) -> Flags:
-        """(P,) whether things are wanted in the furniture, not on it."""
+        """Return (P,) whether things are wanted in the furniture, not on it."""
         return np.array([relation == "INSIDE" for relation in self.relations], np.bool_)
 
     def missing(self, counted: Flags) -> Numbers:
-        """(G, P) how many of each predicate a goal still lacks."""
+        """Return (G, P) how many of each predicate a goal still lacks."""
         found: Numbers = np.maximum(0, self.counts - counted.sum(axis=1, dtype=np.int32))
         return found

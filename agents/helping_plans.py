@@ -65,10 +65,10 @@ class Helper(Protocol):
         """Ticks until each of some stops is done (see `online.OnlineHelper`)."""
 
     def taking(self, place: Place) -> tuple[int, int]:
-        """The stop at which something is taken."""
+        """Return the stop at which something is taken."""
 
     def putting(self, relation: str, target: int) -> tuple[int, int]:
-        """The stop at which something is put."""
+        """Return the stop at which something is put."""
 
 
 class _Leg(NamedTuple):
@@ -169,7 +169,7 @@ class HelpingPlans:
                     yield from self._both(one, other)
 
     def _best(self, edges: Sequence[Edge]) -> list[Edge]:
-        """The edges that are worth most by themselves."""
+        """Return the edges that are worth most by themselves."""
         values = {edge: self._value([self._take(edge), self._put(edge)]) for edge in edges}
         return sorted(values, key=lambda edge: (-values[edge], edge))[: self._weights.looked]
 

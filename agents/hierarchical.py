@@ -34,7 +34,7 @@ class Hierarchical(HumanLike):
     """
 
     def __init__(self, partner: Partner | None = None, habits: Habits = HELPING, *, timed: bool = False) -> None:
-        """A helper.
+        """Make a helper.
 
         Args:
             partner: whose subgoal it leaves alone. The thesis gives a helper with the true goal its partner's plan;
@@ -52,7 +52,7 @@ class Hierarchical(HumanLike):
         self._other: Pose | None = None
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of its plan, now that it has seen where the partner is."""
+        """Return the first instruction of its plan, now that it has seen where the partner is."""
         self._note_other(observation)
         return super().act(observation, legal)
 
@@ -62,7 +62,7 @@ class Hierarchical(HumanLike):
         note_others(self.belief, view, self.chooser)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
-        """The subgoals but those of its partner; those too, if there are no others."""
+        """Return the subgoals but those of its partner; those too, if there are no others."""
         mine = super().available(view, open_now, missing)
         theirs = self.partner.subgoal if self.partner else None
         if theirs is None or (view.world.agents[view.agent].held and mine is not open_now):

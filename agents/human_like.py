@@ -71,7 +71,7 @@ class HumanLike:
         self._blocked: set[Subgoal] = set()
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of its plan."""
+        """Return the first instruction of its plan."""
         everything = observation.world.home.everything
         self.belief.observe(replace(observation, mask=everything) if self.habits.sees_all else observation)
         self._note_opened(observation)
@@ -107,7 +107,7 @@ class HumanLike:
             self.subgoal = self.choose(view, subgoals, missing)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
-        """The subgoals among which it chooses: those whose things it holds, before all others."""
+        """Return the subgoals among which it chooses: those whose things it holds, before all others."""
         held = view.world.agents[view.agent].held
         return [each for each in open_now if each.target >= 0 and held >> each.thing & 1] or open_now
 
@@ -118,7 +118,7 @@ class HumanLike:
         return subgoals[self.search(view, subgoals, missing).best]
 
     def search(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Tree:
-        """The tree over some subgoals."""
+        """Return the tree over some subgoals."""
         needed = {part: number for part, (number, _) in missing.items()}
         parts = [each.part for each in subgoals]
 

@@ -60,13 +60,13 @@ class Hybrid(HumanLike):
         self._state: Any = None
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of the plan for its subgoal."""
+        """Return the first instruction of the plan for its subgoal."""
         self.reader.note(observation)
         note_others(self.belief, observation, self.chooser)
         return super().act(observation, legal)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
-        """All subgoals: the policy chooses."""
+        """Return all subgoals: the policy chooses."""
         return open_now
 
     def choose(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Subgoal | None:

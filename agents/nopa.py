@@ -66,7 +66,7 @@ class Nopa(OnlineHelper):
         self._age = 0.0
 
     def choose(self, view: View) -> Edge | None:
-        """The first edge of the best plan; None where none is worth more than waiting."""
+        """Return the first edge of the best plan; None where none is worth more than waiting."""
         planner = self.planner()
         self._reject(view)
         if not self._particles or self._age >= self.settings.horizon:
@@ -110,7 +110,7 @@ class Nopa(OnlineHelper):
 
     @property
     def proposed(self) -> dict[Counts, float]:
-        """The goals of its particles, with their shares."""
+        """Return the goals of its particles, with their shares."""
         shares: defaultdict[Counts, float] = defaultdict(float)
         for goal, _ in self._particles:
             shares[goal] += 1 / len(self._particles)

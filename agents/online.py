@@ -103,7 +103,7 @@ class OnlineHelper(ABC):
 
     @property
     def proposed(self) -> dict[Counts, float]:
-        """The goals that it reckons with, with their probabilities."""
+        """Return the goals that it reckons with, with their probabilities."""
         likely = self.posterior.likeliest(MOST_PROPOSED).tolist()
         return {self.space.wanted[goal]: self.posterior.probability(goal) for goal in likely}
 
@@ -179,9 +179,9 @@ class OnlineHelper(ABC):
         return CROOKED * math.dist(mine.point, theirs.point)
 
     def taking(self, place: Place) -> tuple[int, int]:
-        """The stop at which something is taken: where, and the ticks of opening and grabbing."""
+        """Return the stop at which something is taken: where, and the ticks of opening and grabbing."""
         return place.node, 1 + bool(place.relation == "INSIDE" and self.scene.closed >> place.node & 1)
 
     def putting(self, relation: str, target: int) -> tuple[int, int]:
-        """The stop at which something is put."""
+        """Return the stop at which something is put."""
         return target, 1 + bool(relation == "INSIDE" and self.scene.closed >> target & 1)

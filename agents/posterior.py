@@ -160,7 +160,7 @@ class Posterior:
         self.pursued = np.divide(found, total, out=np.zeros_like(found), where=total > 0)
 
     def costs(self, closed: int, other: Pose) -> Floats:
-        """(P, T) ticks until a thing counts for a predicate, if it is brought there next; FAR if it can't be."""
+        """Return (P, T) ticks until a thing counts for a predicate, if it is brought there next; FAR if it can't be."""
         start = self.distances.cell(other.place)
         me = self._home.index[other.node]
         found = np.full(self.space.fits.shape, FAR)
@@ -228,7 +228,10 @@ class Posterior:
             self.weights = weights / total
 
     def _matching(self, step: Step) -> Floats | None:
-        """(G, T) whether an action is one towards a thing, under a goal; None of an action that tells nothing."""
+        """Return (G, T) whether an action is one towards a thing, under a goal.
+
+        The result is None for an action that says nothing about a goal.
+        """
         nodes = [self._home.index[ref.node] for ref in step.objects if ref.node in self._home.index]
         known, name = self._known, step.action
         if not nodes or known.state_of(name) == "CLOSED":
@@ -263,7 +266,7 @@ class Posterior:
         return found
 
     def _wanted_at(self, node: int, of_room: bool = False) -> Floats:
-        """(G, T) whether a goal lacks a thing on or in some furniture, or in a room."""
+        """Return (G, T) whether a goal lacks a thing on or in some furniture, or in a room."""
         inside, targets = self._home.inside, self.space.targets
         here = np.array([node == each or (of_room and bool(inside[each] >> node & 1)) for each in targets.tolist()])
         lacking = (self.missing > 0) * here.astype(np.float64)
@@ -272,21 +275,21 @@ class Posterior:
 
     @property
     def expected(self) -> Floats:
-        """(P,) the probability that each predicate is still wanted at least once more."""
+        """Return (P,) the probability that each predicate is still wanted at least once more."""
         return self.weights @ (self.missing > 0)
 
     def probability(self, number: int) -> float:
-        """The probability of a goal by its number."""
+        """Return the probability of a goal by its number."""
         return float(self.weights[number])
 
     def likeliest(self, number: int) -> Numbers:
-        """The numbers of the likeliest goals, the likeliest first."""
+        """Return the numbers of the likeliest goals, the likeliest first."""
         return np.argsort(-self.weights, kind="stable")[:number]
 
 
 @lru_cache(maxsize=8)
 def _taking(knowledge: Knowledge) -> frozenset[str]:
-    """The actions by which one gets something into a hand."""
+    """Return the actions by which one gets something into a hand."""
     return frozenset(
         action.name
         for action in knowledge.actions.values()

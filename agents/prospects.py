@@ -79,7 +79,7 @@ class Planner:
         self._known: dict[tuple[int, int], tuple[float, int]] = {}
 
     def prospect(self, goal: Counts, horizon: float) -> Prospect:
-        """The plan for a goal until a number of ticks."""
+        """Return the plan for a goal until a number of ticks."""
         pairs = enumerate(zip(goal, self._found, strict=True))
         lacking = {row: wanted - found for row, (wanted, found) in pairs if wanted > found}
         things = np.flatnonzero(self._away[list(lacking)].any(axis=0)).tolist()

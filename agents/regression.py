@@ -55,7 +55,7 @@ class Regression:
         self.spare = spare
 
     def first(self, literal: Literal[int], above: tuple[Literal[int], ...] = ()) -> Step | None:
-        """The instruction of now by which a literal is to hold in the end; None where none is found."""
+        """Return the instruction of now by which a literal is to hold in the end; None where none is found."""
         if literal in above or len(above) >= DEEPEST:
             return None
         ways = list(self._ways(literal))
@@ -71,7 +71,7 @@ class Regression:
         return next((step for action, bound in ways if (step := self._prepared(action, bound, above))), None)
 
     def _prepared(self, action: Action, bound: Bound, above: tuple[Literal[int], ...]) -> Step | None:
-        """The instruction of now by which the first condition of an action that does not hold is to hold."""
+        """Return the instruction of now by which the first condition of an action that does not hold is to hold."""
         for condition in action.preconditions:
             if missing := self._missing(condition.formula, bound):
                 return next((step for each in missing if (step := self.first(each, above))), None)
@@ -91,7 +91,7 @@ class Regression:
         return self._legal_step(action.name, *(bound[variable] for variable in _variables(action)))
 
     def _legal_step(self, name: str, *nodes: int) -> Step | None:
-        """The instruction, if it can be done now."""
+        """Return the instruction, if it can be done now."""
         masks = self.legal.masks.get(name)
         if masks is None or len(masks) != len(nodes):
             return None
@@ -110,7 +110,7 @@ class Regression:
         return self._through(node, above) if self.home.rooms >> node & 1 else None
 
     def _through(self, room: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A closed door on the way to a room opened, or a walk to where more doors are seen, nearest first."""
+        """Return a closed door on the way to a room opened, or a walk to where more doors are seen, nearest first."""
         home, closed = self.home, self.seen & self.belief.states[STATE_ID["CLOSED"]]
         rooms = [room]
         for each in rooms:  # grows
@@ -142,7 +142,7 @@ class Regression:
         return rows.room_of(self.world, node)
 
     def _put_down(self, thing: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A held thing on a surface within reach, or else on the nearest that is in view."""
+        """Return a held thing on a surface within reach, or else on the nearest that is in view."""
         home = self.home
         surfaces = home.properties["SURFACES"] & home.furniture & self.seen
         for name in sorted(home.knowledge.group("puts") & self.legal.masks.keys()):
@@ -173,7 +173,7 @@ class Regression:
         return self._means(formula, tuple(bound.get(term.name, -1) for term in formula.terms))
 
     def _means(self, formula: Literal[Term], nodes: tuple[int, ...]) -> tuple[Literal[int], ...]:
-        """The literals that would make one predicate of the action table hold."""
+        """Return the literals that would make one predicate of the action table hold."""
         name = formula.name
         if name == "state":
             return (Literal(formula.terms[1].name, nodes[:1], formula.negated),)

@@ -133,7 +133,7 @@ class SceneReader:
         return lowest(held & self.counted.get(subgoal.part, 0) or held) if held else -1
 
     def step(self, view: View, subgoal: Subgoal, legal: Legal, moment: Moment, choice: Pair) -> Step | None:
-        """The instruction that a choice stands for; None where it can't be done."""
+        """Return the instruction that a choice stands for; None where it can't be done."""
         kind, position = choice
         if not moment.scene.legal[kind][position]:
             return None
@@ -165,7 +165,7 @@ PUT = 4
 
 @lru_cache(maxsize=8)
 def _kinds(knowledge: Knowledge) -> dict[str, int]:
-    """The kind of each action that a policy may choose (`models.helping.policy_inputs.KINDS`)."""
+    """Return the kind of each action that a policy may choose (`models.helping.policy_inputs.KINDS`)."""
     found: dict[str, int] = {}
     for name in knowledge.group("played"):
         if name in knowledge.group("goes"):

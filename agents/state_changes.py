@@ -32,7 +32,7 @@ class StateChanges:
 
     @cached_property
     def _class_of(self) -> list[int]:
-        """(T) the number of each thing's class, by the first predicate for which it counts."""
+        """Return (T) the number of each thing's class, by the first predicate for which it counts."""
         groups = list(dict.fromkeys(self.space.classes))
         return [groups.index(self.space.classes[rows[0]]) for rows in self.space.rows_of]
 
@@ -54,5 +54,5 @@ class StateChanges:
         return found
 
     def since(self, places: Places) -> tuple[int, ...]:
-        """The increases; decreases are 0."""
+        """Return the increases; decreases are 0."""
         return tuple(np.maximum(0, self._counts(places) - self._start).tolist())

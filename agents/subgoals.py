@@ -55,7 +55,7 @@ class Wanted:
 
     @property
     def literal(self) -> Literal[Name]:
-        """The literal as the goal has it."""
+        """Return the literal as the goal has it."""
         return self.candidates.literal
 
     @property
@@ -134,7 +134,7 @@ class Aims:
         return wanted.last == HELD and not wanted.candidates.subjects >> self._me & 1
 
     def missing(self, belief: Belief, view: View) -> Missing:
-        """The parts of the goal that are not reached by belief."""
+        """Return the parts of the goal that are not reached by belief."""
         found = {}
         self.settled = 0
         for wanted in self.wanted:

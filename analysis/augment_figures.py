@@ -26,7 +26,7 @@ SHOWN_CLASSES = ("cup", "sauce_pan")
 
 
 def outcome(folder: Path) -> dict[str, Any]:
-    """Numbers of tried pairs of a program and a perturbed environment, by outcome.
+    """Return numbers of tried pairs of a program and a perturbed environment, by outcome.
 
     Raises:
         HearthError: MISSING_FILE, if the stage has not run.
@@ -109,7 +109,7 @@ def _row(data: Any, group: str) -> dict[str, float | None]:
 
 
 def _lengths(data: Any, group: str) -> dict[str, int]:
-    """Numbers of programs by length class, named by its upper end; the last is open."""
+    """Return numbers of programs by length class, named by its upper end; the last is open."""
     rows = data.rows(f"SELECT len(steps), count(*) FROM programs WHERE {_GROUPS[group]} GROUP BY 1")[1]
     found = dict.fromkeys([*(f"up to {end}" for end in LENGTHS), "more"], 0)
     for length, count in rows:

@@ -65,7 +65,7 @@ def _now(tick: int, belief: Belief, world: World) -> list[Believed]:
 
 
 def drawn(found: Sequence[Believed]) -> str:
-    """The belief as a picture, a row for each class of things and moment."""
+    """Return the belief as a picture, a row for each class of things and moment."""
     ordered = sorted(found, key=lambda each: (each.thing, each.tick))
     rows: dict[str, Counter[str]] = {}
     for each in ordered:

@@ -90,7 +90,7 @@ def _ready(helper: str) -> bool:
 
 
 def by_set(results: Results) -> dict[str, dict[str, float]]:
-    """The speedup for each goal set, with half the width of its 95 % interval (figures 7-6a, C-3)."""
+    """Return the speedup for each goal set, with half the width of its 95 % interval (figures 7-6a, C-3)."""
     sets = {task.id: task.sets[0] for task in results.header.suite.tasks}
     found = speedups(results.outcomes(False), results.outcomes(results.header.helped[-1]))
     shown = {}

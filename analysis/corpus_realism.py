@@ -43,7 +43,7 @@ class Sample(NamedTuple):
 
 
 def programs(corpus: Corpus) -> list[Sample]:
-    """The programs of a corpus, in the order of their ids."""
+    """Return the programs of a corpus, in the order of their ids."""
     found = sorted(corpus.programs, key=lambda each: each.program_id)
     texts = {name: tuple(re.findall(r"[^\W_]+", text.lower())) for name, text in corpus.descriptions.items()}
     return [
@@ -231,6 +231,6 @@ def similarities(found: Sequence[Sample]) -> Mapping[str, float | None]:
 
 
 def of_activities(found: Sequence[Sample], others: Sequence[Sample]) -> list[Sample]:
-    """The programs whose activity others have, too."""
+    """Return the programs whose activity others have, too."""
     wanted = {one.activity for one in others}
     return [one for one in found if one.activity in wanted]

@@ -63,7 +63,7 @@ def before_and_after(known: Knowledge, seed: int = 0, tested: Sequence[str] | No
 
 
 def _described(found: Corpus) -> list[SplitProgram]:
-    """The programs with a description, in the order of their ids."""
+    """Return the programs with a description, in the order of their ids."""
     programs = [
         SplitProgram(
             one.program_id,

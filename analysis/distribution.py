@@ -128,13 +128,13 @@ def distances(one: Counts, other: Counts) -> dict[str, tuple[float, int, int]]:
 
 
 def held(counts: Counts) -> Counts:
-    """The counts without `NOWHERE`: the release leaves most added things in the middle of a room."""
+    """Return the counts without `NOWHERE`: the release leaves most added things in the middle of a room."""
     found = {kind: Counter({p: n for p, n in places.items() if p != NOWHERE}) for kind, places in counts.items()}
     return {kind: places for kind, places in found.items() if places}
 
 
 def overall(found: Mapping[str, tuple[float, int, int]]) -> float | None:
-    """The mean distance, weighted by the classes' frequency in the release."""
+    """Return the mean distance, weighted by the classes' frequency in the release."""
     total = sum(seen for _, seen, _ in found.values())
     return round(sum(apart * seen for apart, seen, _ in found.values()) / total, 3) if total else None
 
@@ -165,7 +165,7 @@ def diversity(program: Program, homes: Homes, name: str, samples: int, seed: int
 
 
 def _key(environment: Environment) -> tuple[Any, ...]:
-    """A key that is equal for environments of one home with equal graphs."""
+    """Return a key that is equal for environments of one home with equal graphs."""
     kinds = tuple((node.id, node.class_name) for node in environment.nodes)
     home = environment.world.home
     return kinds, tuple(home.on), tuple(home.inside), tuple(home.close), home.states, tuple(home.agent_rows)

@@ -22,7 +22,7 @@ COLOURS = ("#d1495b", "#2a6fbb")
 
 
 def episode_of(found: Results, file: str, task: str, episode: int, alone: bool) -> tuple[Task, Record]:
-    """An episode of results, and its task.
+    """Return an episode of results, and its task.
 
     Args:
         found: the results.
@@ -48,7 +48,7 @@ def ticks_of(task: Task, record: Record, knowledge: Knowledge) -> tuple[World, l
 
 
 def trails(start: World, ticks: Sequence[Tick]) -> list[Trail]:
-    """The way of each agent; within a stride the shortest one on the floor, which does not cut corners of walls.
+    """Return the way of each agent; within a stride the shortest one on the floor, which does not cut corners of walls.
 
     Raises:
         HearthError: NOT_RENDERED: the agents have no places.
@@ -91,7 +91,7 @@ def _panel(record: Record, start: World, ticks: Sequence[Tick], helper: str) -> 
 
 
 def furniture(task: Task, world: World) -> set[str]:
-    """The classes of furniture that a task's goal names."""
+    """Return the classes of furniture that a task's goal names."""
     home = world.home
     every = [term for literal, _ in task.goal_in(home) for term in literal.terms]
     return {home.classes[home.index[term]] for term in every if isinstance(term, int)}

@@ -113,7 +113,7 @@ def _measured(job: tuple[str, list[Pair]]) -> Found:
 def _kept(
     program: Program, wanted: Sequence[Postconditions], execution: Execution, nodes: dict[Key, int]
 ) -> tuple[int, int]:
-    """(steps of the original that a program has, those that it does as the original does).
+    """Return (steps of the original that a program has, those that it does as the original does).
 
     Two longest common subsequences: of the steps, and of the steps done in the same circumstances.
     """
@@ -155,7 +155,7 @@ def _seats(original: Execution, execution: Execution) -> Iterator[tuple[str, str
 
 
 def _done_seated(execution: Execution) -> set[str]:
-    """The actions done sitting or lying."""
+    """Return the actions done sitting or lying."""
     done = zip(execution.worlds, execution.program.ticks(), strict=False)
     return {
         step.action

@@ -84,7 +84,7 @@ def _at(curves: Sequence[Sequence[tuple[float, float]]], number: int) -> dict[st
 
 
 def calibration(found: Sequence[Beliefs]) -> dict[str, Any]:
-    """The calibration of predicates' probabilities over all ticks (see `inference`)."""
+    """Return the calibration of predicates' probabilities over all ticks (see `inference`)."""
     pairs = [
         (probability, wanted > 0)
         for each in found

@@ -60,17 +60,17 @@ class PredictionExample(NamedTuple):
 
     @property
     def steps(self) -> list[tuple[str, str, bool]]:
-        """Lines of the reference and of the prediction, and whether both have it."""
+        """Return lines of the reference and of the prediction, and whether both have it."""
         return [(_text(line.left), _text(line.right), line.common) for line in self.beside]
 
     @property
     def sketch(self) -> list[str]:
-        """The main steps that a model of sketches was given."""
+        """Return the main steps that a model of sketches was given."""
         return [print_step(step) for step in self.request.sketch]
 
     @property
     def drawn(self) -> list[tuple[str, str]]:
-        """The pictures as addresses of data."""
+        """Return the pictures as addresses of data."""
         return [(step, f"data:image/png;base64,{b64encode(data).decode()}") for step, data in self.pictures]
 
 
@@ -100,7 +100,7 @@ def spread_over(found: Sequence[Scored], count: int) -> list[Scored]:
 def prediction_examples(
     dataset: Dataset, found: Sequence[Scored], count: int = 9, pictures: int = 4, sketches: str = ANNOTATED
 ) -> Iterator[PredictionExample]:
-    """The predictions that the page shows.
+    """Yield the predictions that the page shows.
 
     Args:
         dataset: to which they belong.
@@ -151,7 +151,7 @@ def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[t
 
 
 def examples_page(shown: Sequence[PredictionExample], title: str, count: int) -> str:
-    """The page as HTML, which opens from disk; every text is escaped.
+    """Return the page as HTML, which opens from disk; every text is escaped.
 
     Args:
         shown: in this order.

@@ -172,7 +172,7 @@ def _linear(matrix: Any, answers: NDArray[Any]) -> tuple[float, list[float]]:
 
 
 def parts(activities: Sequence[str], count: int, seed: int) -> NDArray[Any]:
-    """A part, from 0, for each row, whole activities in one part, parts of nearly equal size."""
+    """Return a part, from 0, for each row, whole activities in one part, parts of nearly equal size."""
     import numpy as np
 
     sizes = Counter(activities)
@@ -184,7 +184,7 @@ def parts(activities: Sequence[str], count: int, seed: int) -> NDArray[Any]:
 
 
 def _boosted(rows: _Rows, seed: int) -> tuple[float, tuple[Tree, ...]]:
-    """The logit before the trees, and the trees of several runs, each weighing its share."""
+    """Return the logit before the trees, and the trees of several runs, each weighing its share."""
     import numpy as np
     from sklearn.ensemble import GradientBoostingClassifier
 

@@ -99,7 +99,7 @@ def _pictured(
     name: str, graph: EnvironmentGraph, programs: Iterator[Program], knowledge: Knowledge, done: Counter[str],
     number: int, seed: int, size: tuple[int, int], quality: str,
 ) -> Pictured | None:  # fmt: skip
-    """The step of some programs that is most worth a picture in a home: of an action that was shown least."""
+    """Return the step of some programs that is most worth a picture in a home: of an action that was shown least."""
     place, hour = Home.from_graph(graph, name, knowledge), HOURS[number % len(HOURS)]
     best: Pictured | None = None
     for program in programs:

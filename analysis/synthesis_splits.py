@@ -97,7 +97,7 @@ _ORDER = ("train", "validation", "test")
 
 
 def _apart(parts: Sequence[str], near: Sequence[Sequence[int]]) -> Iterator[str | None]:
-    """The parts, without those of which a near duplicate is in a later part."""
+    """Yield the parts, without those of which a near duplicate is in a later part."""
     for part, like in zip(parts, near, strict=True):
         later = any(_ORDER.index(parts[other]) > _ORDER.index(part) for other in like)
         yield None if later else part
@@ -127,7 +127,7 @@ def figures(programs: Sequence[Synthetic], rows: Sequence[SplitText] = ()) -> di
 
 
 def of_first(rows: Sequence[SplitText]) -> dict[int, dict[str, str | None]]:
-    """The part of each program's first description in every split, by number of the program."""
+    """Return the part of each program's first description in every split, by number of the program."""
     found: dict[int, dict[str, str | None]] = {}
     for row in rows:
         if row.description == 0:

@@ -65,7 +65,7 @@ class Wording:
         return re.compile(rf"(?<![\w{{])(?:{found})(?!\w)")
 
     def expanded(self, text: str, chance: Random) -> str:
-        """A text with an entry of its list for each `<name>`, and for those within."""
+        """Return a text with an entry of its list for each `<name>`, and for those within."""
         while "<" in text:
             text = _LIST.sub(lambda match: chance.choice(self.lists[match[1]]), text, count=1)
         return text
@@ -80,7 +80,7 @@ class Wording:
         return ""
 
     def reworded(self, clause: str, chance: Random) -> str:
-        """A clause with synonyms of its phrases."""
+        """Return a clause with synonyms of its phrases."""
         return self._phrases.sub(lambda match: chance.choice(self.synonyms[match[0]]), clause)
 
     def noun(self, name: str, chance: Random) -> str:
@@ -121,7 +121,7 @@ _PLAIN = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ce
 
 
 def plain(name: str) -> str:
-    """The name of a class as words."""
+    """Return the name of a class as words."""
     return _PLAIN.get(name) or name.removeprefix("food_").removeprefix("clothes_").replace("_", " ")
 
 
@@ -141,7 +141,7 @@ def _of_kind(say: tuple[str, ...], held_out: bool) -> tuple[str, ...]:
 
 
 def slots_of(template: str, subject: str, objects: Collection[str]) -> set[str]:
-    """The slots of objects that a clause names: see `Speaker.clause`."""
+    """Return the slots of objects that a clause names: see `Speaker.clause`."""
     return {*_SLOT.findall(_with_subject(template, subject, objects))}
 
 
@@ -213,7 +213,7 @@ class Speaker:
         return f"I {self._bare(clause)}" if self.first else clause
 
     def _bare(self, clause: str) -> str:
-        """A clause without its subject, in the speaker's person."""
+        """Return a clause without its subject, in the speaker's person."""
         if not self.first:
             return clause
         return _YOU.sub(lambda match: "my" if match[1] else "I am" if match[2] else "I", clause)
@@ -241,7 +241,7 @@ def _capital(text: str) -> str:
 
 
 def mistyped(text: str, chance: Random) -> str:
-    """A text with one typing error: two letters swapped, one left out or one doubled, within a longer word."""
+    """Return a text with one typing error: two letters swapped, one left out or one doubled, within a longer word."""
     places = [match.start() for match in re.finditer(r"(?<=\w\w)\w(?=\w\w)", text)]
     if not places:
         return text

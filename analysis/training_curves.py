@@ -39,7 +39,7 @@ class Run:
 
 
 def runs(folders: Iterable[Path]) -> list[Run]:
-    """The trainings of checkpoints.
+    """Return the trainings of checkpoints.
 
     Raises:
         HearthError: MISSING_FILE, DAMAGED_FILE.
@@ -57,7 +57,7 @@ def runs(folders: Iterable[Path]) -> list[Run]:
 
 
 def drawn(found: Sequence[Run]) -> str:
-    """The picture, as SVG."""
+    """Return the picture, as SVG."""
     lines: list[str] = []
     for number, phase in enumerate(PHASES):
         there = [(run, run.scores[phase]) for run in found if phase in run.scores]

@@ -38,7 +38,7 @@ Number = Any
 
 
 def played(knowledge: Knowledge) -> tuple[str, ...]:
-    """The actions that agents of a challenge may try, by name."""
+    """Return the actions that agents of a challenge may try, by name."""
     return tuple(sorted(knowledge.group("played")))
 
 
@@ -46,7 +46,7 @@ class ActionCode(Protocol):
     """A numbering of instructions."""
 
     def space(self) -> Space[Any]:
-        """All numbers."""
+        """Return all numbers."""
 
     def spaces(self) -> dict[str, Space[Any]]:
         """Return the spaces of the arrays that `masks` returns."""
@@ -55,14 +55,14 @@ class ActionCode(Protocol):
         """Return the numbers that are possible now, as new arrays."""
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | Failure | None:
-        """The instruction of a number; None to wait; a failure, where no instruction has it now.
+        """Return the instruction of a number; None to wait; a failure, where no instruction has it now.
 
         Raises:
             HearthError: BAD_ARGUMENT, where it is not in the space.
         """
 
     def number(self, step: Step | None, legal: Legal, slots: Slots) -> Number:
-        """The number of an instruction.
+        """Return the number of an instruction.
 
         Raises:
             HearthError: BAD_ARGUMENT, where it has none.
@@ -100,7 +100,7 @@ class Triples:
         }
 
     def masks(self, legal: Legal, slots: Slots) -> dict[str, NDArray[Any]]:
-        """The two masks."""
+        """Return the two masks."""
         actions = np.zeros(1 + len(self.names), np.int8)
         objects = np.zeros((1 + len(self.names), MOST_OBJECTS, self.nodes), np.int8)
         actions[WAIT] = 1
@@ -118,7 +118,7 @@ class Triples:
         return {"legal_actions": actions, "legal_objects": objects}
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | None:
-        """The instruction of three numbers; one about an empty slot is about no node, and fails."""
+        """Return the instruction of three numbers; one about an empty slot is about no node, and fails."""
         action, *objects = _triple(number, (1 + len(self.names), self.nodes, self.nodes))
         if action == WAIT:
             return None
@@ -184,7 +184,7 @@ class Listed:
         return {"action_mask": mask, "candidates": candidates}
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | Failure | None:
-        """The instruction at that place of the list."""
+        """Return the instruction at that place of the list."""
         (place,) = _triple(number, (self.size,))
         if place == WAIT:
             return None
@@ -227,13 +227,13 @@ class Fixed:
         return {"action_mask": MultiBinary(1 + len(self.steps))}
 
     def masks(self, legal: Legal, slots: Slots) -> dict[str, NDArray[Any]]:
-        """The mask."""
+        """Return the mask."""
         mask = np.ones(1 + len(self.steps), np.int8)
         mask[1:] = [_legal(step, legal) for step in self.steps]
         return {"action_mask": mask}
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | None:
-        """The instruction at that place of the list."""
+        """Return the instruction at that place of the list."""
         (place,) = _triple(number, (1 + len(self.steps),))
         if place == WAIT:
             return None
@@ -251,8 +251,9 @@ class Fixed:
 
 
 def fixed_list(names: Iterable[str], slots: Slots, places: Mapping[str, Sequence[int]] | None = None) -> Fixed:
-    """Every instruction of some actions about nodes in slots that the knowledge allows; of two objects, the first is
-    something that can be grabbed.
+    """Return every instruction of some actions about nodes in slots that the knowledge allows.
+
+    Of two objects, the first is something that can be grabbed.
 
     Args:
         names: the actions.
@@ -278,7 +279,7 @@ def fixed_list(names: Iterable[str], slots: Slots, places: Mapping[str, Sequence
 
 
 def str_step(step: Step | None) -> str:
-    """An instruction as text, without its agent; `wait` for none."""
+    """Return an instruction as text, without its agent; `wait` for none."""
     return "wait" if step is None else print_step(Step(step.action, step.objects))
 
 
@@ -293,7 +294,7 @@ def _legal(step: Step, legal: Legal) -> bool:
 
 
 def _triple(number: Number, most: tuple[int, ...]) -> list[int]:
-    """The numbers, each below its bound."""
+    """Return the numbers, each below its bound."""
     try:
         found = np.asarray(number)
         good = found.size == len(most) and np.issubdtype(found.dtype, np.integer)

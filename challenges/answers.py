@@ -77,7 +77,7 @@ def row(view: View, answer: int | str | None, choice: Choice, fault: Fault | Non
 
 
 def by_number(number: int, options: Sequence[Step]) -> Step:
-    """The legal instruction of that number, from 0.
+    """Return the legal instruction of that number, from 0.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is none of that number.
@@ -104,7 +104,7 @@ def by_words(text: str, view: View, legal: Legal, messages: bool) -> Choice:
 
 
 def by_text(text: str, view: View, legal: Legal) -> Step | None:
-    """The legal instruction that a text means; None for `wait`.
+    """Return the legal instruction that a text means; None for `wait`.
 
     It may be written as in programs, `[Grab] <cup> (1.41)`, where `(2)` is the second of its class that is seen; or
     plainly, `Grab cup 41`, `PutBack cup 41, table 55`, where a number may be left out if one alone is seen.
@@ -161,7 +161,7 @@ def _checked(step: Step, view: View, line: str) -> Program:
 
 
 def _bound(ref: ObjectRef, view: View) -> ObjectRef:
-    """The seen node that is meant: by its id, by its number among the seen of its class, or as the only one."""
+    """Return the seen node that is meant: by its id, by its number among the seen of its class, or as the only one."""
     home = view.world.home
     seen = [home.ids[i] for i in indices(seen_instances(ref.name, home, view.mask))]
     if ref.node is not None:

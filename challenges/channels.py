@@ -135,7 +135,7 @@ class Channel:
         self._skipping = end < 0
 
     def receive(self, deadline: float) -> bytes:
-        """The next line, without its end.
+        """Return the next line, without its end.
 
         Raises:
             HearthError: TIMED_OUT; DISCONNECTED; LINE_TOO_LONG, once for each such line.
@@ -265,7 +265,7 @@ class Listener:
         self.port: int = self._socket.getsockname()[1]
 
     def accept(self, wait: float) -> SocketChannel:
-        """The next agent that connects.
+        """Return the next agent that connects.
 
         Raises:
             HearthError: TIMED_OUT: none did within these seconds.

@@ -92,7 +92,7 @@ class Challenge:
         return DEFAULT._replace(bodies=self.bodies, one_grip=True, made_bed=False, near_hands=False)
 
     def goals_in(self, home: Home) -> Mapping[Goal, float]:
-        """The goals of single sets that there may be in a home, with their probabilities."""
+        """Return the goals of single sets that there may be in a home, with their probabilities."""
         places = tuple(instance(name, home) for name in sorted(self.grammar.furniture))
         if places not in self._goals:  # homes with equal furniture have equal goals
             bound = {self.grammar.in_home(goal, home): share for goal, share in self.grammar.goals.items()}
@@ -104,13 +104,13 @@ class Challenge:
         return {}
 
     def allowed(self, knowledge: Knowledge) -> frozenset[str]:
-        """The actions that agents may try."""
+        """Return the actions that agents may try."""
         return knowledge.group(self.actions)
 
 
 @cache
 def challenge(name: str) -> Challenge:
-    """A challenge by name; read once.
+    """Return a challenge by name; read once.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is none of that name.

@@ -133,5 +133,5 @@ class Demonstrator:
 
 
 def _met(progress: Progress) -> int:
-    """All nodes that count for a goal."""
+    """Return all nodes that count for a goal."""
     return reduce(or_, (mask for watch in progress.watches for mask in watch.met), 0)

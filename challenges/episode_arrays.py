@@ -96,7 +96,7 @@ def _seen(session: Session, agent: int) -> Arrays:
 def episodes_of(
     results: Results, agent: int, knowledge: Knowledge, limit: int | None = None
 ) -> Iterator[tuple[EpisodeArrays, Session]]:
-    """The episodes of a run in which an agent took part: all with a helper, or, without one, all alone.
+    """Yield the episodes of a run in which an agent took part: all with a helper, or, without one, all alone.
 
     Args:
         results: of a run.

@@ -128,7 +128,7 @@ def again(task: Task, record: Record, knowledge: Knowledge) -> tuple[Outcome, st
 def replayed(
     which: Challenge, task: Task, record: Record, start: World
 ) -> tuple[list[Tick], list[Goal | None], list[Progress]]:
-    """The ticks of a record, the agents' goals, and the progress of the first; errors as of `again`."""
+    """Return the ticks of a record, the agents' goals, and the progress of the first; errors as of `again`."""
     home = start.home
     helper_goal = None if record.helper_goal is None else which.grammar.read(record.helper_goal)
     goals = _goals(which, task, helper_goal, home, record.helped)
@@ -150,14 +150,14 @@ def replayed(
 def measured(
     which: Challenge, start: World, ticks: Sequence[Tick], goals: Sequence[Goal | None], progress: Sequence[Progress]
 ) -> Outcome:
-    """The metrics of an episode."""
+    """Return the metrics of an episode."""
     columns = analysed(which, start, ticks, goals, progress)
     return outcome(which, progress[-1].satisfied, len(ticks), columns)
 
 
 @lru_cache(maxsize=4)
 def start_of(task: Task, knowledge: Knowledge, agents: int | None) -> World:
-    """A task's start, kept for its next episode."""
+    """Return a task's start, kept for its next episode."""
     return task.start(knowledge, agents)
 
 
@@ -185,7 +185,7 @@ def written(choice: Choice) -> str | None:
 
 
 def read_instruction(text: str, agent: int, home: Home, allowed: frozenset[str]) -> Step:
-    """The inverse of how records write instructions.
+    """Return the instruction of a record's text.
 
     Raises:
         HearthError: BAD_ARGUMENT: it is not an instruction about nodes of the home.

@@ -64,7 +64,7 @@ NAMES = tuple(each.name for each in fields(Columns))
 def analysed(
     which: Challenge, start: World, ticks: Sequence[Tick], goals: Sequence[Goal | None], progress: Sequence[Progress]
 ) -> Columns:
-    """The columns of an episode.
+    """Return the columns of an episode.
 
     Args:
         which: the challenge.
@@ -195,7 +195,7 @@ class _Analysis:
 
 
 def _lost(before: Progress, after: Progress) -> int:
-    """The nodes that counted for a goal and do no longer."""
+    """Return the nodes that counted for a goal and do no longer."""
     if before is after:
         return 0
     found = 0

@@ -86,7 +86,7 @@ class Guarded:
             return None
 
     def _plain(self, step: Step, view: View) -> Step:
-        """The instruction as records have it: an action and nodes. Agents could write one in many ways."""
+        """Return the instruction as records have it: an action and nodes. Agents could write one in many ways."""
         home = view.world.home
         nodes = [ref.node for ref in step.objects if ref.node is not None]
         return Step(step.action, tuple(ObjectRef(home.classes[home.index[i]], 0, i) for i in nodes), self.number)

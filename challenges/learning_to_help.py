@@ -131,7 +131,7 @@ def learn(
     seen: Seen = unseen,
     trained: Seen = unseen,
 ) -> TrainedPolicy:
-    """A policy trained on the challenge's tasks of training.
+    """Return a policy trained on the challenge's tasks of training.
 
     Args:
         name: of the challenge.
@@ -256,7 +256,7 @@ def _batches(traces: Sequence[Trace], size: int) -> Iterator[Batch]:
 
 
 def _score(rollout: Rollout, tasks: Sequence[Task]) -> float:
-    """The mean of all rewards of an episode."""
+    """Return the mean of all rewards of an episode."""
     return mean(rollout(task, 0)[1] for task in tasks)
 
 

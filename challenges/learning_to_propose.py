@@ -67,7 +67,7 @@ def learn(
     seen: Seen = unseen,
     trained: Seen = unseen,
 ) -> TrainedGoalProposals:
-    """The network trained on a split of a challenge.
+    """Return the network trained on a split of a challenge.
 
     Args:
         name: of the challenge.
@@ -86,5 +86,5 @@ def learn(
 
 
 def episodes(tasks: Sequence[Task], known: Known, workers: int = 1, seen: Seen = unseen) -> list[Episode]:
-    """The episodes of tasks, in their order, for any number of workers."""
+    """Return the episodes of tasks, in their order, for any number of workers."""
     return [each for each in spread(episode, [Wish(task, known) for task in tasks], workers, seen) if each.states]

@@ -110,7 +110,7 @@ def _row(number: int, goal: str, begun: int, ticks: int) -> dict[str, Any]:
 
 
 def _write(path: Path, columns: Columns) -> None:
-    """The frames; vectors as lists of one length."""
+    """Write the frames; vectors are lists of one length."""
     path.parent.mkdir(parents=True, exist_ok=True)
     arrays = {}
     for name, values in columns.items():

@@ -104,7 +104,7 @@ class Lineup:
 
     @property
     def _helper(self) -> str:
-        """The helper that is made for this goal, where there is one: `hp` with the true goal is `hp_true`."""
+        """Return the helper that is made for this goal, where there is one: `hp` with the true goal is `hp_true`."""
         special = f"{self.helper}_{self.goal}"
         return special if special in HELPERS else self.helper
 

@@ -50,7 +50,7 @@ METRICS = frozenset({"success", "ticks", "length", "reward", *NAMES})
 
 
 def outcome(which: Challenge, success: bool, ticks: int, columns: Columns) -> Outcome:
-    """The metrics of an episode that was played."""
+    """Return the metrics of an episode that was played."""
     length = ticks if success else which.ticks
     return Outcome(success, ticks, length, round(success - PER_TICK * length, 6), columns)
 
@@ -69,7 +69,7 @@ class Mean:
 
 
 def mean(values: Sequence[float]) -> Mean:
-    """The mean of the tasks' values and its standard error."""
+    """Return the mean of the tasks' values and its standard error."""
     value = math.fsum(values) / len(values)
     if len(values) < 2:
         return Mean(value, None)

@@ -35,7 +35,7 @@ class SeenLiteral:
 
 
 def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
-    """The counted literals of a goal and of its parts, with how many of each the agent sees fulfilled now."""
+    """Yield the counted literals of a goal and of its parts, with how many of each the agent sees fulfilled now."""
     world, home = as_seen(view.world, view.mask), view.world.home
     for literal, wanted in goal.literals():
         if acts(literal, home) or any(str(term).startswith("?") for term in literal.terms):
@@ -50,14 +50,17 @@ def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
 
 
 def _among(term: Name, home: Home, mask: int) -> int:
-    """The seen nodes that a term of a goal stands for; other names of a class count where it is not seen itself."""
+    """Return the seen nodes that a term of a goal stands for.
+
+    Other names of a class count where it is not seen itself.
+    """
     if isinstance(term, int) or term.partition(":")[0] == AGENT:
         return nodes(term, home) & mask
     return seen_instances(term, home, mask)
 
 
 def seen_instances(name: str, home: Home, mask: int) -> int:
-    """The seen nodes that a class name stands for (see `Home.instances`, which looks at all)."""
+    """Return the seen nodes that a class name stands for (see `Home.instances`, which looks at all)."""
     names = (name, *home.knowledge.same_class(name))
     return next((found for each in names if (found := home.by_class.get(each, 0) & mask)), 0)
 
@@ -81,7 +84,7 @@ def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:
 
 
 def goal_json(goal: Goal, view: View) -> dict[str, Any]:
-    """A goal as text, and its literals with `wanted` and `seen` (see `SeenLiteral`)."""
+    """Return a goal as text, and its literals with `wanted` and `seen` (see `SeenLiteral`)."""
     literals = [
         {"literal": str(each.literal), "wanted": each.wanted, "seen": each.seen} for each in seen_goal(goal, view)
     ]
@@ -113,7 +116,7 @@ def _pose(pose: Pose, view: View) -> dict[str, Any]:
 
 
 def last_json(last: LastAction, view: View) -> dict[str, Any]:
-    """The instruction that was tried last, and why it failed, or null."""
+    """Return the instruction that was tried last, and why it failed, or null."""
     failure = None if last.failure is None else seen_failure(last.failure, view)
     reason = None if failure is None else {"code": str(failure.code), "message": failure.message()}
     return {"instruction": instruction_text(last.instruction), "failure": reason}
@@ -127,6 +130,6 @@ def seen_failure(failure: Failure, view: View) -> Failure:
 
 
 def instruction_text(step: Step) -> str:
-    """An instruction as agents read and write it: `[Grab] <cup> (1.41)`, of whom is known."""
+    """Return an instruction as agents read and write it: `[Grab] <cup> (1.41)`, of whom is known."""
     refs = tuple(replace(ref, instance=1) for ref in step.objects)
     return print_step(replace(step, objects=refs, agent=0, joins=False))

@@ -127,11 +127,11 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
         return {name: self.session.info(self._numbers[name]) for name in self.agents}
 
     def texts(self, agent: str) -> list[str]:
-        """The legal instructions of an agent in words, in the order of the code `listed`: 0 is to wait."""
+        """Return the legal instructions of an agent in words, in the order of the code `listed`: 0 is to wait."""
         return self.session.texts(self._numbers[agent])
 
     def render(self) -> Any:
-        """A picture or text of now, by the render mode; None without one."""
+        """Return a picture or text of now, by the render mode; None without one."""
         return self._pictures.take(self.session)
 
     def close(self) -> None:
@@ -141,7 +141,7 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
 def parallel_env(
     begin: Opening, max_cycles: int = MOST_TICKS, render_mode: str | None = None, **settings: Any
 ) -> ParallelHome:
-    """The environment by PettingZoo's names: `settings` are fields of `Setting`."""
+    """Return the environment by PettingZoo's names: `settings` are fields of `Setting`."""
     return ParallelHome(replace(Setting(begin, **settings), limit=max_cycles), render_mode)
 
 

@@ -64,7 +64,7 @@ class Pictures:
         self._start: World | None = None
 
     def take(self, session: Session) -> Picture | str | None:
-        """The picture or text of now; None without a mode.
+        """Return the picture or text of now; None without a mode.
 
         Raises:
             HearthError: NOT_RENDERED, where the home has no geometry; MISSING_FILE, where a library is not installed.

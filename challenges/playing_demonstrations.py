@@ -90,7 +90,7 @@ def _played(task: Task, demonstrator: Demonstrator, knowledge: Knowledge, number
 def demonstrations(
     tasks: Sequence[Task], known: Known, rate: float = 1.0, workers: int = 1, seen: Seen = unseen
 ) -> Iterator[Demonstration]:
-    """The demonstrations of tasks, in their order, for any number of workers.
+    """Yield the demonstrations of tasks, in their order, for any number of workers.
 
     Args:
         tasks: which.

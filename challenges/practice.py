@@ -41,7 +41,7 @@ class Practice(Learned):
 
 
 def practised(task: Task, agent: Practice, known: Known, seed: int) -> tuple[Played, list[float]]:
-    """An episode alone, in which one predicate of a task's goal is wanted once; the rewards of its ticks."""
+    """Return an episode alone, in which one predicate of a task's goal is wanted once; the rewards of its ticks."""
     which, knowledge = challenge(task.challenge), known()
     start = start_of(task, knowledge, 1)
     things = [(each, 1) for each, _ in task.goal_in(start.home) if not _of_characters(each.subject)]

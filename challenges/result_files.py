@@ -47,7 +47,7 @@ class Header:
 
     @property
     def helped(self) -> tuple[bool, ...]:
-        """The kinds of episodes: without a helper, then with one, if there is one."""
+        """Return the kinds of episodes: without a helper, then with one, if there is one."""
         return (False,) if self.lineup.helper == NOBODY else (False, True)
 
     @property
@@ -115,7 +115,7 @@ class Results:
     records: Collection[Record]
 
     def outcomes(self, helped: bool) -> Outcomes:
-        """The metrics of the episodes of one kind, by task."""
+        """Return the metrics of the episodes of one kind, by task."""
         return by_task((each.task, each.metrics) for each in self.records if each.helped == helped)
 
 
@@ -128,14 +128,14 @@ def line(header: Header, record: Record) -> bytes:
 
 
 def first_line(header: Header) -> bytes:
-    """The first line."""
+    """Return the first line."""
     import orjson
 
     return orjson.dumps(header.as_json()) + b"\n"
 
 
 def episode_data(record: Record) -> dict[str, Any]:
-    """An episode as JSON."""
+    """Return an episode as JSON."""
     return {
         "task": record.task,
         "seed": record.seed,
@@ -156,7 +156,7 @@ def _digest(header: Header, episode: Mapping[str, Any]) -> str:
 
 
 def read(path: Path) -> Results:
-    """The results of a file; whether they are true, `verification` finds out.
+    """Return the results of a file; whether they are true, `verification` finds out.
 
     Raises:
         HearthError: MISSING_FILE, FILE_TOO_LARGE; BAD_JSON with the line; every fault of the tasks.
@@ -170,7 +170,7 @@ def read(path: Path) -> Results:
 
 
 def read_header(data: bytes, file: str) -> Header:
-    """The first line; errors as of `read`."""
+    """Return the first line; errors as of `read`."""
     given = _mapping(data, file, 1)
     agents, seeds = given.get("agents"), given.get("seeds")
     if given.get("format") != FORMAT or not isinstance(agents, Mapping):
@@ -188,7 +188,7 @@ def read_header(data: bytes, file: str) -> Header:
 
 
 def _some_episodes(given: Any, suite: Suite, seeds: int, file: str) -> tuple[tuple[str, int, bool], ...] | None:
-    """The episodes that a file names because it does not have all; None where it has."""
+    """Return the episodes that a file names because it does not have all; None where it has."""
     if given is None:
         return None
     tasks = {task.id for task in suite.tasks}
@@ -202,7 +202,10 @@ def _some_episodes(given: Any, suite: Suite, seeds: int, file: str) -> tuple[tup
 
 
 def read_records(header: Header, lines: Iterable[bytes], file: str) -> Iterator[Record]:
-    """The episodes of the other lines; errors as of `read`, and DAMAGED_FILE where a line is not as it was written."""
+    """Yield the episodes of the other lines.
+
+    Errors are those of `read`, and DAMAGED_FILE where a line is not as it was written.
+    """
     for number, each in enumerate(lines, 2):
         given = dict(_mapping(each, file, number))
         written = given.pop("digest", None)
@@ -240,7 +243,7 @@ _FIELDS: dict[str, tuple[type, ...]] = {
 
 
 def episode_of(given: Mapping[str, Any]) -> Record | None:
-    """An episode of JSON; None where it is not one."""
+    """Return an episode of JSON; None where it is not one."""
     if given.keys() != _FIELDS.keys() or not all(isinstance(given[name], kinds) for name, kinds in _FIELDS.items()):
         return None
     actions = given["actions"]

@@ -146,7 +146,7 @@ class Encoder:
         return Rows(slots, classes, categories, places, start_edges(home, self.relations))
 
     def arrays(self, view: View, rows: Rows, progress: Progress | None = None, time: float = 0.0) -> Arrays:
-        """A view as arrays that nobody else holds.
+        """Return a view as arrays that nobody else holds.
 
         Args:
             view: an agent's view.

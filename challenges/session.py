@@ -173,7 +173,7 @@ class Session:
 
     @property
     def rows(self) -> Rows:
-        """The slots of the home."""
+        """Return the slots of the home."""
         assert self._rows is not None
         return self._rows
 
@@ -219,7 +219,7 @@ class Session:
         }
 
     def texts(self, agent: int) -> list[str]:
-        """An agent's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
+        """Return an agent's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
         _, legal = self.seen(agent)
         return ["wait", *map(str_step, self.rows.slots.instructions(legal))]
 
@@ -269,5 +269,5 @@ class Session:
 
 
 def done(tick: Tick) -> list[Step]:
-    """The instructions of a tick that did not fail."""
+    """Return the instructions of a tick that did not fail."""
     return [step for number, step in tick.instructions.items() if number not in tick.failures]

@@ -113,9 +113,9 @@ class HomeEnv(Env[Arrays, Number]):
         return self.session.observe(self.learner), self.session.info(self.learner)
 
     def texts(self) -> list[str]:
-        """The learner's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
+        """Return the learner's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
         return self.session.texts(self.learner)
 
     def render(self) -> Any:
-        """A picture or text of now, by the render mode; None without one."""
+        """Return a picture or text of now, by the render mode; None without one."""
         return self._pictures.take(self.session)

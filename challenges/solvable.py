@@ -34,7 +34,7 @@ class Solved:
 
 
 def solved(tasks: Sequence[Task], known: Known, workers: int = 1, seen: Seen = unseen) -> Iterator[Solved]:
-    """The oracle's episodes, in the order of the tasks.
+    """Yield the oracle's episodes, in the order of the tasks.
 
     Args:
         tasks: which.

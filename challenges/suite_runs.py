@@ -125,7 +125,7 @@ def helper_goal(kind: str, task: Task, seed: int, tasks: Sequence[Task]) -> Goal
 
 
 def _with(taken: Mapping[tuple[str, int], Record], jobs: Sequence[Job], over: Spread) -> Iterator[Record]:
-    """The episodes in the order of the jobs; those alone that are there already are not played again."""
+    """Yield the episodes in the order of the jobs; those alone that are there already are not played again."""
     found = [None if job.helped else taken.get((job.task.id, job.seed)) for job in jobs]
     rest = over([job for job, record in zip(jobs, found, strict=True) if record is None])
     return (record or next(rest) for record in found)

@@ -157,7 +157,7 @@ def _goal(goal: Goal, view: View) -> Iterator[str]:
 
 
 def _seen(view: View) -> Iterator[str]:
-    """The rest: rooms, doors, and things by the place that they are on or in; walls and floors are left out."""
+    """Yield the rest: rooms, doors, and things by the place that they are on or in; walls and floors are left out."""
     home, world = view.world.home, view.world
     rooms = [_name(home.ids[i], view) for i in indices(home.rooms) if home.ids[i] != view.me.room]
     yield f"Other rooms: {', '.join(rooms) or 'none'}."
@@ -192,13 +192,13 @@ def _things(nodes: Sequence[int], view: View) -> str:
 
 
 def plain(step: Step) -> str:
-    """An instruction as texts have it: `PutBack cup 41, table 55`."""
+    """Return an instruction as texts have it: `PutBack cup 41, table 55`."""
     objects = ", ".join(f"{ref.name} {ref.node}" for ref in step.objects)
     return f"{step.action} {objects}".rstrip()
 
 
 def menu(options: Sequence[Step], view: View) -> str:
-    """The legal instructions by action, each with the number that answers it.
+    """Return the legal instructions by action, each with the number that answers it.
 
     At most `MOST_LISTED` of an action, rooms first, and none about walls and floors, are numbered; all can be written.
     """

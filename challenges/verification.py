@@ -37,7 +37,7 @@ class Check:
 
 
 def read_whole(path: Path) -> Results:
-    """The results of a file that has the episodes which its first line says, whatever was done in them.
+    """Return the results of a file that has the episodes which its first line says, whatever was done in them.
 
     Raises:
         HearthError: those of `result_files.read`; DAMAGED_FILE: it has others.
@@ -52,7 +52,7 @@ def read_whole(path: Path) -> Results:
 def verify(
     results: Results, file: str, known: Known, workers: int = 1, agents: bool = False, seen: Seen = unseen
 ) -> list[Diagnostic]:
-    """The episodes that are not as recorded; empty where all are.
+    """Return the episodes that are not as recorded; empty where all are.
 
     Args:
         results: as read; reading has compared each line with its digest.

@@ -132,7 +132,7 @@ class WireAgent:
         return by_number(act, options) if isinstance(act, int) else by_words(act, view, legal, self.messages)
 
     def _answer(self, view: View, deadline: float) -> int | str | None:
-        """The answer to this tick; late ones to earlier ticks are passed over."""
+        """Return the answer to this tick; late ones to earlier ticks are passed over."""
         while True:
             tick, act = read_answer(self.channel.receive(deadline), view.agent)
             if tick > view.tick:

@@ -235,7 +235,7 @@ for _command in (
 
 
 def _print(results: Results, as_json: bool) -> None:
-    """The summary of a run; one object for machines."""
+    """Print the summary of a run; one object for machines."""
     from hearth.challenges.metrics import summary
 
     header = results.header

@@ -80,7 +80,7 @@ def draw_beliefs(
 
 
 def print_by_set(found: Sequence[dict[str, Any]]) -> None:
-    """A table of speedups by goal set (figures 7-6a, C-3)."""
+    """Print a table of speedups by goal set (figures 7-6a, C-3)."""
     there = [row for row in found if "by_set" in row]
     names = tuple(there[0]["by_set"])
     cells = [

@@ -75,7 +75,7 @@ def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
 
 
 def _program_text(path: Path, name: str) -> str | None:
-    """The text of a file that is nothing but programs; None for any other form.
+    """Return the text of a file that is nothing but programs; None for any other form.
 
     Raises:
         HearthError: it can't be read.

@@ -28,7 +28,7 @@ def shown(
     kb: Path | None,
     beam: int,
 ) -> dict[str, Shown]:
-    """The programs by home.
+    """Return the programs by home.
 
     Raises:
         HearthError: a model of sketches without a sketch, or one of texts with one; errors of `restore`.
@@ -64,7 +64,7 @@ def shown(
 
 
 def _seen(name: str, trained: Any, pictures: Path, beam: int) -> Steps:
-    """The sketch of pictures from above."""
+    """Return the sketch of pictures from above."""
     from hearth.models.demonstrations.demo_model import TrainedDemoModel
     from hearth.models.demonstrations.demonstration_data import read_pictures
     from hearth.schemas.diagnostics import HearthError
@@ -105,7 +105,7 @@ def _writer(name: str) -> Any:
 
 
 def document(one: Shown) -> dict[str, Any]:
-    """A program with all that led to it."""
+    """Return a program with all that led to it."""
     from hearth.schemas.syntax import print_step
 
     execution, left_out, _ = one.completion

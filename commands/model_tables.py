@@ -189,7 +189,7 @@ def _print(rows: Sequence[Row], columns: Mapping[str, str]) -> None:
 
 
 def _score(value: Any) -> str:
-    """A mean with its interval, or a number of the thesis."""
+    """Return a mean with its interval, or a number of the thesis."""
     if value is None:
         return ""
     return f"{value:.3f}" if isinstance(value, float) else f"{value.mean:.3f} ({value.low:.3f}-{value.high:.3f})"

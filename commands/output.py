@@ -183,7 +183,7 @@ def _one_line(message: str) -> str:
 
 
 def _window(source: str, column: int) -> tuple[str, int]:
-    """The part of a long line around `column` (from 1), and the column within it."""
+    """Return the part of a long line around `column` (from 1), and the column within it."""
     shown = "".join(char if char.isprintable() else " " for char in source)
     start = column - 1 - _AROUND if column - 1 > _SHOWN - _AROUND else 0
     start = max(0, start)

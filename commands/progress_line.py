@@ -20,7 +20,7 @@ def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterato
 
 @contextmanager
 def bar(what: str) -> Iterator[Seen]:
-    """A bar on the error stream, removed at the end; nothing if the stream is not a terminal.
+    """Yield a bar on the error stream, removed at the end; nothing if the stream is not a terminal.
 
     Args:
         what: the items, in a word or two.

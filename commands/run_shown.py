@@ -120,7 +120,7 @@ def _ticks(execution: Execution) -> list[tuple[Step, ...]]:
 
 
 def _reached(execution: Execution) -> list[Step]:
-    """The steps that were done, and those of the tick that failed."""
+    """Return the steps that were done, and those of the tick that failed."""
     return [step for steps in _ticks(execution)[: len(execution.worlds)] for step in steps]
 
 
@@ -192,7 +192,7 @@ def _print_checks(found: list[Check]) -> None:
 
 
 def _poses(execution: Execution) -> tuple[tuple[HandAndBasePose, ...], ...]:
-    """The hand and base pose of the characters for each tick; nothing in homes without geometry."""
+    """Return the hand and base pose of the characters for each tick; nothing in homes without geometry."""
     from hearth.simulation.motion.base_pose import hand_and_base_poses
 
     return hand_and_base_poses(execution)

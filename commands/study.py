@@ -284,7 +284,7 @@ def forget(source: Path, person: str, *, store: str = "", study: str = "", as_js
 
 
 def _opened(source: Path, store: str, study: str) -> Collected:
-    """The study of a folder that was simulated into, or that the server keeps its store in."""
+    """Return the study of a folder that was simulated into, or that the server keeps its store in."""
     from hearth.kb.loading.load import default
     from hearth.studies.study_folder import EVENTS, opened
 

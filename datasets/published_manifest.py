@@ -12,7 +12,7 @@ from hearth.storage.manifest import FORMAT, NAME
 
 
 def published_manifest(folder: Path, asked: str) -> dict[str, Any]:
-    """The manifest of a folder.
+    """Return the manifest of a folder.
 
     Args:
         folder: of the dataset.

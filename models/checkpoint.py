@@ -80,7 +80,7 @@ def save(checkpoint: Checkpoint, folder: Path) -> None:
 
 
 def load(folder: Path) -> Checkpoint:
-    """The checkpoint of a folder.
+    """Return the checkpoint of a folder.
 
     Raises:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; UNSUPPORTED_FILE, if it is of another
@@ -114,7 +114,7 @@ def load(folder: Path) -> Checkpoint:
 
 
 def identity(folder: Path) -> str:
-    """A digest of a folder's checkpoint, without how long its training took: that differs from run to run."""
+    """Return a digest of a folder's checkpoint, without how long its training took: that differs from run to run."""
     document = _document(folder / NAME)
     if not isinstance(document, dict):
         return file_digest(folder / NAME)

@@ -59,12 +59,12 @@ class Example:
 
     @property
     def sketch(self) -> Steps:
-        """The steps that its sketch keeps; none without a sketch."""
+        """Return the steps that its sketch keeps; none without a sketch."""
         return tuple(step for step, keeps in zip(self.steps, self.keep, strict=False) if keeps)
 
     @property
     def request(self) -> Request:
-        """The example without its program: all that a model may see."""
+        """Return the example without its program: all that a model may see."""
         return Request(self.program_id, self.title, self.description, self.sketch)
 
 
@@ -91,7 +91,7 @@ class Corpus:
     writes: Literal["program", "sketch"] = "program"
 
     def checked(self, *, sketches: bool = False) -> tuple[Example, ...]:
-        """The examples for validation, of which there are some.
+        """Return the examples for validation, of which there are some.
 
         Args:
             sketches: some have a sketch, too.
@@ -142,7 +142,7 @@ _PROGRAMS = """
 def examples(
     dataset: Dataset, split: str, part: str, *, originals: bool = False, sketches: str = ANNOTATED
 ) -> tuple[Example, ...]:
-    """The programs of a part with their texts, by id.
+    """Return the programs of a part with their texts, by id.
 
     Args:
         dataset: a published dataset.
@@ -177,7 +177,7 @@ def _example(row: Any) -> Example:
 
 
 def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 0, sketches: str = ANNOTATED) -> Corpus:
-    """The training and validation examples of a split.
+    """Return the training and validation examples of a split.
 
     Where the split has no part `validation`, one in ten activities of `train` is taken out for it. Of a split by
     activity or home, validation has no activities of `train`; where that leaves hardly any, those of `train` are taken
@@ -199,7 +199,7 @@ def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 
 
 
 def shared(train: Sequence[Example], test: Sequence[Example]) -> dict[str, int]:
-    """The numbers of titles, descriptions and step lists of test examples that training examples have, too.
+    """Return the numbers of titles, descriptions and step lists of test examples that training examples have, too.
 
     All are 0 in splits by activity. In splits by home the same program may be in several homes.
     """
@@ -210,7 +210,7 @@ def shared(train: Sequence[Example], test: Sequence[Example]) -> dict[str, int]:
 
 
 def of_new_titles(dataset: Dataset, trained_on: Dataset, split: str) -> set[str]:
-    """The ids of a dataset's executions whose titles no training program of another dataset has, ignoring case.
+    """Return the ids of a dataset's executions whose titles no training program of another dataset has, ignoring case.
 
     Args:
         dataset: with the executions.

@@ -10,7 +10,7 @@ Batch = TypeVar("Batch")
 
 
 def device() -> Any:
-    """The torch device of this machine: its first GPU, else one thread of its processor.
+    """Return the torch device of this machine: its first GPU, else one thread of its processor.
 
     The networks are small: two threads wait for each other longer than they save, and sums by one thread are the same
     on any number of cores.
@@ -24,7 +24,7 @@ def device() -> Any:
 
 
 def place_of(network: Any) -> Any:
-    """The torch device that has a network's weights."""
+    """Return the torch device that has a network's weights."""
     return next(network.parameters()).device
 
 

@@ -13,7 +13,7 @@ Network = TypeVar("Network", bound=torch.nn.Module)
 
 
 def filled(make: Callable[[], Network], weights: Mapping[str, np.ndarray]) -> Network:
-    """The network that is made, with these weights, for prediction.
+    """Return the network that is made, with these weights, for prediction.
 
     It is first made without memory: settings that ask for a network larger than its weights cost nothing.
 

@@ -84,7 +84,7 @@ POSITIVE = {
 
 
 def _choices(settings: type, name: str) -> tuple[str, ...]:
-    """The values that a setting can have; none where it can have any."""
+    """Return the values that a setting can have; none where it can have any."""
     hint = get_type_hints(settings).get(name)
     return get_args(hint) if get_origin(hint) is Literal else ()
 
@@ -94,7 +94,7 @@ class Settings:
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:
-        """The settings with these values, which may be a stranger's; lists become tuples.
+        """Return the settings with these values, which may be a stranger's; lists become tuples.
 
         Raises:
             TypeError: a value is unknown or missing.
@@ -131,7 +131,7 @@ class Settings:
 
 
 def texts(values: Any) -> tuple[str, ...]:
-    """A list of a checkpoint that should be of different texts, and may be a stranger's.
+    """Return a list of a checkpoint that should be of different texts, and may be a stranger's.
 
     Raises:
         TypeError: it is not a list.

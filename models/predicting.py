@@ -43,7 +43,7 @@ def predict(
     sketches: str = ANNOTATED,
     seen: Seen = unseen,
 ) -> Iterator[tuple[str, Steps]]:
-    """The ids of executions with their predicted programs, in the dataset's order.
+    """Yield the ids of executions with their predicted programs, in the dataset's order.
 
     Args:
         trained: a trained model.
@@ -98,7 +98,7 @@ WRITTEN = 32
 
 
 def scorer_of(trained: Trained) -> Scorer:
-    """A model as decoding sees it.
+    """Return a model as decoding sees it.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it can't be decoded with the engine in the loop.

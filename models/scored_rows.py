@@ -57,7 +57,7 @@ def scored_rows(
     columns: Mapping[str, str],
     seed: int,
 ) -> Iterator[Row]:
-    """The rows of some methods, in order.
+    """Yield the rows of some methods, in order.
 
     Args:
         dataset: with the executions.

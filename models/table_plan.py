@@ -84,7 +84,7 @@ class Needed(NamedTuple):
 
     @property
     def before(self) -> Needed | None:
-        """The model that its training goes on from."""
+        """Return the model that its training goes on from."""
         if self.name not in STARTS:
             return None
         name = STARTS[self.name]
@@ -110,7 +110,7 @@ class Needed(NamedTuple):
 
     @property
     def chain(self) -> list[Needed]:
-        """The models that its training needs, one after another, and itself."""
+        """Return the models that its training needs, one after another, and itself."""
         return [*(self.before.chain if self.before else ()), self]
 
 
@@ -140,7 +140,7 @@ class Plan:
 
     @property
     def name(self) -> str:
-        """The table, and the split where it is not the usual one."""
+        """Return the table, and the split where it is not the usual one."""
         return self.table if self.split == "activities" else f"{self.table}-{self.split}"
 
     def needed(self, seeds: int) -> Iterator[Needed]:
@@ -175,7 +175,7 @@ A pair of tasks, or the paraphrases, of the test are not in training.
 
 
 def chosen(names: Sequence[str], without: Sequence[Data] = ()) -> list[Plan]:
-    """The plans of these tables, in the order of all. `4.4` stands for both of its splits.
+    """Return the plans of these tables, in the order of all. `4.4` stands for both of its splits.
 
     Args:
         names: of tables; every one if there is none.
@@ -194,7 +194,7 @@ def chosen(names: Sequence[str], without: Sequence[Data] = ()) -> list[Plan]:
 
 
 def training(plans: Sequence[Plan], seeds: int) -> list[Needed]:
-    """The models of some tables, each once, and each after the one that it goes on from."""
+    """Return the models of some tables, each once, and each after the one that it goes on from."""
     every = (each for plan in plans for each in plan.needed(seeds))
     return list(dict.fromkeys(one for each in every for one in each.chain))
 
@@ -225,7 +225,7 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
 
 
 def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen = unseen) -> list[Any]:
-    """The rows of a table, from its trained models.
+    """Return the rows of a table, from its trained models.
 
     Args:
         plan: the table.

@@ -78,7 +78,7 @@ class Outcome(NamedTuple):
     ended: str
 
     def record(self) -> dict[str, Any]:
-        """The outcome as a checkpoint's `trained` has it."""
+        """Return the outcome as a checkpoint's `trained` has it."""
         minutes = round(sum(epoch.seconds for epoch in self.epochs) / 60, 2)
         curves = {name: [getattr(epoch, name) for epoch in self.epochs] for name in ("loss", "score", "rate")}
         facts = {"epochs": len(self.epochs), "best_epoch": self.best, "ended": self.ended, "minutes": minutes}
@@ -86,7 +86,7 @@ class Outcome(NamedTuple):
 
 
 def weights_digest(module: torch.nn.Module) -> str:
-    """A digest of a module's weights."""
+    """Return a digest of a module's weights."""
     found = blake2b(digest_size=16)
     for name, values in sorted(module.state_dict().items()):
         found.update(name.encode())
@@ -150,14 +150,14 @@ def _epoch(task: Task[B], how: Training, optimiser: torch.optim.Optimizer, numbe
 
 
 def _finite(value: float, what: str) -> float:
-    """A number that is one: a score that is none would be neither better nor worse than any other."""
+    """Return a score, checked to be a number: another value would be neither better nor worse than any other."""
     if not math.isfinite(value):
         raise HearthError.of(Code.BAD_ARGUMENT, f"{what} is {value}", suggestion="train with a lower rate")
     return value
 
 
 def best_of(epochs: Sequence[Epoch]) -> int:
-    """The number of the first epoch with the best score; 0 before the first."""
+    """Return the number of the first epoch with the best score; 0 before the first."""
     return max(epochs, key=lambda epoch: (epoch.score, -epoch.number)).number if epochs else 0
 
 
@@ -174,7 +174,7 @@ def _ended(epochs: Sequence[Epoch], best: int, how: Training) -> str:
 
 
 def _rate(epochs: Sequence[Epoch], how: Training) -> float:
-    """The rate of the next epoch: halved after each `halve_after` epochs without a better score."""
+    """Return the rate of the next epoch: halved after each `halve_after` epochs without a better score."""
     halvings, waited, best = 0, 0, -math.inf
     for epoch in epochs:
         waited = 0 if epoch.score > best else waited + 1
@@ -262,7 +262,7 @@ class _State:
 
 
 def _epochs(rows: Any) -> list[Epoch]:
-    """The epochs of a kept state; none if these are not epochs."""
+    """Return the epochs of a kept state; none if these are not epochs."""
     kinds = (int, float, float, float, float)
     if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == len(kinds) for row in rows):
         return []

@@ -52,7 +52,7 @@ def by_row(
 
 
 def _at(fault: Diagnostic, pair: Pair, file: Path) -> Diagnostic:
-    """The fault with the row that names the faulty file."""
+    """Return the fault with the row that names the faulty file."""
     message = f"the environment of `{pair.id}` ({file}:{pair.line}): {fault.message}"
     return Diagnostic(fault.code, message, fault.file, suggestion=fault.suggestion)
 

@@ -65,7 +65,7 @@ def _archive(path: str, changed: int) -> zipfile.ZipFile:
 
 
 def archive(path: Path) -> zipfile.ZipFile:
-    """The archive at a path, open once a process.
+    """Return the archive at a path, open once a process.
 
     Raises:
         HearthError: BAD_ARCHIVE.
@@ -110,7 +110,7 @@ def size_of(place: Place) -> int:
 
 
 def raw(place: Place) -> BinaryIO:
-    """A file's bytes, unpacked."""
+    """Return a file's bytes, unpacked."""
     if isinstance(place, Member):
         member = _opened(place)
         guarded: io.RawIOBase = _Guarded(member, place.name, place.info().compress_size)
@@ -130,7 +130,7 @@ def raw(place: Place) -> BinaryIO:
 
 
 def unpacked(data: bytes, name: str) -> BinaryIO:
-    """The stream of a gzip file's bytes.
+    """Return the stream of a gzip file's bytes.
 
     Args:
         data: the packed bytes.

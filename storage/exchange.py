@@ -30,7 +30,7 @@ def away(folder: Path) -> Path:
 
 
 def _real(folder: Path) -> Path:
-    """The folder that a link leads to: the link stays."""
+    """Return the folder that a link leads to: the link stays."""
     return folder.resolve() if folder.is_symlink() else folder
 
 

@@ -127,7 +127,7 @@ def _update(fs: Any, infos: dict[str, dict[str, Any]], copy: Path, check: bool =
 
 
 def _said(manifest: Path) -> dict[str, tuple[Any, Any]]:
-    """The size and digest of each file by a manifest; nothing of files with other entries."""
+    """Return the size and digest of each file by a manifest; nothing of files with other entries."""
     content = read_json(manifest)
     files = content.get("files") if isinstance(content, dict) else None
     entries = files.items() if isinstance(files, dict) else ()
@@ -135,7 +135,7 @@ def _said(manifest: Path) -> dict[str, tuple[Any, Any]]:
 
 
 def _versions(infos: dict[str, dict[str, Any]]) -> dict[str, str]:
-    """The version of each file that is not hidden."""
+    """Return the version of each file that is not hidden."""
     return {name: _version(info) for name, info in sorted(infos.items()) if not name.rsplit("/", 1)[-1].startswith(".")}
 
 
@@ -146,7 +146,7 @@ def _version(info: dict[str, Any]) -> str:
 
 @lru_cache(maxsize=1)
 def _temporary_folder(process: int) -> Path:
-    """A folder of this process, closed to others and removed when it ends, for copies that are only read."""
+    """Return a folder of this process, closed to others and removed when it ends, for copies that are only read."""
     folder = Path(tempfile.mkdtemp(prefix="hearth-"))
     atexit.register(_remove, folder, process)
     return folder

@@ -71,7 +71,7 @@ def write_json(path: Path, value: Any) -> None:
 
 
 def read_json(path: Path) -> Any | None:
-    """The JSON of a file; None when it is absent, not a regular file, too large or not JSON."""
+    """Return the JSON of a file; None when it is absent, not a regular file, too large or not JSON."""
     try:
         return orjson.loads(read_input(path, LARGEST_JSON))
     except (HearthError, orjson.JSONDecodeError):
@@ -117,12 +117,12 @@ SERVED = ".server"
 
 
 def walk(folder: Path) -> Iterator[Path]:
-    """The files under a folder in the order of their names, hidden ones and links that leave it left out."""
+    """Yield the files under a folder in the order of their names, hidden ones and links that leave it left out."""
     return (path for path in _visible(folder) if path.is_file() and not _not_followed(path, folder))
 
 
 def links_not_followed(folder: Path) -> Iterator[Path]:
-    """The links under a folder that `walk` leaves out: those to folders, and those that leave it."""
+    """Yield the links under a folder that `walk` leaves out: those to folders, and those that leave it."""
     return (path for path in _visible(folder) if _not_followed(path, folder))
 
 

@@ -26,7 +26,7 @@ _INHERITED = ("/dev/stdin", "/dev/fd/")
 
 
 def read_input(path: Path, largest: int = LARGEST) -> bytes:
-    """The bytes of a file; `-` is standard input.
+    """Return the bytes of a file; `-` is standard input.
 
     Devices, sockets and named pipes are refused: they may never end, or never begin.
 
@@ -40,7 +40,7 @@ def read_input(path: Path, largest: int = LARGEST) -> bytes:
 
 
 def read_start(path: Path, count: int) -> bytes:
-    """The first bytes of a file, or all that it has.
+    """Return the first bytes of a file, or all that it has.
 
     Raises:
         HearthError: MISSING_FILE or UNSUPPORTED_FILE, as of `read_input`.
@@ -121,7 +121,7 @@ def _limited(data: bytes, name: str, largest: int) -> bytes:
 
 
 def load_yaml(path: Path) -> Any:
-    """The plain value of a YAML file.
+    """Return the plain value of a YAML file.
 
     Raises:
         HearthError: the file cannot be read, is not text or YAML, or holds too much.

@@ -53,12 +53,12 @@ class Manifest:
         write_json(self.folder / NAME, self.content)
 
     def intact(self) -> bool:
-        """Every file is there with the length it had."""
+        """Return whether every file is there with the length it had."""
         return all(_length(self.folder / name) == entry["bytes"] for name, entry in self.content["files"].items())
 
 
 def read_manifest(folder: Path) -> Manifest | None:
-    """The manifest of a complete stage; None where there is none, or one of another format."""
+    """Return the manifest of a complete stage; None where there is none, or one of another format."""
     content = read_json(folder / NAME)
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         return None
@@ -66,7 +66,7 @@ def read_manifest(folder: Path) -> Manifest | None:
 
 
 def describe(folder: Path, asked: dict[str, Any], inputs: dict[str, str], key: str, **facts: Any) -> Manifest:
-    """The manifest of a stage whose other files are all in place; `write` marks the stage as complete."""
+    """Return the manifest of a stage whose other files are all in place; `write` marks the stage as complete."""
     content = {
         "format": FORMAT,
         "version": VERSION,

@@ -97,7 +97,7 @@ AHEAD = 8
 def spread(
     function: Callable[[Job], Result], jobs: Iterable[Job], workers: int, seen: Seen = unseen
 ) -> Iterator[Result]:
-    """The results in the order of the jobs, for any number of workers.
+    """Yield the results in the order of the jobs, for any number of workers.
 
     Args:
         function: of a module, so that other processes find it.

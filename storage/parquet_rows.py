@@ -25,7 +25,7 @@ _HELD = 64 << 20
 def row_lists(
     file: Any, packed: int, name: str, columns: Sequence[str] | None = None
 ) -> Iterator[list[dict[str, Any]]]:
-    """The rows of an opened Parquet file, some at a time.
+    """Yield the rows of an opened Parquet file, some at a time.
 
     Args:
         file, packed, name, columns: those of `row_batches`.
@@ -43,7 +43,7 @@ def row_lists(
 
 
 def row_batches(file: Any, packed: int, name: str, columns: Sequence[str] | None = None) -> Iterator[Any]:
-    """The rows of an opened Parquet file as `pyarrow.RecordBatch`es.
+    """Yield the rows of an opened Parquet file as `pyarrow.RecordBatch`es.
 
     Args:
         file: a `pyarrow.parquet.ParquetFile`.

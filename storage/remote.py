@@ -17,7 +17,10 @@ _URL = re.compile(r"([a-z][a-z0-9+.-]+):/{1,2}(?=[^/])(.+)", re.DOTALL)
 
 
 def url_of(path: str | Path) -> str | None:
-    """The URL that a path is meant as, also where a `Path` has swallowed a slash of it; None for a plain path."""
+    """Return the URL that a path is meant as, also where a `Path` has swallowed a slash of it.
+
+    The result is None for a plain path.
+    """
     match = _URL.fullmatch(str(path))
     return f"{match[1]}://{match[2].rstrip('/')}" if match and len(match[1]) > 1 else None
 

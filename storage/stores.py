@@ -186,7 +186,7 @@ class Store:
         self._remove(there, known.keys() - here.keys())
 
     def _under(self, folder: str) -> dict[str, int]:
-        """The sizes of the files in a folder of the store."""
+        """Return the sizes of the files in a folder of the store."""
         return {name: info["size"] for name, info in listed(self._fs, self._path(folder)).items()}
 
     def _copy(self, source: str, target: str) -> None:
@@ -223,13 +223,13 @@ class Store:
 
 @lru_cache(maxsize=8)
 def store(url: str) -> Store:
-    """The store of that URL, one in a process."""
+    """Return the store of that URL, one in a process."""
     return Store(url)
 
 
 @contextmanager
 def working(out: str) -> Iterator[tuple[str, str, str]]:
-    """The local folder to build in, and URL and revision of the store it is a copy of; "" for a plain folder.
+    """Yield the local folder to build in, and URL and revision of the store it is a copy of; "" for a plain folder.
 
     Raises:
         HearthError: LOCKED, or the store cannot be reached.
@@ -244,7 +244,7 @@ def working(out: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _own_folder() -> Path:
-    """A folder of this user's for copies that builds work in.
+    """Return a folder of this user's for copies that builds work in.
 
     Raises:
         HearthError: UNWRITABLE: another user made it, or it is open to others.
@@ -277,5 +277,5 @@ def _is_plain(name: str) -> bool:
 
 
 def read_text(path: Path) -> str | None:
-    """A small file's text; None when it is not there."""
+    """Return a small file's text; None when it is not there."""
     return path.read_text("utf-8") if path.exists() else None

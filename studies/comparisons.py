@@ -92,7 +92,7 @@ LARGEST_T = 200.0
 
 
 def effect_interval(t: float, pairs: int) -> tuple[float | None, float | None]:
-    """The interval of Cohen's d of pairs: of which true values the observed t is neither too high nor too low.
+    """Return the interval of Cohen's d of pairs: of which true values the observed t is neither too high nor too low.
 
     None for both where t is beyond `LARGEST_T`.
     """
@@ -125,14 +125,17 @@ def normality(values: Sequence[float]) -> tuple[float | None, float | None]:
 
 
 def signed_rank(values: Sequence[float]) -> float | None:
-    """The p of Wilcoxon's signed-rank test, two-tailed."""
+    """Return the p of Wilcoxon's signed-rank test, two-tailed."""
     from scipy import stats
 
     return float(stats.wilcoxon(values).pvalue) if any(values) else None
 
 
 def interval(values: Sequence[float]) -> tuple[Mean, float]:
-    """The mean with its standard error, and half the width of its interval by the t distribution; 0 of one value."""
+    """Return the mean with its standard error, and half the width of its interval by the t distribution.
+
+    The width is 0 for one value.
+    """
     from scipy import stats
 
     found = mean(values)

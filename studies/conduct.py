@@ -144,11 +144,11 @@ class Conduct:
         return Standing(person, place, stage, number, events)
 
     def trial(self, standing: Standing) -> Planned:
-        """The trial that is to come, or whose questions are asked."""
+        """Return the trial that is to come, or whose questions are asked."""
         return self.slots[standing.place][standing.number]
 
     def condition(self, standing: Standing) -> Condition:
-        """The condition of that trial."""
+        """Return the condition of that trial."""
         return self.study.condition(self.trial(standing).condition)
 
     def questions(self, standing: Standing) -> tuple[Question, ...]:
@@ -158,21 +158,21 @@ class Conduct:
         return self.study.asked(self.condition(standing)) if standing.stage == QUESTIONS else ()
 
     def consent(self, person: str) -> Standing:
-        """A person agrees to take part."""
+        """Record that a person agrees to take part."""
         return self._go_on(person, CONSENT, "consented", {})
 
     def read(self, person: str) -> Standing:
-        """A person has read the tutorial."""
+        """Record that a person has read the tutorial."""
         return self._go_on(person, TUTORIAL, "read", {})
 
     def practised(self, person: str) -> Standing:
-        """A person has done a practice trial."""
+        """Record that a person has done a practice trial."""
         return self._go_on(person, PRACTICE, "practised", {})
 
     def played(
         self, person: str, record: Mapping[str, Any], seconds: float = 0.0, times: Sequence[float] = ()
     ) -> Standing:
-        """A person has played a trial.
+        """Record that a person has played a trial.
 
         Args:
             person: who.
@@ -190,12 +190,12 @@ class Conduct:
         return self._append(standing, "did", {**_named(planned), "seconds": seconds, **kept, "record": data})
 
     def watched(self, person: str, seconds: float = 0.0) -> Standing:
-        """A person has watched a film."""
+        """Record that a person has watched a film."""
         standing = self._expected(person, TRIAL)
         return self._append(standing, "did", {**_named(self.trial(standing)), "seconds": seconds})
 
     def answer(self, person: str, answers: Mapping[str, Any]) -> Standing:
-        """A person answers the questions after a trial, or those at the end.
+        """Record that a person answers the questions after a trial, or those at the end.
 
         Raises:
             HearthError: BAD_ARGUMENT: there is no question, an answer is lacking, or one is not of its question.

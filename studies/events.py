@@ -44,10 +44,10 @@ class Ledger(Protocol):
     """The storage of events; `study_store` of the server keeps them in a database, `FileLedger` in a file."""
 
     def streams(self) -> list[str]:
-        """The streams of people, in the order in which they began."""
+        """Return the streams of people, in the order in which they began."""
 
     def read(self, stream: str) -> list[Event]:
-        """The events of a stream, in order."""
+        """Return the events of a stream, in order."""
 
     def append(self, event: Event) -> bool:
         """Keep an event, on the disk when it returns; False, and nothing kept, if another has its number."""
@@ -56,11 +56,14 @@ class Ledger(Protocol):
         """Delete a person's events, and the person's id in the stream of places."""
 
     def secret(self, name: str) -> str:
-        """A random text of this study, made when it is first asked for; of a simulation, derived from its seed."""
+        """Return a random text of this study, made when it is first asked for.
+
+        A simulation derives it from its seed.
+        """
 
 
 def redacted(event: Event, stream: str) -> Event:
-    """An event of the places without a person's id."""
+    """Return an event of the places without a person's id."""
     if event.data.get("person") != stream:
         return event
     return Event(event.stream, event.number, event.kind, event.at, {**event.data, "person": ""})
@@ -79,11 +82,11 @@ class MemoryLedger:
         self.salt = salt
 
     def streams(self) -> list[str]:
-        """The streams of people."""
+        """Return the streams of people."""
         return [each for each in self.events if each != PLACES]
 
     def read(self, stream: str) -> list[Event]:
-        """The events of a stream."""
+        """Return the events of a stream."""
         return list(self.events.get(stream, ()))
 
     def _next(self, event: Event) -> bool:
@@ -103,7 +106,7 @@ class MemoryLedger:
         self.events[PLACES] = [redacted(each, stream) for each in self.events[PLACES]]
 
     def secret(self, name: str) -> str:
-        """The salt that it was made with."""
+        """Return the salt that it was made with."""
         self.salt = self.salt or secrets.token_hex(16)
         return salted(self.salt, name)
 
@@ -157,12 +160,12 @@ class FileLedger(MemoryLedger):
 
 
 def event_data(event: Event) -> dict[str, Any]:
-    """An event as JSON."""
+    """Return an event as JSON."""
     return {"stream": event.stream, "number": event.number, "kind": event.kind, "at": event.at, "data": event.data}
 
 
 def event_of(line: bytes, file: str, number: int) -> Event:
-    """An event of a line.
+    """Return an event of a line.
 
     Raises:
         HearthError: BAD_JSON: it is not one.
@@ -178,7 +181,7 @@ def event_of(line: bytes, file: str, number: int) -> Event:
 
 
 def header_of(path: Path) -> dict[str, Any]:
-    """The first line of a file of events.
+    """Return the first line of a file of events.
 
     Raises:
         HearthError: MISSING_FILE; BAD_JSON.

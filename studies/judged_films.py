@@ -126,7 +126,7 @@ def of_episodes(
 
 
 def goal_in_words(study: Study, task_id: str) -> str:
-    """A task's goal as its judges read it: each predicate with its count."""
+    """Return a task's goal as its judges read it: each predicate with its count."""
     task = next(each for each in tasks_of(study) if each.id == task_id)
     grammar = challenge(task.challenge).grammar
     titles = " and ".join(grammar.sets[name].asked for name in task.sets)
@@ -134,7 +134,7 @@ def goal_in_words(study: Study, task_id: str) -> str:
 
 
 def read_films(path: Path) -> tuple[JudgedFilm, ...]:
-    """The films of a study's folder.
+    """Return the films of a study's folder.
 
     Raises:
         HearthError: MISSING_FILE: they were not prepared; BAD_JSON with the number of the film.

@@ -135,7 +135,7 @@ def simulate(
 
 
 def play_ahead(ahead: Ahead) -> dict[str, Any]:
-    """The record of a trial that a simulated person does."""
+    """Return the record of a trial that a simulated person does."""
     import orjson
 
     record = played(job_of(ahead.study, ahead.planned, ahead.known, ahead.person))

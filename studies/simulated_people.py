@@ -35,12 +35,12 @@ class SimulatedPerson:
     bias: float
 
     def __call__(self) -> Faulty:
-        """A new agent for an episode."""
+        """Return a new agent for an episode."""
         return Faulty(self.faults)
 
 
 def simulated_person(seed: int, number: int) -> SimulatedPerson:
-    """The person of a number; equal for equal seeds."""
+    """Return the person of a number; equal for equal seeds."""
     chooser = rng(seed, "simulated person", number)
     faults = Faults(
         rationality=round(chooser.uniform(0.5, 3.0), 4),
@@ -74,7 +74,7 @@ class Impression:
 
 
 def answers(person: SimulatedPerson, asked: tuple[Question, ...], seen: Impression, chooser: Random) -> dict[str, Any]:
-    """The answers of a simulated person."""
+    """Return the answers of a simulated person."""
     return {each.name: _answer(person, each, seen, chooser) for each in asked}
 
 

@@ -213,7 +213,7 @@ class Study:
 
     @property
     def items(self) -> int:
-        """The number of tasks, or of programs."""
+        """Return the number of tasks, or of programs."""
         if self.tasks is not None:
             return self.tasks.number
         assert self.films is not None
@@ -221,13 +221,13 @@ class Study:
 
     @property
     def trials(self) -> int:
-        """All trials that count."""
+        """Return all trials that count."""
         return self.items * len(self.conditions) * self.repeats
 
     def condition(self, name: str) -> Condition:
-        """A condition by name."""
+        """Return a condition by name."""
         return next(each for each in self.conditions if each.name == name)
 
     def asked(self, condition: Condition) -> tuple[Question, ...]:
-        """The questions after a trial under a condition."""
+        """Return the questions after a trial under a condition."""
         return tuple(each for each in self.questions if each.after == "trial" or condition.helped)

@@ -42,7 +42,7 @@ def draw(number: str, found: Findings, alone: Findings | None, folder: Path) -> 
 
 
 def own_figure(study: str) -> str:
-    """The number of a study's figure; "" where it has none of its own."""
+    """Return the number of a study's figure; "" where it has none of its own."""
     return next((number for number, name in STUDIES.items() if name == study), "")
 
 
@@ -94,7 +94,7 @@ def _point(axes: Any, found: Findings, who: str, name: str, title: str) -> None:
 
 
 def _bars(axes: Any, groups: list[tuple[Findings, str, str]], metric: str, names: Mapping[str, str]) -> None:
-    """A bar of each condition for people and one for the agent, with standard errors."""
+    """Draw a bar of each condition for people and one for the agent, with standard errors."""
     for offset, (who, label) in zip((-WIDTH / 2, WIDTH / 2), names.items(), strict=True):
         figures = [found.figure(who, name, metric) for found, name, _ in groups]
         there = [(place, each) for place, each in enumerate(figures) if each is not None]

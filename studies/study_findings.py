@@ -35,7 +35,7 @@ class Figure:
 
 
 def figure_of(values: Mapping[Any, float]) -> Figure | None:
-    """The figure of values by task or film; None of no values."""
+    """Return the figure of values by task or film; None of no values."""
     if not values:
         return None
     found, half = interval(list(values.values()))
@@ -69,7 +69,7 @@ class Findings:
     helper_faults: dict[str, int] = field(default_factory=dict)
 
     def figure(self, who: str, group: str, metric: str) -> Figure | None:
-        """A figure by who, condition and metric."""
+        """Return a figure by who, condition and metric."""
         return figure_of(self.values.get((who, group, metric), {}))
 
     @property
@@ -122,7 +122,7 @@ def _by_condition(rows: Rows) -> dict[str, Outcomes]:
 def _alone(
     people: Mapping[str, Outcomes], results: Mapping[str, Results], other: Collected | None
 ) -> tuple[Outcomes, str]:
-    """The outcomes without a helper, and in words whose they are."""
+    """Return the outcomes without a helper, and in words whose they are."""
     if other is not None:
         name = next(each.name for each in other.study.conditions if not each.helped)
         return _by_condition(Rows(other))[name], f"people alone ({other.study.name})"
@@ -156,7 +156,7 @@ def _ratings(rows: Rows) -> dict[tuple[str, str, str], dict[Any, float]]:
 
 
 def scales(study: Study) -> list[str]:
-    """The names of the questions after trials that are answered by numbers."""
+    """Return the names of the questions after trials that are answered by numbers."""
     return [each.name for each in study.questions if each.kind == "scale"]
 
 

@@ -31,7 +31,7 @@ EVENTS, FILMS, REFERENCES = "events.jsonl", "films.json", "references"
 
 
 def header(study: Study, seed: int, drop_outs: int) -> dict[str, Any]:
-    """The first line of a simulation's events; the study's whole text is in it."""
+    """Return the first line of a simulation's events; the study's whole text is in it."""
     return {"format": FORMAT, "study": study.text, "simulated": {"seed": seed, "drop_outs": drop_outs}}
 
 
@@ -51,12 +51,12 @@ class Collected:
 
     @property
     def study(self) -> Study:
-        """The design."""
+        """Return the design."""
         return self.conduct.study
 
     @property
     def ledger(self) -> Ledger:
-        """The events."""
+        """Return the events."""
         return self.conduct.ledger
 
     def records(self, finished: bool = True) -> dict[str, list[Record]]:
@@ -71,7 +71,7 @@ class Collected:
 
 
 def opened(folder: Path, known: Known) -> Collected:
-    """The simulated study of a folder.
+    """Return the simulated study of a folder.
 
     Raises:
         HearthError: MISSING_FILE; BAD_JSON; every fault of the study.
@@ -97,7 +97,7 @@ def beside(collected: Collected) -> Collected | None:
 
 
 def related(study: Study, files: Path | None) -> Study | None:
-    """The study whose people another one needs: whom it films, or whose lengths are those alone.
+    """Return the study whose people another one needs: whom it films, or whose lengths are those alone.
 
     Args:
         study: the other one.
@@ -150,7 +150,7 @@ def references(
 
 
 def references_of(collected: Collected) -> dict[str, Results]:
-    """The references that a study's folder has."""
+    """Return the references that a study's folder has."""
     if collected.folder is None:
         return {}
     paths = sorted((collected.folder / REFERENCES).glob("*.jsonl"))

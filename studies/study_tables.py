@@ -65,7 +65,7 @@ def archive(collected: Collected) -> bytes:
 
 
 def columns_in_words() -> str:
-    """The meaning of every column."""
+    """Return the meaning of every column."""
     lines = []
     for name, schema in TABLES.items():
         lines += [f"{name}: {comment_of(schema)}", *(f"  {each.name}: {comment_of(each)}" for each in schema), ""]
@@ -73,7 +73,7 @@ def columns_in_words() -> str:
 
 
 def tables(collected: Collected) -> dict[str, pa.Table]:
-    """The tables by name."""
+    """Return the tables by name."""
     rows = Rows(collected)
     every: dict[str, Iterator[Mapping[str, Any]]] = {
         "participants": rows.participants(),
@@ -102,7 +102,7 @@ class Rows:
         return {"study": self.study.name, "participant": participant, "simulated": self.collected.simulated}
 
     def participants(self) -> Iterator[Mapping[str, Any]]:
-        """A row for everybody."""
+        """Yield a row for everybody."""
         for standing in self.standings:
             did = _of_kind(standing, "did")
             left = [each.data["why"] for each in _of_kind(standing, "left")]
@@ -118,7 +118,7 @@ class Rows:
             }
 
     def trials(self) -> Iterator[Mapping[str, Any]]:
-        """A row for every trial."""
+        """Yield a row for every trial."""
         for standing in self.standings:
             for number, event in enumerate(_of_kind(standing, "did")):
                 data = event.data
@@ -162,7 +162,7 @@ class Rows:
                         }
 
     def ratings(self) -> Iterator[Mapping[str, Any]]:
-        """A row for every answer."""
+        """Yield a row for every answer."""
         for standing in self.standings:
             for number, event in enumerate(_of_kind(standing, "answered")):
                 yield from self._answers(standing, event, number)
@@ -200,7 +200,7 @@ def _of_kind(standing: Standing, kind: str) -> list[Event]:
 
 
 def _trial_of(standing: Standing, item: int, condition: str) -> int:
-    """The number of the trial with a task under a condition; a person has it once."""
+    """Return the number of the trial with a task under a condition; a person has it once."""
     did = _of_kind(standing, "did")
     return next(n for n, each in enumerate(did) if (each.data["item"], each.data["condition"]) == (item, condition))
 

@@ -27,13 +27,13 @@ from hearth.studies.study import Condition, Study, Tasks
 
 @lru_cache(maxsize=16)
 def suite_of(tasks: Tasks) -> Suite:
-    """The tasks of a study."""
+    """Return the tasks of a study."""
     found = published_tasks.tasks(tasks.challenge, tasks.split, limit=tasks.number)
     return Suite(tasks.challenge, tasks.split, published_tasks.PUBLISHED, found)
 
 
 def tasks_of(study: Study) -> tuple[Task, ...]:
-    """The tasks of a study whose people play, or whose films show people and agents.
+    """Return the tasks of a study whose people play, or whose films show people and agents.
 
     Raises:
         HearthError: BAD_ARGUMENT: it has none.
@@ -44,7 +44,7 @@ def tasks_of(study: Study) -> tuple[Task, ...]:
 
 
 def practice_task(study: Study, number: int) -> Task:
-    """A task that does not count, in a home of training."""
+    """Return a task that does not count, in a home of training."""
     assert study.tasks is not None
     return published_tasks.tasks(study.tasks.challenge, "train", limit=number + 1)[number]
 
@@ -65,8 +65,10 @@ def lineup_of(condition: Condition) -> Lineup:
 
 
 def job_of(study: Study, planned: Planned, known: Known, make: Callable[[], MainAgent] | None = None) -> Job:
-    """A trial as an episode; its number among the task's episodes is its repeat, so that a helper with a random goal
-    has the one that it has with the human-like agent (thesis 6.6).
+    """Return a trial as an episode.
+
+    Its number among the task's episodes is its repeat, so that a helper with a random goal has the one that it has with
+    the human-like agent (thesis 6.6).
 
     Args:
         study: of the trial.
@@ -112,7 +114,7 @@ def checked(study: Study, planned: Planned, given: Mapping[str, Any], knowledge:
 
 
 def record_of(data: Mapping[str, Any]) -> Record:
-    """The record of a checked trial.
+    """Return the record of a checked trial.
 
     Raises:
         HearthError: BAD_JSON: it is none.

@@ -60,5 +60,5 @@ class Rate:
 
 
 def usual_rates() -> dict[str, Rate]:
-    """The limits of `RATES`, with nothing counted yet."""
+    """Return the limits of `RATES`, with nothing counted yet."""
     return {name: Rate(each_second, burst) for name, (each_second, burst) in RATES.items()}

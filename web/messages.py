@@ -49,7 +49,7 @@ _NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
 
 
 def json_object(raw: str | bytes, place: str) -> dict[str, Any]:
-    """A JSON object of a stranger.
+    """Return a JSON object of a stranger.
 
     Raises:
         WebError: BAD_JSON.
@@ -70,7 +70,7 @@ def _kind(value: object) -> str:
 
 
 def text_field(message: dict[str, Any], name: str, most: int = 1_000) -> str:
-    """A field that is a text of at most `most` characters.
+    """Return a field that is a text of at most `most` characters.
 
     Raises:
         WebError: BAD_ARGUMENT.
@@ -83,7 +83,7 @@ def text_field(message: dict[str, Any], name: str, most: int = 1_000) -> str:
 
 
 def int_field(message: dict[str, Any], name: str, least: int, most: int) -> int:
-    """A field that is a whole number from `least` to `most`.
+    """Return a field that is a whole number from `least` to `most`.
 
     Raises:
         WebError: BAD_ARGUMENT.

@@ -46,17 +46,17 @@ class Address:
 
 
 def get(path: str, handler: Handler, who: Who = Who.PERSON) -> Address:
-    """An address that is read."""
+    """Return an address that is read."""
     return Address("GET", path, handler, who)
 
 
 def post(path: str, handler: Handler, who: Who = Who.PERSON, most: int = MOST_BODY) -> Address:
-    """An address that changes something."""
+    """Return an address that changes something."""
     return Address("POST", path, handler, who, most)
 
 
 def socket(path: str, handler: Callable[[Any], Awaitable[None]]) -> Address:
-    """The address of a socket; its handler gets a `Link` of `web/link.py`."""
+    """Return the address of a socket; its handler gets a `Link` of `web/link.py`."""
     return Address("SOCKET", path, handler)
 
 

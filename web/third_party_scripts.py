@@ -63,7 +63,7 @@ REMEDY = "run `make web` (it needs npm)" if CHECKOUT.is_file() else "install a w
 
 
 def missing() -> list[str]:
-    """The libraries that are not there."""
+    """Return the libraries that are not there."""
     return [name for name, script in THIRD_PARTY.items() if not (FETCHED / name / script.files[0]).is_file()]
 
 

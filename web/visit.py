@@ -75,12 +75,12 @@ class Visit:
 
     @property
     def person(self) -> str:
-        """The id of the session, on addresses of persons."""
+        """Return the id of the session, on addresses of persons."""
         assert self.session is not None
         return self.session.id
 
     def part(self, name: str) -> str:
-        """A part of the address that its route names: `/annotate/{task}`.
+        """Return a part of the address that its route names: `/annotate/{task}`.
 
         Raises:
             WebError: BAD_ARGUMENT, if it has a NUL character, which databases refuse.
@@ -91,7 +91,7 @@ class Visit:
         return value
 
     def json(self) -> dict[str, Any]:
-        """The body as a JSON object.
+        """Return the body as a JSON object.
 
         Raises:
             WebError: BAD_JSON.
@@ -99,7 +99,7 @@ class Visit:
         return json_object(self.body, "body")
 
     def field(self, name: str, most: int = 5_000) -> str:
-        """A field of the form; "" if it did not come.
+        """Return a field of the form; "" if it did not come.
 
         Raises:
             WebError: BAD_ARGUMENT, if it is longer than `most`.
@@ -112,11 +112,11 @@ class Visit:
         return value
 
     def page(self, template: str, status: int = 200, **values: Any) -> Response:
-        """A page from a template of `web/templates/`; all values are escaped."""
+        """Return a page from a template of `web/templates/`; all values are escaped."""
         return HTMLResponse(render(self.web, template, self.session, **values), status)
 
     def answer(self, value: Any, status: int = 200) -> Response:
-        """A JSON document; dataclasses are converted."""
+        """Return a JSON document; dataclasses are converted."""
         return json_answer(value, status)
 
     def go(self, address: str) -> Response:
@@ -134,11 +134,11 @@ Handler = Callable[[Visit], Response]
 
 
 def render(web: Web, template: str, session: Session | None, **values: Any) -> str:
-    """The HTML of a template."""
+    """Return the HTML of a template."""
     return web.templates.get_template(template).render(session=session, **values)
 
 
 def json_answer(value: Any, status: int = 200) -> Response:
-    """A JSON document as an answer."""
+    """Return a JSON document as an answer."""
     options = orjson.OPT_NON_STR_KEYS | orjson.OPT_SERIALIZE_NUMPY
     return Response(orjson.dumps(value, option=options), status, media_type="application/json")

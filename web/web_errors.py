@@ -43,11 +43,11 @@ class WebError(Exception):
 
     @property
     def status(self) -> int:
-        """The HTTP status of its answer."""
+        """Return the HTTP status of its answer."""
         return STATUS.get(self.code, 400)
 
     def as_json(self) -> dict[str, Any]:
-        """The answer's body, as documented in web/README.md."""
+        """Return the answer's body, as documented in web/README.md."""
         facts = {"code": str(self.code), "place": self.place, "expected": self.expected, "actual": self.actual}
         return {"error": facts}
 

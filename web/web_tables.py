@@ -19,6 +19,6 @@ SESSIONS = sql.Table(
 
 
 def owner() -> sql.Column[str]:
-    """The column of a room's table for the session that a row belongs to; the row goes when the session goes."""
+    """Return the column of a room's table for the session that a row belongs to; the row goes when the session goes."""
     key = sql.ForeignKey("sessions.id", ondelete="CASCADE")
     return sql.Column("session", sql.Text, key, nullable=False, index=True)

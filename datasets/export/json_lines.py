@@ -54,7 +54,7 @@ def csv(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def tables(wanted: Wanted) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Every table with the query of its rows, all or those of the wanted programs, and its parameters."""
+    """Yield every table with the query of its rows, all or those of the wanted programs, and its parameters."""
     chosen, asked = wanted.chosen()
     for table in TABLES:
         where = _WHERE.get(table, "").format(chosen=chosen) if wanted.some else ""

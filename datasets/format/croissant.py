@@ -109,7 +109,7 @@ def _within(table: str, kind: pa.StructType, path: str) -> list[dict[str, Any]]:
 
 
 def _place(table: str, kind: pa.StructType, path: str) -> dict[str, Any]:
-    """The objects that the steps of a list have in one place; empty where a step has fewer."""
+    """Return the objects that the steps of a list have in one place; empty where a step has fewer."""
     place = path[path.rindex("[") + 1 : -1]
     meaning = f"Of each entry, the object in place {place}, from 0; empty where there are fewer."
     return {**_head(table, path, place, meaning, True), "subField": _within(table, kind, path)}

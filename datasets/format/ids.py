@@ -23,13 +23,13 @@ def current_id(name: str) -> str:
 
 
 def names_of(name: str) -> tuple[str, ...]:
-    """An id as it is, as this version has it, and as 0.1 had it."""
+    """Return an id as it is, as this version has it, and as 0.1 had it."""
     return tuple(dict.fromkeys((name, current_id(name), re.sub(OURS, r"crowd\1", name))))
 
 
 @lru_cache(maxsize=10_000)
 def activity_id(title: str) -> str:
-    """The activity id of a title: lower case, words joined by underscores."""
+    """Return the activity id of a title: lower case, words joined by underscores."""
     return "_".join(re.findall(r"[^\W_]+", title.lower())) or "untitled"
 
 

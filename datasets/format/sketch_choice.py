@@ -13,7 +13,7 @@ _KINDS = {ANNOTATED: _PEOPLE, INFERRED: f"NOT ({_PEOPLE})"}
 
 
 def sketches_query(kind: str = ANNOTATED) -> str:
-    """A query of `program_id` and `keep`: the sketch of each program; one of the kind goes before others.
+    """Return a query of `program_id` and `keep`: the sketch of each program; one of the kind goes before others.
 
     Raises:
         HearthError: BAD_ARGUMENT, for another kind.

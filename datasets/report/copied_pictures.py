@@ -53,7 +53,7 @@ def copy_pictures(dataset: Dataset, to: Path) -> None:
 
 
 def _source(dataset: Dataset, name: str) -> Path | None:
-    """The file of that name in a dataset; None where it is not a file in it, or not a picture."""
+    """Return the file of that name in a dataset; None where it is not a file in it, or not a picture."""
     try:
         path = inside(dataset.folder, name)
     except HearthError:

@@ -27,7 +27,7 @@ class Plan:
 
 
 def plans(dataset: Dataset) -> list[Plan]:
-    """Every home, by name."""
+    """Return every home, by name."""
     _, rows = dataset.rows("SELECT home, rooms, nodes FROM homes ORDER BY home")
     return [
         Plan(home, ", ".join(rooms).replace("_", " "), nodes, draw(dataset.home(home).nodes))
@@ -36,7 +36,7 @@ def plans(dataset: Dataset) -> list[Plan]:
 
 
 def draw(nodes: tuple[Node, ...]) -> str:
-    """A floor plan in metres: rooms with their names, furniture as boxes; z points up the page."""
+    """Return a floor plan in metres: rooms with their names, furniture as boxes; z points up the page."""
     rooms = [(node, node.box) for node in nodes if node.category == "Rooms" and node.box]
     if not rooms:
         return ""
@@ -112,7 +112,7 @@ def _overlap(one: Rectangle, other: Rectangle) -> bool:
 
 
 def _furniture(nodes: tuple[Node, ...]) -> Iterator[tuple[Node, Rectangle]]:
-    """The things that are large enough to be drawn, and where, the largest first."""
+    """Yield the things that are large enough to be drawn, and where, the largest first."""
     drawn = [(node, _rectangle(node.box)) for node in nodes if node.box and node.category not in _SHELL]
     for node, at in sorted(drawn, key=lambda each: -each[1][2] * each[1][3]):
         if at[2] * at[3] >= _SMALLEST and node.category != "Doors":

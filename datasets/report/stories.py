@@ -114,7 +114,7 @@ class _Home:
                 self.edges[edge.target].add(edge)
 
     def around(self, shown: set[int], environment: DifferenceRow) -> WorkingGraph:
-        """The nodes in `shown` at the start, and their edges."""
+        """Return the nodes in `shown` at the start, and their edges."""
         edges = (edge for node in shown for edge in self.edges.get(node, ()))
         graph = WorkingGraph((self.nodes[node] for node in shown & self.nodes.keys()), edges)
         change = replace(
@@ -177,7 +177,7 @@ def _repair(row: RepairRow) -> Row:
 
 
 def _differing(before: list[str], after: list[str]) -> tuple[list[str], list[str]]:
-    """The lines that a repair removes and adds."""
+    """Return the lines that a repair removes and adds."""
     pairs = [
         (before[i:j], after[k:n])
         for tag, i, j, k, n in SequenceMatcher(None, before, after, autojunk=False).get_opcodes()

@@ -48,7 +48,7 @@ class Affordances:
         self._known: dict[tuple[str, int], int] = {}
 
     def __call__(self, action: str, position: int) -> int:
-        """The nodes, as a bit set."""
+        """Return the nodes, as a bit set."""
         key = action, position
         mask = self._known.get(key)
         if mask is None:
@@ -97,7 +97,7 @@ class Options:
         return len({*nodes}) == len(nodes) and all(mask >> node & 1 for mask, node in zip(masks, nodes, strict=True))
 
     def without(self, actions: Container[str], repeated: Iterable[tuple[str, int]] = ()) -> Options:
-        """The options without these actions, and without these objects in the first place of an action."""
+        """Return the options without these actions, and without these objects in the first place of an action."""
         masks = {name: found for name, found in self.masks.items() if name not in actions}
         for name, node in repeated:
             if name in masks and node == NONE:
@@ -110,7 +110,7 @@ class Options:
 
     @cached_property
     def firsts(self) -> int:
-        """The nodes that some action takes as its first object."""
+        """Return the nodes that some action takes as its first object."""
         found = 0
         for masks in self.masks.values():
             if masks:
@@ -118,7 +118,7 @@ class Options:
         return found
 
     def actions(self, chosen: Partial) -> list[str]:
-        """The actions that agree with the chosen first object, in alphabetical order."""
+        """Return the actions that agree with the chosen first object, in alphabetical order."""
         if chosen.first is None:
             return sorted(self.masks)
         if chosen.first == NONE:

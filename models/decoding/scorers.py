@@ -74,7 +74,7 @@ class Scorer(Protocol):
         """The state of each program before its first step, from the world at its start and the model's own input."""
 
     def score(self, asked: Sequence[Asked], part: Part) -> Sequence[Scores]:
-        """The scores of the next part of each program."""
+        """Return the scores of the next part of each program."""
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> Sequence[Any]:
-        """The state of each program after a step; `asked` has the world after it."""
+        """Return the state of each program after a step; `asked` has the world after it."""

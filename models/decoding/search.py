@@ -134,7 +134,7 @@ class _Decoder:
     # Choosing the parts of the next step
 
     def _level(self, beams: list[list[_Draft]], part: Part) -> list[list[_Draft]]:
-        """All programs after the choice of one part."""
+        """Return all programs after the choice of one part."""
         open_ = [draft for beam in beams for draft in beam if self._needs(draft, part)]
         if not open_:
             return beams
@@ -153,7 +153,7 @@ class _Decoder:
         return True
 
     def _kept(self, beam: list[_Draft], found: dict[int, list[Choice]]) -> list[_Draft]:
-        """The best drafts of a beam, or random ones; those that this part is not for stay as they are."""
+        """Return the best drafts of a beam, or random ones; those that this part is not for stay as they are."""
         choices = [c for draft in beam for c in found.get(id(draft), [(draft.score, draft)])]
         if len(choices) > self.search.beam:
             scores = np.array([score for score, _ in choices])
@@ -181,7 +181,7 @@ class _Decoder:
         return [min(int(np.searchsorted(total, self.starts[row].random.random() * total[-1])), len(values) - 1)]
 
     def _allowed(self, draft: _Draft, part: Part, scores: Scores) -> np.ndarray:
-        """The places in `scores.values` that may be chosen."""
+        """Return the places in `scores.values` that may be chosen."""
         count = len(scores.values)
         if draft.options is None:
             return np.arange(count)
@@ -204,7 +204,7 @@ class _Decoder:
         return np.array(places, dtype=np.int64)
 
     def _with(self, draft: _Draft, part: Part, place: int, scores: Scores) -> _Draft:
-        """The draft with one more part."""
+        """Return the draft with one more part."""
         if part is self.scorer.order[0] and place == len(scores.values) - 1:
             return replace(draft, ended=True, chosen=NOTHING)
         if part is Part.STEP:
@@ -218,7 +218,7 @@ class _Decoder:
     # Doing the step
 
     def _done(self, beams: list[list[_Draft]]) -> list[list[_Draft]]:
-        """All programs after the chosen step."""
+        """Return all programs after the chosen step."""
         flat = [draft if draft.ended else self._after(draft) for beam in beams for draft in beam]
         going = [draft for draft in flat if draft.steps and not draft.ended]
         states = self.scorer.advance([draft.asked() for draft in going], [draft.steps[-1] for draft in going])

@@ -106,7 +106,7 @@ def above(masks: NDArray[np.uint16], colours: NDArray[np.uint8], person: int, wh
 
 
 def _middles(bodies: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """The middle (x, y) of the person in each picture; where it is not seen, that of the picture before."""
+    """Return the middle (x, y) of the person in each picture; where it is not seen, that of the picture before."""
     found = []
     last = bodies.shape[2] / 2, bodies.shape[1] / 2
     for body in bodies:
@@ -138,7 +138,7 @@ def _numbers(
     before: dict[int, float],
     person: int,
 ) -> tuple[tuple[NDArray[np.uint16], NDArray[np.float32]], dict[int, float]]:
-    """The classes of a picture with (K, NUMBERS) of each, and how near each class is, for the next picture.
+    """Return the classes of a picture with (K, NUMBERS) of each, and how near each class is, for the next picture.
 
     The numbers are: nearness; amount that touches the person; amount around the person; (x, y) of its nearest pixels;
     amounts that appeared and disappeared since the previous picture; nearness in that picture; growth since the first

@@ -66,7 +66,7 @@ def _filled(array: np.ndarray, longest: int) -> np.ndarray:
 
 
 def turn(seen: Above, way: int) -> Above:
-    """A demonstration seen from another side: one of eight, of which pictures that are not square have four.
+    """Return a demonstration seen from another side: one of eight, of which pictures that are not square have four.
 
     Args:
         seen: the demonstration.

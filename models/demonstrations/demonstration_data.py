@@ -61,7 +61,7 @@ class Demonstrations:
 
     @classmethod
     def of(cls, dataset: Dataset) -> Demonstrations:
-        """All that a dataset has.
+        """Return all that a dataset has.
 
         Raises:
             HearthError: UNKNOWN_ID, if there are none.
@@ -76,11 +76,11 @@ class Demonstrations:
         return cls(dataset, dict(rows), dataset.knowledge.objects["character"].id)
 
     def of_example(self, example: Example) -> str:
-        """The execution of an example's program that has a demonstration; "" if none has."""
+        """Return the execution of an example's program that has a demonstration; "" if none has."""
         return next((name for name in example.executions if name in self.files), "")
 
     def pictures(self, execution: str) -> Pictures:
-        """The pictures of an execution.
+        """Return the pictures of an execution.
 
         Raises:
             HearthError: DAMAGED_FILE, if its arrays differ from the table's facts.
@@ -108,7 +108,7 @@ class Demonstrations:
 
 
 def read_pictures(path: Path) -> Pictures:
-    """The pictures of a file, or of a folder with one.
+    """Return the pictures of a file, or of a folder with one.
 
     Raises:
         HearthError: MISSING_FILE; DAMAGED_FILE, if the file holds something else.
@@ -127,7 +127,7 @@ def is_demonstration(text: str) -> bool:
 
 
 def arrays(data: bytes, file: str) -> Pictures:
-    """The pictures of an .npz file as `rendering.film.pictures_from_above` stores them.
+    """Return the pictures of an .npz file as `rendering.film.pictures_from_above` stores them.
 
     Raises:
         HearthError: as of `film_array`.
@@ -145,6 +145,6 @@ def arrays(data: bytes, file: str) -> Pictures:
 
 
 def shown(demonstrations: Demonstrations, examples: Sequence[Example]) -> list[tuple[Example, str]]:
-    """The examples that have a demonstration, with its execution."""
+    """Return the examples that have a demonstration, with its execution."""
     found = ((each, demonstrations.of_example(each)) for each in examples)
     return [(each, name) for each, name in found if name]

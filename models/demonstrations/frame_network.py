@@ -64,7 +64,7 @@ class FrameBatch(NamedTuple):
 
     @property
     def mask(self) -> Tensor:
-        """(B, L) bool: whether there is a picture."""
+        """Return (B, L) bool: whether there is a picture."""
         device = self.classes.device
         return torch.arange(self.classes.shape[1], device=device) < self.lengths.to(device)[:, None]
 
@@ -91,7 +91,7 @@ class FrameMemory(NamedTuple):
     about: Tensor
 
     def rows(self, chosen: Tensor) -> FrameMemory:
-        """Some of the demonstrations."""
+        """Return some of the demonstrations."""
         return FrameMemory(*(part[chosen] for part in self))
 
 
@@ -115,7 +115,7 @@ class MaskNetwork(nn.Module):
         self.last = nn.Linear(32 * 16, SEEN)
 
     def forward(self, masks: Tensor, traits: Tensor) -> Tensor:
-        """(N, G, G) classes and (C, traits) -> (N, SEEN)."""
+        """Map (N, G, G) classes and (C, traits) to (N, SEEN)."""
         planes = self.colour(traits)[masks].permute(0, 3, 1, 2)
         return functional.relu(self.last(self.layers(planes)))
 
@@ -129,7 +129,7 @@ class ImageNetwork(nn.Module):
         self.last = nn.Linear(32 * 16, SEEN)
 
     def forward(self, colours: Tensor) -> Tensor:
-        """(N, 3, S, S) -> (N, SEEN)."""
+        """Map (N, 3, S, S) to (N, SEEN)."""
         return functional.relu(self.last(self.layers(colours)))
 
 
@@ -201,7 +201,7 @@ class FrameBody(Seq2SeqBody):
         return found * (batch.classes > 0)[..., None]
 
     def _frames(self, batch: FrameBatch, tokens: Tensor) -> Tensor:
-        """(B, L, width) of each picture; networks look at those that there are."""
+        """Return (B, L, width) of each picture; networks look at those that there are."""
         parts = []
         if self.facts:
             nearest = batch.numbers[..., :1]
@@ -214,7 +214,7 @@ class FrameBody(Seq2SeqBody):
         return torch.cat(parts, -1)
 
     def _mentioned(self, batch: FrameBatch, about: Tensor) -> Tensor:
-        """(B, L, C) for each class the most probable of the seen classes that may stand for it."""
+        """Return (B, L, C) for each class the most probable of the seen classes that may stand for it."""
         found = torch.zeros(*about.shape[:2], len(self.traits), device=about.device)
         for place in range(self.served.shape[1]):
             numbers = self.served[:, place][batch.classes]  # (B, L, K)
@@ -247,7 +247,7 @@ class FrameBody(Seq2SeqBody):
 
 
 def _spread(found: Tensor, real: Tensor) -> Tensor:
-    """(N, F) of the pictures that there are as (B, L, F)."""
+    """Return (N, F) of the pictures that there are as (B, L, F)."""
     return torch.zeros(*real.shape, found.shape[-1], device=found.device, dtype=found.dtype).masked_scatter(
         real[..., None], found
     )

@@ -94,7 +94,7 @@ def compared(
 def _scores(
     models: Sequence[Path | str], there: Demonstrations, test: Sequence[tuple[Example, str]], beam: int
 ) -> list[tuple[str, list[float]]]:
-    """The LCS of each model's sketches: those that read demonstrations first."""
+    """Return the LCS of each model's sketches: those that read demonstrations first."""
     found: dict[str, list[tuple[str, list[float]]]] = {"film": [], "text": []}
     for model in models:
         name, trained = restore(model)

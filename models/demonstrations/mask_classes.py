@@ -77,7 +77,7 @@ class MaskClasses:
 
     @cached_property
     def rows(self) -> NDArray[np.int64]:
-        """(65536,) the vocabulary's number of each class number; 0 for the background and for others."""
+        """Return (65536,) the vocabulary's number of each class number; 0 for the background and for others."""
         found = np.zeros(1 << 16, np.int64)
         found[list(self.ids)] = np.arange(1, len(self.ids) + 1)
         found[0] = 0
@@ -85,7 +85,10 @@ class MaskClasses:
 
     @cached_property
     def traits(self) -> NDArray[np.float32]:
-        """(classes, traits) whether a class has a property; the last is of people, the one before of all classes."""
+        """Return (classes, traits) whether a class has a property.
+
+        The last is of people, the one before of all classes.
+        """
         known = sorted({name for each in self.properties for name in each})
         found = np.zeros((len(self.ids), len(known) + 2), np.float32)
         for number, each in enumerate(self.properties):
@@ -96,7 +99,7 @@ class MaskClasses:
 
     @cached_property
     def served(self) -> NDArray[np.int64]:
-        """(classes + 1, MOST_SERVED) `serves` as an array; 0 fills up."""
+        """Return (classes + 1, MOST_SERVED) `serves` as an array; 0 fills up."""
         found = np.zeros((len(self.ids) + 1, MOST_SERVED), np.int64)
         for number, each in enumerate(self.serves, 1):
             found[number, : len(each)] = each

@@ -114,12 +114,12 @@ class ClassTable:
 
     @property
     def person(self) -> int:
-        """The number of people in masks."""
+        """Return the number of people in masks."""
         return self.ids[self.names.index(PERSON)]
 
     @cached_property
     def rows(self) -> NDArray[np.int64]:
-        """(65536,) the row of each class number; 0 is the background, whatever class has that number."""
+        """Return (65536,) the row of each class number; 0 is the background, whatever class has that number."""
         found = np.zeros(1 << 16, np.int64)
         found[list(self.ids)] = np.arange(1, len(self) + 1)
         found[0] = 0
@@ -127,7 +127,10 @@ class ClassTable:
 
     @cached_property
     def traits(self) -> NDArray[np.float32]:
-        """(rows, traits) whether a class has a property; the last is of people, the one before of all classes."""
+        """Return (rows, traits) whether a class has a property.
+
+        The last is of people, the one before of all classes.
+        """
         known = sorted({name for each in self.properties for name in each})
         found = np.zeros((len(self) + 1, len(known) + 2), np.float32)
         for number, each in enumerate(self.properties, 1):

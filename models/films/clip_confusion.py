@@ -32,7 +32,7 @@ class Confusion(NamedTuple):
 
 
 def confusion(dataset: Dataset, model: Path | str, homes: str = "all") -> Confusion:
-    """The confusion of a classifier by true masks.
+    """Return the confusion of a classifier by true masks.
 
     Args:
         dataset: with clips.
@@ -60,7 +60,7 @@ def of_pairs(pairs: Sequence[tuple[str, str]]) -> Confusion:
 
 
 def drawn(found: Confusion) -> str:
-    """The matrix as SVG, the true action at the left."""
+    """Return the matrix as SVG, the true action at the left."""
     cell, left, top = 44, 150, 110
     side = cell * len(found.actions)
     lines = []

@@ -97,13 +97,13 @@ class ClipModel(Settings):
             yield weights * len(wanted) / (weights * counts).sum()
 
     def network(self, labels: Labels) -> ClipNetwork:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         sizes = len(labels.actions), len(labels.objects) + 1
         return ClipNetwork(self.width, *sizes, self.dropout)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedClipModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         settings, labels = cls.of(checkpoint.settings), Labels.read(checkpoint.content["labels"])
         network = filled(lambda: settings.network(labels), checkpoint.weights).to(device())
         return TrainedClipModel(settings, labels, network, dict(checkpoint.trained))
@@ -119,7 +119,7 @@ class TrainedClipModel:
     facts: dict[str, Any] = field(default_factory=dict)
 
     def named(self, clips: Clips, relations: Iterable[Sequence[int]] = RELATIONS) -> list[Instruction]:
-        """The instruction that each clip is taken for: the most probable of training's."""
+        """Return the instruction that each clip is taken for: the most probable of training's."""
         best = self.scores(clips, relations).argmax(1)
         return [self.labels.instructions[number] for number in best.tolist()]
 
@@ -158,6 +158,6 @@ class TrainedClipModel:
         raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         return Checkpoint(NAME, asdict(self.settings), {"labels": self.labels.document()}, weights, self.facts)

@@ -31,7 +31,7 @@ class ClipProbabilities:
         return len(self.actions)
 
     def part(self, which: NDArray[np.int64]) -> ClipProbabilities:
-        """Some of the parts."""
+        """Return some of the parts."""
         return ClipProbabilities(self.actions[which], self.objects[which], self.lengths[which])
 
     def merged(self) -> ClipProbabilities:

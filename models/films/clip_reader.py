@@ -30,7 +30,7 @@ class ClipReader(nn.Module):
         self.register_buffer("traits", traits, persistent=False)
 
     def forward(self, clips: Tensor) -> Tensor:
-        """(B, L, A + 1 + 2 C) probabilities of actions, length, first and second objects -> (B, L, width)."""
+        """Map (B, L, A + 1 + 2 C) probabilities of actions, length, first and second objects to (B, L, width)."""
         learned = self.of_classes.weight
         if self.training:
             learned = learned * (torch.rand(len(learned), 1, device=learned.device) >= self.unnamed)

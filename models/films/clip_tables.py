@@ -91,7 +91,7 @@ class ClipRow(NamedTuple):
 
 
 def clip_table(number: str, dataset: Dataset, models: Sequence[Path | str], seed: int = 0) -> list[ClipRow]:
-    """The rows of a table, over the clips of the test part: each clip by itself, and by the whole film.
+    """Return the rows of a table, over the clips of the test part: each clip by itself, and by the whole film.
 
     Args:
         number: of `TABLES`.
@@ -123,7 +123,7 @@ def clip_table(number: str, dataset: Dataset, models: Sequence[Path | str], seed
 def looked_at(
     number: str, dataset: Dataset, models: Sequence[Path | str]
 ) -> tuple[Clips, list[tuple[str, Classifier]]]:
-    """The test clips as a table's models look at them, and the models with their names.
+    """Return the test clips as a table's models look at them, and the models with their names.
 
     Raises:
         HearthError: as of `clip_table`.
@@ -146,7 +146,7 @@ def looked_at(
 
 
 def _classifier(trained: Any, name: str, kind: type[Any]) -> Classifier:
-    """A trained model.
+    """Return a trained model.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it is of another kind.
@@ -158,7 +158,7 @@ def _classifier(trained: Any, name: str, kind: type[Any]) -> Classifier:
 
 
 def classifier(model: Path | str) -> tuple[str, TrainedSeenModel]:
-    """A trained classifier of clips by masks, and its name.
+    """Return a trained classifier of clips by masks, and its name.
 
     Raises:
         HearthError: errors of `restore`; BAD_ARGUMENT, for a model of another kind.
@@ -168,7 +168,7 @@ def classifier(model: Path | str) -> tuple[str, TrainedSeenModel]:
 
 
 def looks_at_masks(trained: Any, name: str) -> TrainedSeenModel:
-    """A trained classifier of clips by masks.
+    """Return a trained classifier of clips by masks.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it is another model.
@@ -177,7 +177,7 @@ def looks_at_masks(trained: Any, name: str) -> TrainedSeenModel:
 
 
 def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instruction]], seeds: int) -> Iterator[ClipRow]:
-    """A row for each kind of homes, of the answers of each seed."""
+    """Yield a row for each kind of homes, of the answers of each seed."""
     for homes, kinds in HOMES.items():
         which = [number for number, clip in enumerate(test.clips) if clip.kind in kinds]
         if not which:
@@ -189,7 +189,7 @@ def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instructio
 
 
 def standard_error(values: Sequence[float]) -> float | None:
-    """The standard error of a mean; None of fewer than two values."""
+    """Return the standard error of a mean; None of fewer than two values."""
     from statistics import stdev
 
     return stdev(values) / len(values) ** 0.5 if len(values) > 1 else None

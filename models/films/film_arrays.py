@@ -50,7 +50,7 @@ class _Header(NamedTuple):
 
 
 def film_array(data: IO[bytes], file: str, array: str = MASKS, most: int = MOST_PICTURES) -> NDArray[Any]:
-    """An array of a film, as `rendering.film.clips` stores them, in the form of `FORMS`.
+    """Return an array of a film, as `rendering.film.clips` stores them, in the form of `FORMS`.
 
     Args:
         data: the file's.

@@ -36,7 +36,7 @@ class FilmExample(NamedTuple):
 
 
 def film_examples(dataset: Dataset, part: str, reader: TrainedSeenModel, most: int = 0) -> list[FilmExample]:
-    """The films of a part; each is read once.
+    """Return the films of a part; each is read once.
 
     Args:
         dataset: with clips.

@@ -25,7 +25,7 @@ class Shown(NamedTuple):
 
     @property
     def world(self) -> World:
-        """The world at the start."""
+        """Return the world at the start."""
         return self.trial.world
 
 

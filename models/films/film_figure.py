@@ -37,7 +37,7 @@ STYLE = (
 
 
 def film_page(dataset: Dataset, model: Path | str, films: int = 3) -> str:
-    """Some coloured test films as HTML: frames with their times; true and read program, common steps opposite.
+    """Return some coloured test films as HTML: frames with their times; true and read program, common steps opposite.
 
     Programs are read by the engine, from the world in which the film begins.
 

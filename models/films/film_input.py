@@ -36,7 +36,7 @@ MOST_PIXELS = 4096 * 2304
 
 
 def read_masks(path: Path) -> NDArray[np.uint16]:
-    """(T, H, W) class numbers of a film of a dataset of clips (`clips.npz`).
+    """Return (T, H, W) class numbers of a film of a dataset of clips (`clips.npz`).
 
     Raises:
         HearthError: MISSING_FILE; DAMAGED_FILE, if the file holds something else.
@@ -45,7 +45,7 @@ def read_masks(path: Path) -> NDArray[np.uint16]:
 
 
 def read_pictures(path: Path) -> NDArray[np.uint8]:
-    """(T, H, W, 3) colours of a video, scaled to the size of clips, `RATE` a second.
+    """Return (T, H, W, 3) colours of a video, scaled to the size of clips, `RATE` a second.
 
     Raises:
         HearthError: MISSING_FILE, without OpenCV; DAMAGED_FILE, if it is another file; BAD_ARGUMENT, if it is

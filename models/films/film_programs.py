@@ -96,7 +96,9 @@ def alone(scores: Scores, instructions: Sequence[Instruction]) -> FilmProgram:
 
 
 def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves | None = None) -> FilmProgram:
-    """The most probable sequence of instructions, each once for the clips in a row that it explains; no home is needed.
+    """Return the most probable sequence of instructions, each once for the clips in a row that it explains.
+
+    No home is needed.
 
     Args:
         scores: of the clips.
@@ -132,7 +134,7 @@ def followed(
     how: Filter = Filter(),
     rules: Rules = DEFAULT,
 ) -> FilmProgram:
-    """The program that explains a film best among those that run in the world in which it begins.
+    """Return the program that explains a film best among those that run in the world in which it begins.
 
     In each clip a program goes on with its last instruction, or with another one that can be done then, or after steps
     that a repair inserts; objects are the nearest of their class. Of programs that have come to the same world by the
@@ -167,7 +169,7 @@ class _Search:
         self.after: dict[tuple[World, int, bool], tuple[Steps, World] | None] = {}
 
     def going_on(self, one: _Followed, row: Scores, place: int) -> Iterator[_Followed]:
-        """The ways in which a program explains one more clip."""
+        """Yield the ways in which a program explains one more clip."""
         unexplained = float(row.max()) - UNEXPLAINED
         staying = float(row[one.last]) if one.last >= 0 else unexplained
         yield replace(one, score=one.score + max(staying, unexplained))
@@ -180,7 +182,7 @@ class _Search:
                 yield _Followed(score, world, (*one.steps, *steps), (*one.starts, *[place] * len(steps)), number)
 
     def _done(self, one: _Followed, number: int, may_repair: bool) -> tuple[Steps, World] | None:
-        """The steps that do an instruction, the last of which it is, and the world after them."""
+        """Return the steps that do an instruction, the last of which it is, and the world after them."""
         key = one.world, number, may_repair
         if key not in self.after:
             program = Program(steps=(_step(self.instructions[number]),))

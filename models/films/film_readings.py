@@ -42,7 +42,7 @@ class Reading(NamedTuple):
 
 
 def reading(actions: Scores, objects: Scores, table: ClassTable, trust: float = TRUST) -> Reading:
-    """The reading of a film.
+    """Return the reading of a film.
 
     Args:
         actions: (N, A) logarithms of the probabilities of actions in its clips.
@@ -62,7 +62,7 @@ def reading(actions: Scores, objects: Scores, table: ClassTable, trust: float = 
 
 
 def _probable(actions: Scores, objects: Scores, table: ClassTable) -> Iterable[tuple[int, int, int]]:
-    """The most probable instructions of a clip."""
+    """Return the most probable instructions of a clip."""
     found = sorted(_options(actions, objects, table), key=lambda option: (-option[0], option[1]))
     return [option for _, option in found[:OF_A_CLIP]]
 

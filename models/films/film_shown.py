@@ -46,7 +46,7 @@ class FilmShown:
 
 
 def cut(masks: NDArray[np.uint16]) -> Clips:
-    """A film as clips: one every `APART` frames, whatever is done in it.
+    """Return a film as clips: one every `APART` frames, whatever is done in it.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it is shorter than a clip.

@@ -99,7 +99,7 @@ def film_table(
     dataset: Dataset, models: Sequence[Path | str], seed: int = 0, part: str = "test", beam: int = 1,
     seen: Seen = unseen,
 ) -> list[FilmRow]:  # fmt: skip
-    """The rows of table 4.6, over the films of a part, each cut into clips whatever is done in it.
+    """Return the rows of table 4.6, over the films of a part, each cut into clips whatever is done in it.
 
     Args:
         dataset: with clips.
@@ -168,7 +168,7 @@ def _rows(
     dataset: Dataset, method: str, of: str, test: Clips, films: Sequence[Shown], answers: Sequence[Sequence[Steps]],
     seed: int,
 ) -> Iterator[FilmRow]:  # fmt: skip
-    """A row for each kind of homes, of the answers of each seed."""
+    """Yield a row for each kind of homes, of the answers of each seed."""
     kinds = {clip.film: clip.kind for clip in test.clips}
     scores = [_scored(dataset, test.executions, films, each) for each in answers]
     for homes, wanted in HOMES.items():
@@ -182,7 +182,7 @@ def _rows(
 def _scored(
     dataset: Dataset, executions: Sequence[str], films: Sequence[Shown], answers: Sequence[Steps]
 ) -> list[dict[str, float | None]]:
-    """The columns of each film's answer."""
+    """Return the columns of each film's answer."""
     lcs = score_pairs([(by_class(answer, film.world), film.steps) for answer, film in zip(answers, films, strict=True)])
     ran = score_steps(dataset, zip(executions, answers, strict=True))
     more = ("executable", "goal", "goal_whole")

@@ -63,11 +63,11 @@ class Labels:
 
     @cached_property
     def rows(self) -> NDArray[np.int64]:
-        """(I, 3) the numbers of each instruction's action and objects."""
+        """Return (I, 3) the numbers of each instruction's action and objects."""
         return np.array([self.numbers(each) for each in self.instructions], np.int64)
 
     def numbers(self, done: Instruction) -> tuple[int, int, int]:
-        """The numbers of an instruction; -1 for an action, and for an object, that training never had."""
+        """Return the numbers of an instruction; -1 for an action, and for an object, that training never had."""
         names = [self._objects.get(name, -1) for name in done.objects]
         first, second = (*names, NOTHING, NOTHING)[:2]
         return self._actions.get(done.action, -1), first, second
@@ -99,7 +99,7 @@ def _picture(film: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def frames_of(clips: Clips, pictures: Pictures, which: Sequence[int], taken: Iterable[int]) -> NDArray[np.uint8]:
-    """(N, K, H, W, 3) colours of some frames of some clips."""
+    """Return (N, K, H, W, 3) colours of some frames of some clips."""
     places = list(taken)
     chosen = [clips.clips[number] for number in which]
     return np.stack([pictures[each.film][[each.first + n for n in places]] for each in chosen])

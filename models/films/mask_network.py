@@ -22,7 +22,7 @@ LARGE, MEDIUM = 24, 48
 
 
 def _layer(one: int, other: int, size: int = 3, *, stride: int = 1, dilation: int = 1) -> nn.Sequential:
-    """A convolution that keeps the middle of the picture, its norm and a ReLU."""
+    """Return a convolution that keeps the middle of the picture, its norm and a ReLU."""
     fill = dilation * (size // 2)
     convolution = nn.Conv2d(one, other, size, stride=stride, padding=fill, dilation=dilation, bias=False)
     return nn.Sequential(convolution, nn.GroupNorm(GROUPS, other), nn.ReLU())
@@ -48,7 +48,7 @@ class MaskNetwork(nn.Module):
         self.scores = nn.Conv2d(LARGE, classes, 1)
 
     def forward(self, pictures: Tensor) -> Tensor:
-        """(B, H, W, 3) colours from 0 to 255 -> (B, classes, H, W)."""
+        """Map (B, H, W, 3) colours from 0 to 255 to (B, classes, H, W)."""
         large = self.large(pictures.permute(0, 3, 1, 2).float() / 128 - 1)
         medium = self.medium(large)
         found = self.small(medium)
@@ -62,5 +62,5 @@ class MaskNetwork(nn.Module):
 
 
 def _enlarged(small: Tensor, large: Tensor) -> Tensor:
-    """(B, C, h, w) as large as another."""
+    """Return (B, C, h, w) as large as another."""
     return functional.interpolate(small, large.shape[-2:], mode="bilinear", align_corners=False)

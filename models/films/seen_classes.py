@@ -82,7 +82,7 @@ def _person(body: NDArray[np.bool_], changed: float) -> NDArray[np.float64]:
 
 
 def _size(who: NDArray[np.float64], shape: tuple[int, ...]) -> float:
-    """The person's height or width in pixels, whichever is greater."""
+    """Return the person's height or width in pixels, whichever is greater."""
     height, width = shape
     return max(float(who[4] - who[3]) * height / 2, float(who[2] - who[1]) * width / 2, 2.0)
 
@@ -105,11 +105,11 @@ class _Frame(NamedTuple):
         return cls(count, flat, order, xs, ys, np.bincount(flat, minlength=count).astype(np.float64))
 
     def sums(self, values: NDArray[Any]) -> NDArray[np.float64]:
-        """(count,) the sum over each class's pixels."""
+        """Return (count,) the sum over each class's pixels."""
         return np.bincount(self.flat, values, self.classes).astype(np.float64)
 
     def ends(self, values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """The least and the greatest over the pixels of each class that is there."""
+        """Return the least and the greatest over the pixels of each class that is there."""
         given = values[self.order]
         starts = (np.cumsum(self.area) - self.area).astype(np.int64)[self.area > 0]
         return np.minimum.reduceat(given, starts), np.maximum.reduceat(given, starts)
@@ -122,7 +122,7 @@ def _numbers(
     who: NDArray[np.float64],
     before: NDArray[np.int64] | None,
 ) -> NDArray[np.float64]:
-    """(count, NUMBERS) of each class in a frame of their places in a list.
+    """Return (count, NUMBERS) of each class in a frame of their places in a list.
 
     The numbers are: whether the class is visible; the root of its share of the picture; its middle (x, y); its width
     and height; its offset (x, y) from the person's middle; its distance from the person; the root of the area that
@@ -172,7 +172,10 @@ def _beside(
 
 
 def _crop(mask: NDArray[np.uint16], who: NDArray[np.float64]) -> NDArray[np.uint16]:
-    """(CROP, CROP) class numbers around the person, the nearest of each cell's middle; 0 outside of the picture."""
+    """Return (CROP, CROP) class numbers around the person, the nearest of each cell's middle.
+
+    Cells outside of the picture are 0.
+    """
     if not who[0]:
         return np.zeros((CROP, CROP), np.uint16)
     height, width = mask.shape

@@ -37,19 +37,19 @@ class SeenClips(NamedTuple):
     crops: NDArray[np.int16]
 
     def part(self, which: NDArray[np.int64] | slice) -> SeenClips:
-        """Some of the clips."""
+        """Return some of the clips."""
         return SeenClips(*(getattr(self, name)[which] for name in self._fields))
 
 
 def joined(parts: Sequence[SeenClips]) -> SeenClips:
-    """The clips of several parts, one after another."""
+    """Return the clips of several parts, one after another."""
     if len(parts) == 1:
         return parts[0]  # half a gigabyte is not copied
     return SeenClips(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 def offsets(frames: int, context: bool) -> NDArray[np.int64]:
-    """(T,) the frames of a clip and of its context, from the clip's first."""
+    """Return (T,) the frames of a clip and of its context, from the clip's first."""
     around = sorted([-each for each in CONTEXT] + [*CONTEXT]) if context else []
     return np.array([*range(frames), *(frames // 2 + each for each in around)], np.int64)
 

@@ -79,7 +79,7 @@ class SeenModel(Settings):
     masks: str = ""
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", HEADS, "the heads of the transformer share it")
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedSeenModel:
@@ -129,7 +129,7 @@ class SeenModel(Settings):
         return weights
 
     def network(self, table: ClassTable) -> SeenNetwork:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         named = torch.zeros(len(table) + 1, dtype=torch.bool)
         named[list(table.named)] = True
         tensors = torch.from_numpy(table.traits), torch.from_numpy(table.afforded), named
@@ -138,7 +138,7 @@ class SeenModel(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedSeenModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         settings, table = cls.of(checkpoint.settings), ClassTable.read(checkpoint.content["table"])
         network = filled(lambda: settings.network(table), checkpoint.weights).to(device())
         order = StepOrder.read(checkpoint.content["order"])
@@ -164,7 +164,7 @@ class TrainedSeenModel:
     facts: dict[str, Any] = field(default_factory=dict)
 
     def named(self, clips: Clips) -> list[Instruction]:
-        """The instruction that each clip is taken for."""
+        """Return the instruction that each clip is taken for."""
         return self.named_of(seen_clips(clips, self.table, self.settings.context))
 
     def named_of(self, shown: SeenClips) -> list[Instruction]:
@@ -218,7 +218,7 @@ class TrainedSeenModel:
         raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         content = {"table": self.table.document(), "order": self.order.document()}
         return Checkpoint(NAME, asdict(self.settings), content, weights, self.facts)

@@ -44,7 +44,7 @@ class SeenBatch(NamedTuple):
     crops: Tensor  # (B, FRAMES, CROP, CROP) long
 
     def mirrored(self, which: Tensor) -> SeenBatch:
-        """The batch with some clips, (B,) of bool, left and right exchanged."""
+        """Return the batch with some clips, (B,) of bool, left and right exchanged."""
         signs = torch.ones(NUMBERS, device=which.device)
         signs[list(MIRRORED)] = -1
         numbers = torch.where(which[:, None, None, None], self.numbers * signs, self.numbers)
@@ -79,7 +79,7 @@ class PersonNetwork(nn.Module):
                                   nn.Dropout(dropout), nn.Linear(2 * width, width))  # fmt: skip
 
     def forward(self, people: Tensor, crops: Tensor, traits: Tensor) -> Tensor:
-        """(B, T, PEOPLE), (B, FRAMES, CROP, CROP) and (rows, traits) -> (B, width)."""
+        """Map (B, T, PEOPLE), (B, FRAMES, CROP, CROP) and (rows, traits) to (B, width)."""
         seen = crops[:, LOOKED_AT]
         planes = self.colour(traits)[seen].permute(0, 1, 4, 2, 3)  # (B, looked at, zero, CROP, CROP)
         near = self.near(planes.flatten(0, 1)).unflatten(0, seen.shape[:2])
@@ -125,7 +125,7 @@ class SeenNetwork(nn.Module):
         self.listed = nn.ModuleList(nn.Linear(width, rows) for _ in range(PLACES))
 
     def read(self, batch: SeenBatch) -> tuple[Tensor, Tensor]:
-        """(B, width) the clip and (B, K, width) its classes."""
+        """Return (B, width) the clip and (B, K, width) its classes."""
         vectors = self.vector(batch.classes)
         if self.training:
             vectors = vectors * (torch.rand(*batch.classes.shape, 1, device=vectors.device) >= self.unnamed)
@@ -137,11 +137,11 @@ class SeenNetwork(nn.Module):
         return read[:, 0], read[:, 1:]
 
     def actions(self, clip: Tensor) -> Tensor:
-        """(B, width) -> (B, actions)."""
+        """Map (B, width) to (B, actions)."""
         return self.action(clip).log_softmax(-1)
 
     def objects(self, batch: SeenBatch, clip: Tensor, classes: Tensor, action: Tensor, place: int) -> Tensor:
-        """(B, A, rows) of an action's first or second object, for (B, A) actions."""
+        """Return (B, A, rows) of an action's first or second object, for (B, A) actions."""
         asked = self.asked[place](action)  # (B, A, width)
         points = torch.tanh(self.pointed[place](classes)[:, None] + (asked + clip[:, None])[:, :, None])
         points = self.worth[place](points).squeeze(-1)  # (B, A, K)

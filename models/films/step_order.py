@@ -64,7 +64,7 @@ class StepOrder:
         return cls(dict(counts))
 
     def logs(self, before: Sequence[Instruction], after: Sequence[Instruction]) -> NDArray[np.float32]:
-        """(B, A) logarithms of how probable it is that a step of `after` follows one of `before`."""
+        """Return (B, A) logarithms of how probable it is that a step of `after` follows one of `before`."""
         return np.array([[self._log(one, other) for other in after] for one in before], np.float32)
 
     def _log(self, one: Instruction, other: Instruction) -> float:

@@ -20,7 +20,7 @@ from hearth.models.films.seen_model import TrainedSeenModel
 
 
 def named_in_films(trained: TrainedSeenModel, clips: Clips, learned: Sequence[Instruction]) -> list[Instruction]:
-    """The instruction that each clip is taken for, by the whole film.
+    """Return the instruction that each clip is taken for, by the whole film.
 
     Args:
         trained: the classifier, of single clips.
@@ -37,7 +37,7 @@ def named_in_films(trained: TrainedSeenModel, clips: Clips, learned: Sequence[In
 
 
 def posteriors(scores: Scores, moves: Moves) -> NDArray[np.float64]:
-    """(N, I) how probable each instruction is in each clip, given all clips of the film.
+    """Return (N, I) how probable each instruction is in each clip, given all clips of the film.
 
     Args:
         scores: (N, I) logarithms of how probable each is in a clip alone.
@@ -85,7 +85,7 @@ class ClassWorth(NamedTuple):
         return cls({name: Counter(map(part, learned)) for name, part in MEASURED.items()}, power)
 
     def gains(self, probable: NDArray[np.float64], instructions: Sequence[Instruction]) -> NDArray[np.float64]:
-        """(N, I) the mean accuracy that naming each instruction may be expected to add, up to a factor.
+        """Return (N, I) the mean accuracy that naming each instruction may be expected to add, up to a factor.
 
         Args:
             probable: (N, I) probabilities of instructions in clips.

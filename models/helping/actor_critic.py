@@ -15,7 +15,7 @@ VALUE, ENTROPY, CLOSE = 0.25, 0.01, 0.1
 
 
 def discounted(rewards: Sequence[float], ticks: Sequence[int], discount: float) -> list[float]:
-    """The returns from some ticks on.
+    """Return the returns from some ticks on.
 
     Args:
         rewards: of each tick.
@@ -37,7 +37,10 @@ def imitation(network: nn.Module, batch: Batch) -> Tensor:
 
 
 def actor_critic(network: nn.Module, batch: Batch) -> Tensor:
-    """The loss of A2C over whole episodes that the network has just played; advantages are brought to one scale."""
+    """Return the loss of A2C over whole episodes that the network has just played.
+
+    Advantages are brought to one scale.
+    """
     seen: Outlook = network(batch)
     there = torch.as_tensor(batch.there)
     advantage = (torch.as_tensor(batch.returns) - seen.value.detach())[there]

@@ -38,11 +38,11 @@ class HelpingPolicy(Settings):
     heads: int = 4
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", self.heads, "its `heads` share it")
 
     def network(self, words: Words) -> nn.Module:
-        """A network that has learnt nothing."""
+        """Return a network that has learnt nothing."""
         from hearth.models.helping import policy_networks
 
         made = policy_networks.SubgoalNetwork if self.chooses == "subgoals" else policy_networks.ActionNetwork
@@ -50,7 +50,7 @@ class HelpingPolicy(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedPolicy:
-        """The trained policy of a checkpoint."""
+        """Return the trained policy of a checkpoint."""
         from hearth.models.filled import filled
 
         settings = cls.of(checkpoint.settings)
@@ -92,7 +92,7 @@ class TrainedPolicy:
         return replace(self, facts=facts)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         from hearth.models.checkpoint import Checkpoint
 
         weights = {name: value.detach().numpy() for name, value in self.network.state_dict().items()}
@@ -101,7 +101,7 @@ class TrainedPolicy:
 
 
 def untrained(chooses: str, words: Words, seed: int) -> TrainedPolicy:
-    """A policy whose network has learnt nothing; equal for equal seeds."""
+    """Return a policy whose network has learnt nothing; equal for equal seeds."""
     import torch
 
     from hearth.models.devices import device
@@ -113,7 +113,7 @@ def untrained(chooses: str, words: Words, seed: int) -> TrainedPolicy:
 
 
 def _drawn(probabilities: np.ndarray, chooser: Random) -> int:
-    """A number drawn by probabilities."""
+    """Return a number drawn by probabilities."""
     import numpy as np
 
     total = np.cumsum(probabilities)
@@ -122,7 +122,7 @@ def _drawn(probabilities: np.ndarray, chooser: Random) -> int:
 
 @lru_cache(maxsize=8)
 def restored(model: str, chooses: str) -> TrainedPolicy:
-    """A trained policy; read once.
+    """Return a trained policy; read once.
 
     Args:
         model: a checkpoint's folder, or the name of one that comes with Hearth.

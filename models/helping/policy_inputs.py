@@ -30,7 +30,7 @@ class Words(NamedTuple):
     places: tuple[str, ...]
 
     def number(self, thing: str, place: str) -> Pair | None:
-        """A subgoal's numbers; None where one of its words is not known."""
+        """Return a subgoal's numbers; None where one of its words is not known."""
         known = thing in self.things and place in self.places
         return (self.things.index(thing), self.places.index(place)) if known else None
 

@@ -79,7 +79,7 @@ class GoalEncoder(nn.Module):
         self.part = nn.Linear(2 * width, width)
 
     def forward(self, wanted: Tensor) -> Tensor:
-        """(B, T, G, 3) to (B, T, width)."""
+        """Map (B, T, G, 3) to (B, T, width)."""
         words = torch.cat([self.thing(wanted[..., 0]), self.place(wanted[..., 1])], -1)
         return (torch.relu(self.part(words)) * wanted[..., 2:]).sum(-2)
 

@@ -65,7 +65,7 @@ class Packed(NamedTuple):
         return len(self.right)
 
     def part(self, places: Sequence[int] | np.ndarray) -> Packed:
-        """Some of the choices."""
+        """Return some of the choices."""
         chosen = np.asarray(places, dtype=np.int64)
         counts = (self.starts[1:] - self.starts[:-1])[chosen]
         starts = np.concatenate([[0], np.cumsum(counts)])

@@ -128,13 +128,13 @@ class Chooser(Settings):
         return ranker, outcome
 
     def ranker(self, words: Words, sizes: Sequence[int]) -> Ranker:
-        """A network for choices with these numbers of names and numbers, of the choice and of a candidate."""
+        """Return a network for choices with these numbers of names and numbers, of the choice and of a candidate."""
         names, numbers, more, values = sizes
         return Ranker(words.size, names, numbers, more, values, self.width, self.hidden, self.dropout)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedChooser:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         device()
         settings, content = cls.of(dict(checkpoint.settings)), checkpoint.content
         words = Words(content["classes"], content["actions"], content["words"])
@@ -169,7 +169,7 @@ class TrainedChooser:
     learned: Mapping[str, Any]
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """A program for each request with a sketch and a world; it runs there."""
+        """Return a program for each request with a sketch and a world; it runs there."""
         worlds = [_world(request) for request in requests]
         sketches = self.bound([request.sketch for request in requests], worlds)
         clues = [self._clues(request, world) for request, world in zip(requests, worlds, strict=True)]
@@ -207,7 +207,7 @@ class TrainedChooser:
         return [_bound(sketch, found, world) for sketch, found, world in zip(free, nodes, worlds, strict=True)]
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {
             f"{name}.{key}": value.detach().cpu().numpy()
             for name, ranker in self.rankers.items()
@@ -244,7 +244,7 @@ def _bound(sketch: Steps, nodes: Mapping[tuple[str, int], int], world: World) ->
 
 
 def _named(steps: Steps, sketch: Steps, known: Knowledge) -> Steps:
-    """A program that calls nodes as the sketch does, where that name affords all that is done to the node.
+    """Return a program that calls nodes as the sketch does, where that name affords all that is done to the node.
 
     A kitchen may serve as the sketch's dining room; a box of cereal that is opened is not called food.
     """
@@ -273,16 +273,16 @@ class PlanScorer:
         self.ranker, self.habits, self.words = ranker, habits, words
 
     def begin(self, worlds: Sequence[World], inputs: Sequence[tuple[Steps, Clues, Rules]]) -> list[Progress]:
-        """The progress before the first step of each bound sketch."""
+        """Return the progress before the first step of each bound sketch."""
         given = zip(worlds, inputs, strict=True)
         return [Progress.start(sketch, world, rules, clues) for world, (sketch, clues, rules) in given]
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> list[Progress]:
-        """The progress after each step."""
+        """Return the progress after each step."""
         return [each.state.after(step, each.world) for each, step in zip(asked, steps, strict=True)]
 
     def score(self, asked: Sequence[Asked], part: Part) -> list[Scores]:
-        """The scores of the offered steps; the end has one only where nothing of the sketch is left."""
+        """Return the scores of the offered steps; the end has one only where nothing of the sketch is left."""
         offers = [self._offer(each) for each in asked]
         if self.ranker is None:
             return [_as_planned(offer) for offer in offers]

@@ -39,7 +39,7 @@ def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]
 def step_choices(
     examples: Iterable[Grounded], habits: Habits, words: Words, *, text: bool = False, most: int = 24
 ) -> Iterator[Choice]:
-    """The choice of each step of each program, and of its end; those that are not offered are left out.
+    """Yield the choice of each step of each program, and of its end; those that are not offered are left out.
 
     Args:
         examples: programs with their sketches.

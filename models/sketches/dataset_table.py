@@ -40,7 +40,7 @@ _KINDS = {"Executable": "executable", "Augmented": "augmented", "All executable"
 
 
 def dataset_table(dataset: Dataset) -> list[DatasetRow]:
-    """The rows of table 5.1; `hearth augmented` prints the same numbers."""
+    """Return the rows of table 5.1; `hearth augmented` prints the same numbers."""
     query = "SELECT count(*), round(avg(len(steps)), 2) FROM programs WHERE parent_id IS NULL"
     ((count, length),) = dataset.rows(query)[1]
     original = DatasetRow("Original", "ours", count, length, None, None)

@@ -49,7 +49,7 @@ class GraphInput(NamedTuple):
 
 
 def graph_input(sketch: Steps, world: World, words: Words, most: int = MOST) -> GraphInput:
-    """The graph that matters to a sketch, whose nodes are not looked at.
+    """Return the graph that matters to a sketch, whose nodes are not looked at.
 
     Args:
         sketch: names alone count.
@@ -76,7 +76,7 @@ def graph_input(sketch: Steps, world: World, words: Words, most: int = MOST) -> 
 
 
 def _chosen(places: Places, world: World, most: int) -> tuple[int, ...]:
-    """The character, the rooms, then by how much they matter."""
+    """Return the character, the rooms, then by how much they matter."""
     home = world.home
     meant = [node for nodes in places.candidates.values() for node in nodes]
     around = [i for node in meant for i in indices(rows.on(world, node) | rows.inside(world, node) & ~home.rooms)]
@@ -148,7 +148,7 @@ A step of the second kind has no object, or an object that the graph leaves out.
 
 
 def targets(steps: Steps, given: GraphInput, world: World, actions: Sequence[str]) -> np.ndarray:
-    """The steps of a program as positions of action, first and second object, and its end; (T + 1, 3).
+    """Return the steps of a program as positions of action, first and second object, and its end; (T + 1, 3).
 
     An object that the reduced graph leaves out is PAD: nothing is learned from it.
     """

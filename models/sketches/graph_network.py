@@ -148,13 +148,13 @@ class GraphNetwork(nn.Module):
         return nodes.index_put((rows, place.clamp(min=0)), kept)
 
     def _at(self, memory: Memory, place: Tensor) -> Tensor:
-        """The states of nodes at positions, (B, H); that of no object below 0."""
+        """Return the states of nodes at positions, (B, H); that of no object below 0."""
         found = memory.nodes[torch.arange(len(place)), place.clamp(min=0)]
         return torch.where((place >= 0)[:, None], found, self.special[0].expand_as(found))
 
 
 def loss_of(network: GraphNetwork, batch: Batch) -> Tensor:
-    """The mean negative logarithm of the probability of each part, given those before it (teacher forcing)."""
+    """Return the mean negative logarithm of the probability of each part, given those before it (teacher forcing)."""
     memory, steps = network.begin(batch), torch.as_tensor(batch.steps)
     total, count = torch.zeros(()), 0
     for number in range(steps.shape[1]):
@@ -174,5 +174,5 @@ def loss_of(network: GraphNetwork, batch: Batch) -> Tensor:
 
 
 def _position(first: Tensor, nodes: int) -> Tensor:
-    """The position of a first object among the scores: a node's, that of no object, or that of the end."""
+    """Return the position of a first object among the scores: a node's, that of no object, or that of the end."""
     return torch.where(first == NO_NODE, nodes, torch.where(first == END, nodes + 1, first))

@@ -75,12 +75,12 @@ class Habits(NamedTuple):
 
 
 def _commonest(found: Counter[str]) -> list[tuple[str, int]]:
-    """The first `TOOLS` classes and their counts; of those counted as often, the first by name."""
+    """Return the first `TOOLS` classes and their counts; of those counted as often, the first by name."""
     return sorted(found.items(), key=lambda each: (-each[1], each[0]))[:TOOLS]
 
 
 def _named(sketch: Sequence[Step]) -> dict[str, None]:
-    """The classes and the actions of a sketch."""
+    """Return the classes and the actions of a sketch."""
     return dict.fromkeys([*(ref.name for step in sketch for ref in step.objects), *(step.action for step in sketch)])
 
 
@@ -101,11 +101,11 @@ class NextSteps:
         self.steps: dict[Deed, Step] = dict(self._found(habits.actions))
 
     def nodes(self, step: Step) -> list[int]:
-        """The indices of a step's nodes."""
+        """Return the indices of a step's nodes."""
         return [self.home.index[ref.node] for ref in step.objects if ref.node is not None]
 
     def deed(self, step: Step) -> Deed:
-        """A step as its action and nodes."""
+        """Return a step as its action and nodes."""
         first, second = (*self.nodes(step), -1, -1)[:2]
         return step.action, first, second
 
@@ -130,7 +130,7 @@ class NextSteps:
 
     @cached_property
     def roles(self) -> Mapping[int, list[float]]:
-        """The nodes that steps are offered about, and their roles."""
+        """Return the nodes that steps are offered about, and their roles."""
         found: dict[int, list[float]] = {}
         for role, nodes in enumerate(self._by_role()):
             for node in nodes:

@@ -38,7 +38,7 @@ class Use(NamedTuple):
 
 
 def used(sketch: Sequence[Step]) -> tuple[Use, ...]:
-    """The objects of a sketch in the order of their first mention."""
+    """Return the objects of a sketch in the order of their first mention."""
     found: dict[Key, list[tuple[str, int]]] = {}
     for step in sketch:
         for place, ref in enumerate(step.objects):
@@ -141,7 +141,7 @@ NUMBERS = 10 + 3 + 4 + 1 + 10
 
 
 def node_choice(places: Places, use: Use, bound: Mapping[Key, int], right: int | None = None) -> Choice:
-    """The choice of a node for an object of a sketch; `right` is the index of the right node in the home."""
+    """Return the choice of a node for an object of a sketch; `right` is the index of the right node in the home."""
     words, nodes = places.words, places.candidates[use.key]
     actions = [words.action(action) for action, _ in use.uses]
     names = [words.thing(use.key[0]), *[*actions, 0, 0][:2], words.code(use.uses[0][1])]

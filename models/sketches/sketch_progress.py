@@ -47,7 +47,7 @@ class Progress:
 
     @property
     def coming(self) -> Step | None:
-        """The sketch's next step; None at its end, or if nothing makes the rest possible."""
+        """Return the sketch's next step; None at its end, or if nothing makes the rest possible."""
         number = self._coming
         return None if number is None else self.sketch[number]
 
@@ -64,7 +64,7 @@ class Progress:
 
     @property
     def proposed(self) -> Step | None:
-        """The planner's next step."""
+        """Return the planner's next step."""
         return self.plan[0].step if self.plan else None
 
     def after(self, step: Step, world: World) -> Progress:
@@ -83,6 +83,6 @@ class Progress:
 
 
 def plain(step: Step, home: Home) -> Step:
-    """A bound step as the search writes it: a node has the name of its class, and no number."""
+    """Return a bound step as the search writes it: a node has the name of its class, and no number."""
     nodes = [home.index[ref.node] for ref in step.objects if ref.node is not None]
     return Step(step.action, tuple(ObjectRef(home.classes[node], 1, home.ids[node]) for node in nodes))

@@ -46,7 +46,7 @@ class Offer:
             self.candidates.append(None)
 
     def choice(self) -> Choice:
-        """The choice as features."""
+        """Return the choice as features."""
         return self._choice(range(len(self.candidates)), -1)
 
     def known_choice(self, right: Step | None, most: int, random: Random) -> Choice | None:

@@ -45,7 +45,7 @@ class Clues:
 
     @cached_property
     def places(self) -> dict[str, int]:
-        """The mentioned classes in the order of their first mention, and its place."""
+        """Return the mentioned classes in the order of their first mention, and its place."""
         found: dict[str, int] = {}
         for place, name in mentions(self.words, self._spelt) if self.words else ():
             found.setdefault(name, place)
@@ -57,7 +57,7 @@ class Clues:
         return place / len(self.words) if place >= 0 else -1.0
 
     def around(self, name: str, numbers: Words) -> list[int]:
-        """The numbers of the words about the first mention of a class."""
+        """Return the numbers of the words about the first mention of a class."""
         place = self.places.get(name, -1)
         if place < 0:
             return [0] * AROUND
@@ -65,7 +65,7 @@ class Clues:
         return [numbers.word(word) for word in words]
 
     def bag(self, numbers: Words) -> list[int]:
-        """The numbers of the known words, each once."""
+        """Return the numbers of the known words, each once."""
         return list(dict.fromkeys(number for word in self.words if (number := numbers.word(word))))
 
 
@@ -97,6 +97,6 @@ class TextState(NamedTuple):
 
 
 def frequent(requests: Iterable[Request]) -> tuple[str, ...]:
-    """The words that some training texts have, sorted."""
+    """Return the words that some training texts have, sorted."""
     counts = Counter(word for request in requests for word in {*words_of(request)})
     return tuple(sorted(word for word, count in counts.items() if count >= FEWEST))

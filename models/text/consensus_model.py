@@ -52,7 +52,7 @@ class Consensus(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedConsensus:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         writer, neighbours = (
             replace(checkpoint, settings=part["settings"], content=part["content"])
             for part in (checkpoint.content["writer"], checkpoint.content["neighbours"])
@@ -82,11 +82,11 @@ class TrainedConsensus:
         return consensus([*written, *programs], [own] * len(written) + [weight * others for weight in weights])
 
     def scorer(self) -> TextScorer:
-        """The network alone, for decoding with the engine in the loop."""
+        """Return the network alone, for decoding with the engine in the loop."""
         return self.writer.scorer()
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         writer, neighbours = self.writer.checkpoint(), self.neighbours.checkpoint()
         content = {
             name: {"settings": dict(part.settings), "content": dict(part.content)}

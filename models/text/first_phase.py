@@ -19,7 +19,7 @@ STARTS = {"program": ("programs", "mle-composed"), "sketch": ("sketches", "desc2
 
 
 def first_phase(start: str, corpus: Corpus) -> TrainedTextModel:
-    """A trained network of texts.
+    """Return a trained network of texts.
 
     Args:
         start: a checkpoint's folder, or the name of one that comes with Hearth.

@@ -67,7 +67,7 @@ def alike(lengths: Sequence[int], batch: int, random: Random) -> list[list[int]]
 def written(
     writer: Writer, asked: Sequence[Asked], read: Read[Asked], length: Callable[[Asked], int], width: int, longest: int
 ) -> list[Numbers]:
-    """The most probable program for each, by greedy or beam search; no answer depends on another.
+    """Return the most probable program for each, by greedy or beam search; no answer depends on another.
 
     Args:
         writer: trained.

@@ -51,7 +51,7 @@ class RetrieveEdit(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedRetrieveEdit:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         content = checkpoint.content
         vocabulary, memory = StepVocabulary.read(content["vocabulary"]), Memory.read(content["memory"])
         if unknown := [step for steps in memory.programs for step in steps if vocabulary.numbers(step) is None]:
@@ -88,7 +88,7 @@ class TrainedRetrieveEdit:
         return programs, [max(one, 1e-3) ** self.settings.sharpness for one in alike]
 
     def _mentioned(self, text: str) -> dict[str, int]:
-        """The classes that a text mentions, in order of their first mention, and the places of these."""
+        """Return the classes that a text mentions, in order of their first mention, and the places of these."""
         found: dict[str, int] = {}
         for place, name in mentions(words(text), self.vocabulary.spelt):
             found.setdefault(name, place)
@@ -111,7 +111,7 @@ class TrainedRetrieveEdit:
         return all(number in known.takes[known.action_numbers[action] - 1][place] for action, place in uses)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs; the weights of words are made again from the texts."""
+        """Return all that `restored` needs; the weights of words are made again from the texts."""
         content = {"memory": self.memory.document(), "vocabulary": self.vocabulary.document()}
         return Checkpoint("retrieve-edit", asdict(self.settings), content, {})
 
@@ -122,7 +122,7 @@ class TrainedRetrieveEdit:
 
 
 def renamed(program: Steps, swaps: Mapping[str, str]) -> Steps:
-    """A program with other classes in place of some."""
+    """Return a program with other classes in place of some."""
     return tuple(_renamed(step, swaps) for step in program)
 
 
@@ -131,7 +131,10 @@ def _renamed(step: Step, swaps: Mapping[str, str]) -> Step:
 
 
 def consensus(programs: Sequence[Steps], weights: Sequence[float]) -> Steps:
-    """The program with the highest weighted mean LCS (of steps, actions, objects) with all; of equal ones the first."""
+    """Return the program with the highest weighted mean LCS (of steps, actions, objects) with all.
+
+    Of equal ones the first is taken.
+    """
     if not programs:
         return ()
     shares: dict[Steps, float] = {}

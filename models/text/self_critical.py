@@ -43,7 +43,7 @@ class Learner(Protocol):
 
     @property
     def writer(self) -> Writer:
-        """The network."""
+        """Return the network."""
 
     @property
     def trained(self) -> dict[str, Any]:
@@ -53,7 +53,7 @@ class Learner(Protocol):
         """Return the inputs of examples; drawn from `random` where there is noise."""
 
     def program(self, numbers: Numbers) -> Steps:
-        """The program of some numbers."""
+        """Return the program of some numbers."""
 
 
 class Drawn(NamedTuple):
@@ -97,7 +97,7 @@ class SelfCritical(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedTextModel:
-        """The model of a checkpoint, which has the settings of the network."""
+        """Return the model of a checkpoint, which has the settings of the network."""
         return TextModel.restored(checkpoint)
 
 
@@ -130,7 +130,7 @@ def go_on(model: Learner, task: Task[Drawn], how: Training, seen: Seen) -> None:
 
 
 def surrogate(model: Learner, batch: Drawn, rewarded: Reward) -> torch.Tensor:
-    """A number whose gradient is that of minus the expected reward: eq. 4.8 with one sample for each example.
+    """Return a number whose gradient is that of minus the expected reward: eq. 4.8 with one sample for each example.
 
     There is no dropout, so that the drawn programs and the rewarded programs come from the same policy.
     """
@@ -152,13 +152,13 @@ def _rewards(model: Learner, batch: Drawn, programs: Sequence[Numbers], rewarded
 
 
 def lcs_reward(examples: Sequence[Any], programs: Sequence[Steps]) -> list[float]:
-    """The LCS of whole steps, from 0 to 1 (eq. 4.1)."""
+    """Return the LCS of whole steps, from 0 to 1 (eq. 4.1)."""
     pairs = ((program, example.steps) for example, program in zip(examples, programs, strict=True))
     return [score.step for score in score_pairs(pairs)]
 
 
 def sim_reward(corpus: Corpus) -> Reward:
-    """The LCS, and `SIM` for programs that run in the environment of the first execution of their example."""
+    """Return the LCS, and `SIM` for programs that run in the environment of the first execution of their example."""
 
     def rewards(examples: Sequence[Any], programs: Sequence[Steps]) -> list[float]:
         names = [example.executions[0] for example in examples]

@@ -31,7 +31,7 @@ class Memory(NamedTuple):
     mentioned: torch.Tensor
 
     def rows(self, chosen: torch.Tensor) -> Memory:
-        """Some of the texts."""
+        """Return some of the texts."""
         return Memory(*(part[chosen] for part in self))
 
 
@@ -72,7 +72,7 @@ def both_ways(lstm: nn.LSTM, inputs: torch.Tensor, lengths: torch.Tensor) -> tor
 
 
 def _one_way(inputs: torch.Tensor, weights: list[torch.Tensor]) -> torch.Tensor:
-    """(B, L, H / 2) the states of one direction, from the first place on.
+    """Return (B, L, H / 2) the states of one direction, from the first place on.
 
     It has no dropout, so that training says nothing but whether there will be gradients: a GPU refuses those of
     `training=False`, and policy gradient has them with the network in `eval` mode.
@@ -106,7 +106,7 @@ class Seq2SeqBody(nn.Module):
         return Memory(states, self.of_encoder(states), batch.mask, batch.mentioned)
 
     def start(self, memory: Memory) -> State:
-        """The state before the first step: from the mean of the words; nothing attended to."""
+        """Return the state before the first step: from the mean of the words; nothing attended to."""
         weights = memory.mask[..., None].to(memory.states.dtype)
         mean = (memory.states * weights).sum(1) / weights.sum(1)  # (B, H)
         hidden, cell = self.bridge(mean).tanh().chunk(2, -1)
@@ -126,7 +126,7 @@ class Seq2SeqBody(nn.Module):
         return (hidden, cell, attended), torch.cat((hidden, attended), -1), attention
 
     def unroll(self, memory: Memory, previous: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """All steps of known programs: (B, T, E), the vectors of the steps before each.
+        """Return all steps of known programs: (B, T, E), the vectors of the steps before each.
 
         Returns:
             (B, T, 2 H) features and (B, T, L) attention.

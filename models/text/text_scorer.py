@@ -62,7 +62,7 @@ class TextScorer:
             return self._places(self.writer.begin(self.read(inputs)))
 
     def score(self, asked: Sequence[Asked], part: Part) -> list[Scores]:
-        """The logarithms of the probabilities of actions and of the end, or the scores of nodes."""
+        """Return the logarithms of the probabilities of actions and of the end, or the scores of nodes."""
         context = Context(*(torch.cat(found) for found in zip(*(each.state.context for each in asked), strict=True)))
         with torch.no_grad():
             if part is Part.ACTION:
@@ -77,7 +77,7 @@ class TextScorer:
         ]
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> list[Place]:
-        """The places after steps."""
+        """Return the places after steps."""
         if not steps:
             return []
         numbers = [self._numbers(each.world, step) for each, step in zip(asked, steps, strict=True)]
@@ -96,7 +96,7 @@ class TextScorer:
         return self.vocabulary.action_numbers[step.action], first, second
 
     def _class(self, world: World, node: int | None) -> int:
-        """The number of a node's class, 0 for none."""
+        """Return the number of a node's class, 0 for none."""
         if node is None or node < 0:
             return 0
         found = self._classes(world.home.knowledge).get(world.home.classes[node])

@@ -37,7 +37,7 @@ def table(
     repaired: bool = False,
     seed: int = 0,
 ) -> list[Row]:
-    """The rows of a table, over the original programs of all test parts of a split.
+    """Return the rows of a table, over the original programs of all test parts of a split.
 
     Args:
         number: 4.4 or 4.5.
@@ -91,7 +91,7 @@ def _plain(each: Example) -> baselines.Example:
 
 
 def _sibling(one: Example, test: Sequence[Example]) -> Steps | None:
-    """The program of another example with the same text."""
+    """Return the program of another example with the same text."""
     found = (each.steps for each in test if each is not one and _text(each) == _text(one))
     return next(found, None)
 

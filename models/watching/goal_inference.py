@@ -52,7 +52,7 @@ class GoalInference(Settings):
     shape: str = "things"
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", self.heads, "its `heads` share it")
 
     def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:

@@ -52,7 +52,7 @@ class MomentNetwork(nn.Module):
         nn.init.constant_(self.count.bias.data.unflatten(0, (self.predicates, most + 1))[:, 0], RARE)
 
     def forward(self, batch: Packed) -> Tensor:
-        """The logarithms of the probabilities of each predicate's counts, (D, P, most + 1)."""
+        """Return the logarithms of the probabilities of each predicate's counts, (D, P, most + 1)."""
         kinds, places = torch.as_tensor(batch.kinds), torch.as_tensor(batch.places)
         there = _places_at(places, torch.as_tensor(batch.times))  # (D, M, T)
         kind = self.kind(kinds)[:, None].expand(-1, MOMENTS, -1, -1)
@@ -67,7 +67,7 @@ class MomentNetwork(nn.Module):
 
 
 def _places_at(places: Tensor, times: Tensor) -> Tensor:
-    """The place in which each thing was last seen at each moment, (D, M, T); 0 before it is seen."""
+    """Return the place in which each thing was last seen at each moment, (D, M, T); 0 before it is seen."""
     moments = torch.linspace(0.0, 1.0, MOMENTS)
     before = (times[:, None] <= moments[None, :, None, None] + 1e-6) & (places[:, None] > 0)  # (D, M, T, E)
     last = before.sum(3) - 1

@@ -59,7 +59,7 @@ class Layout:
 
     @classmethod
     def of(cls, predicates: Sequence[Predicate]) -> Layout:
-        """The layout of predicates with names, as a grammar writes them, or with nodes: both are equal."""
+        """Return the layout of predicates with names, as a grammar writes them, or with nodes: both are equal."""
         kinds: dict[Name | None, int] = {}
         places: dict[tuple[str, Name | None], int] = {}
         cells = []
@@ -71,7 +71,7 @@ class Layout:
 
 
 def _parts(predicate: Predicate) -> tuple[Name | None, tuple[str, Name | None]]:
-    """The thing that a predicate counts, and its place; of a character's, the thing that it holds or uses."""
+    """Return the thing that a predicate counts, and its place; of a character's, the thing that it holds or uses."""
     subject, target = predicate.subject, predicate.target
     return (target, (predicate.name, subject)) if _mine(predicate) else (subject, (predicate.name, target))
 
@@ -83,7 +83,7 @@ def _mine(predicate: Predicate) -> bool:
 
 
 def sightings(ticks: Sequence[Tick], predicates: Sequence[Predicate], agent: int = 0) -> tuple[Seen, ...]:
-    """The things that were seen to change their places while a character acted, in the order of their nodes.
+    """Return the things that were seen to change their places while a character acted, in the order of their nodes.
 
     Args:
         ticks: of a demonstration.
@@ -115,7 +115,7 @@ def sightings(ticks: Sequence[Tick], predicates: Sequence[Predicate], agent: int
 
 
 def _kinds(predicates: Sequence[Predicate], home: Home) -> list[int]:
-    """The nodes of each kind."""
+    """Return the nodes of each kind."""
     found: dict[Name | None, int] = {}
     for each in predicates:
         thing = _parts(each)[0]

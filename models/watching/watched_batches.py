@@ -88,11 +88,11 @@ class Joining:
     forbidden: frozenset[Counts]
 
     def goal_set(self, example: Watched) -> int:
-        """The goal set of a demonstration of one."""
+        """Return the goal set of a demonstration of one."""
         return next((self.set_of[i] for i, count in enumerate(example.counts) if count), -1)
 
     def __call__(self, one: Watched, other: Watched, chooser: Random) -> Watched | None:
-        """Both at once, each in a part of the time; None where both are of one set, or the goal is forbidden.
+        """Return both at once, each in a part of the time; None where both are of one set, or the goal is forbidden.
 
         Things that were left where only the other goal wants such things would be in the way: they are left out, and so
         are all distractions of the second demonstration.
@@ -124,7 +124,7 @@ def _within(things: Sequence[Seen], chooser: Random) -> list[Seen]:
 
 
 def epoch(examples: Sequence[Watched], joining: Joining, share: float, chooser: Random) -> list[Watched]:
-    """All demonstrations in an order that is drawn; some share of them is joined with another one."""
+    """Return all demonstrations in an order that is drawn; some share of them is joined with another one."""
     found = []
     for each in chooser.sample(examples, len(examples)):
         both = joining(each, chooser.choice(examples), chooser) if chooser.random() < share else None

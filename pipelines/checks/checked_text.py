@@ -44,7 +44,7 @@ def check_text(
 def check_program(
     program: Program, knowledge: Knowledge, file: str, source: list[str], *, affordances: bool, lint: bool
 ) -> tuple[list[Diagnostic], list[Diagnostic]]:
-    """The faults of a program as parsed, and, if names and arity are right, its warnings.
+    """Return the faults of a program as parsed, and, if names and arity are right, its warnings.
 
     Args:
         program: with the lines of its steps.

@@ -23,7 +23,7 @@ class Described:
             yield item
 
     def checked(self, item: Item) -> Item:
-        """The item, or its refusal if its description is unknown."""
+        """Return the item, or its refusal if its description is unknown."""
         if item.reader != crowd.NAME or item.value["stage"] == 1 or not len(self._ids):
             return item
         name = item.value["cells"]["Input.description_id"].strip()

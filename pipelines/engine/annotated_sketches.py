@@ -30,7 +30,7 @@ class Annotations(NamedTuple):
 
 
 def fitting(given: Iterable[Mapping[str, Any]], steps_of: Callable[[list[str]], Mapping[str, int]]) -> Annotations:
-    """The annotations of programs that are published; the id of a description names its program.
+    """Return the annotations of programs that are published; the id of a description names its program.
 
     Args:
         given: rows of `ingest`, with the columns `ANNOTATED`.
@@ -53,7 +53,7 @@ def fitting(given: Iterable[Mapping[str, Any]], steps_of: Callable[[list[str]], 
 
 
 def _unfit(row: Mapping[str, Any], steps: int) -> RejectRow:
-    """An annotation whose flags are not as many as the steps of its program."""
+    """Return an annotation whose flags are not as many as the steps of its program."""
     message = f"not a sketch of {row['description_id']}: flags {len(row['keep']):,}, steps of the program {steps:,}"
     remedy = "set a flag for each step of the program"
     fault = Reject.of(Code.BAD_JSON, message, file=row["place"], suggestion=remedy)

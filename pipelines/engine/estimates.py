@@ -43,7 +43,7 @@ class Estimate:
 
 
 def estimate(programs: int, settings: Settings, workers: int, homes: int) -> Estimate:
-    """The costs of a build.
+    """Return the costs of a build.
 
     Args:
         programs: the number of valid programs.
@@ -63,7 +63,7 @@ def estimate(programs: int, settings: Settings, workers: int, homes: int) -> Est
 
 
 def forecast(programs: int, settings: Settings, workers: int, *, force: bool = False) -> str:
-    """The estimate as text; "" for a short build.
+    """Return the estimate as text; "" for a short build.
 
     Raises:
         HearthError: UNWRITABLE, the disk is too small and `force` is False.

@@ -16,13 +16,13 @@ class Progress:
         """Information about the build as a whole."""
 
     def start(self, stage: str, total: int | None) -> None:
-        """A stage begins; `total` is the number of its records, if known."""
+        """Show that a stage begins; `total` is the number of its records, if known."""
 
     def seen(self, records: int, rejects: int) -> None:
         """Further records were processed, `rejects` of them rejected."""
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """A stage is complete; `fresh` is False if it was up to date."""
+        """Show that a stage is complete; `fresh` is False if it was up to date."""
 
 
 class Lines(Progress):
@@ -155,5 +155,5 @@ def for_terminal(stream: TextIO | None = None) -> Progress:
 
 
 def _shown(rate: float) -> str:
-    """A rate as people read it: films take minutes each."""
+    """Return a rate as people read it: films take minutes each."""
     return f"{rate:,.0f}" if rate >= 10 else f"{rate:.2g}"

@@ -34,7 +34,7 @@ def record_of(name: str, plan: Plan) -> str:
 
 
 def stage(name: str) -> Stage:
-    """The stage of that name.
+    """Return the stage of that name.
 
     Raises:
         HearthError: UNKNOWN_ID, with the names of the stages.

@@ -150,7 +150,7 @@ def _run(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
 
 
 def _needed(job: Job, partition: Partition) -> list[Path]:
-    """The parts that a partition reads: those of its payload, or all if the stage defines its own partitions."""
+    """Return the parts that a partition reads: those of its payload, or all if the stage defines its own partitions."""
     if job.stage.partitions is None:
         return [Path(path) for path in partition.payload]
     manifests = [read_manifest(job.settings.folder(name)) for name in job.stage.reads]

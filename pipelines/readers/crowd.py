@@ -120,7 +120,7 @@ def _origin(cells: dict[str, str]) -> str:
 
 
 def read(item: Item, salt: str) -> IngestedRow | Reject:
-    """The record of an answer, or the reject of an answer that is not used."""
+    """Return the record of an answer, or the reject of an answer that is not used."""
     cells = item.value["cells"]
     status = cells["AssignmentStatus"].strip()
     if status.lower() not in _ACCEPTED:
@@ -151,7 +151,7 @@ _GARBLED = re.compile("(?:\u00c3[\u0080-\u00bf\u0152-\u2122]|\u00e2\u20ac[\u0080
 
 
 def _garbled(text: str) -> str:
-    """The first word that is UTF-8 decoded as Windows-1252, or ""; only a word that decodes back counts."""
+    """Return the first word that is UTF-8 decoded as Windows-1252, or ""; only a word that decodes back counts."""
     match = _GARBLED.search(text)
     if match is None:
         return ""

@@ -67,7 +67,7 @@ def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> I
 
 
 def _plan_in(value: Any) -> list[tuple[str, Any]]:
-    """The record of a list in a list, where its texts read as steps."""
+    """Return the record of a list in a list, where its texts read as steps."""
     is_texts = isinstance(value, list) and len(value) > 1 and all(map(is_line, value))
     return [("", {"steps": value})] if is_texts and column_of_steps({"steps": ["\n".join(value)]}) else []
 
@@ -115,7 +115,7 @@ def _is_steps(value: Any) -> bool:
 
 
 def named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
-    """A record with its fields by our names; those of others are guessed where ours are missing."""
+    """Return a record with its fields by our names; those of others are guessed where ours are missing."""
     value = with_step_lists(value)
     inside = {name: value_at(value, name) for name in given.values() if "." in name and name not in value}
     value = {**value, **{name: part for name, part in inside.items() if part is not None}}
@@ -148,7 +148,7 @@ _PROGRAM_KEYS = _PROGRAMS | {"text"}
 
 
 def _key_of_steps(value: Mapping[str, Any]) -> str:
-    """The key whose texts read as steps, of a record that no key names."""
+    """Return the key whose texts read as steps, of a record that no key names."""
     parts = {key: part if isinstance(part, list) else [part] for key, part in value.items()}
     return column_of_steps(
         {key: ["\n".join(part)] for key, part in parts.items() if all(isinstance(each, str) for each in part)}

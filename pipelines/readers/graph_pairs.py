@@ -44,7 +44,7 @@ _KNOWN: dict[bytes, bytes] = {}
 
 
 def read_pair(data: bytes) -> tuple[JsonObject, Change | None]:
-    """The start graph, and the change to the end graph in edges and simulated states; None without an end graph.
+    """Return the start graph, and the change to the end graph in edges and simulated states; None without an end graph.
 
     The start graph is the release's, but for its edges, which are `EdgeColumns` if they have usual ids and relations.
 
@@ -93,7 +93,7 @@ def _by_texts(data: bytes) -> tuple[JsonObject, Change | None]:
 
 
 def _cut(data: bytes) -> tuple[bytes, list[Portions]]:
-    """The file with a number for each run of texts that are nothing but edges, and the runs' edges."""
+    """Return the file with a number for each run of texts that are nothing but edges, and the runs' edges."""
     between = _BETWEEN.search(data)
     cut = _CUT + between[0] if between else b""
     texts = re.split(re.escape(cut), data) if cut else [data]  # half as long as `bytes.split` takes
@@ -113,7 +113,7 @@ def _cut(data: bytes) -> tuple[bytes, list[Portions]]:
 
 
 def _learnt(text: bytes) -> bytes:
-    """The edges of a text that is nothing else, kept for the next time; else nothing."""
+    """Return the edges of a text that is nothing else, kept for the next time; else nothing."""
     try:
         found = _KNOWN[text] = _portion(orjson.loads(b"[{%b%b}]" % (text, _CUT)))
     except (KeyError, TypeError, ValueError, AttributeError):
@@ -122,7 +122,7 @@ def _learnt(text: bytes) -> bytes:
 
 
 def _portions(edges: Sequence[Any], runs: Sequence[Portions]) -> Portions:
-    """A graph's edges: those of its runs, and the others."""
+    """Return a graph's edges: those of its runs, and the others."""
     others = _portion([one for one in edges if type(one) is not int])
     return {others}.union(*(runs[one] for one in edges if type(one) is int))
 
@@ -162,5 +162,5 @@ def _changed(start: JsonObject, final: JsonObject, edges: set[Edge], new: set[Ed
 
 
 def _states(nodes: Iterable[tuple[Any, ...]], ids: set[int]) -> set[tuple[int, str]]:
-    """The simulated states of some nodes, each given as its id and states."""
+    """Return the simulated states of some nodes, each given as its id and states."""
     return {(one[0], name) for one in nodes if one[0] in ids for name in one[1:] if name in STATE_ID}

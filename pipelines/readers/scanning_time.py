@@ -43,7 +43,7 @@ class ScanningTime:
         self._deadline.close()
 
     def within(self, path: Place, place: str, found: Iterator[Item]) -> Iterator[Item]:
-        """The items that a scanner finds; at the end of the time, a reject for the rest of the file."""
+        """Yield the items that a scanner finds; at the end of the time, a reject for the rest of the file."""
         file = _packed(path)
         if file is None or not self._seconds:
             yield from found

@@ -42,7 +42,7 @@ _ABSENT = (0, None)
 
 
 def read(item: Item) -> IngestedRow | Reject:
-    """The record of a sketch: its program, a flag for each of its steps, and the steps that the flags keep."""
+    """Return the record of a sketch: its program, a flag for each of its steps, and the steps that the flags keep."""
     keep, given = item.value["keep"], item.value["input"]
     try:
         flags = [bool(flag) for flag in keep]

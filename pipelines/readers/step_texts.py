@@ -25,7 +25,9 @@ _IN_ONE_LINE = re.compile(
 
 
 def steps_of(text: str) -> list[str]:
-    """The lines of a text; of a single line its steps: a list, or separated by numbers, `;`, `->`, brackets, stops.
+    """Return the lines of a text.
+
+    A single line gives its steps: a list, or separated by numbers, `;`, `->`, brackets, stops.
 
     Raises:
         HearthError: BAD_JSON, a mapping of actions to objects that is cut off.

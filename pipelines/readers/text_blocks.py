@@ -46,7 +46,7 @@ class _Cutter:
         self._splitter = _started()
 
     def take(self, piece: str, final: bool = False) -> Iterator[Block]:
-        """The programs that end in the next piece of the text."""
+        """Yield the programs that end in the next piece of the text."""
         self._buffer += piece
         if self._kept is None and self._seen == 0:
             self._drop(_LEADING.match(self._buffer).end())  # type: ignore[union-attr]

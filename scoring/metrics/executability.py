@@ -148,7 +148,7 @@ def executability(
 
 
 def _canonical(step: Step, knowledge: Knowledge) -> Step:
-    """The step with canonical names; unchanged if it has a fault."""
+    """Return the step with canonical names; unchanged if it has a fault."""
     names = tuple([ref.name for ref in step.objects])
     action, canonical = _names(step.action, names, knowledge)
     if action == step.action and canonical == names:
@@ -159,7 +159,7 @@ def _canonical(step: Step, knowledge: Knowledge) -> Step:
 
 @lru_cache(maxsize=65_536)
 def _names(action: str, names: tuple[str, ...], knowledge: Knowledge) -> tuple[str, tuple[str, ...]]:
-    """The canonical names of a step without instances, cached because steps recur in a corpus."""
+    """Return the canonical names of a step without instances, cached because steps recur in a corpus."""
     program, _ = check(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
     return program.steps[0].action, tuple(ref.name for ref in program.steps[0].objects)
 
@@ -175,7 +175,7 @@ def _afforded(action: str, names: tuple[str, ...], knowledge: Knowledge) -> bool
 
 
 def _failed_step(steps: Sequence[Step], failure: Failure) -> int:
-    """The index of the failing step: the agent's step in the failing tick."""
+    """Return the index of the failing step: the agent's step in the failing tick."""
     starts = [number for number, step in enumerate(steps) if not number or not step.joins]
     start = starts[failure.tick]
     end = starts[failure.tick + 1] if failure.tick + 1 < len(starts) else len(steps)

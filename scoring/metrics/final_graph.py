@@ -55,7 +55,7 @@ class Nodes:
         return frozenset(node for node in nodes if isinstance(self.labels.get(node), str))
 
     def extended(self, nodes: Iterable[Node]) -> Nodes:
-        """The table with more nodes, whose ids are above all that it has."""
+        """Return the table with more nodes, whose ids are above all that it has."""
         more = Nodes.of(nodes)
         joined = {name: self.instances.get(name, ()) + ids for name, ids in more.instances.items()}
         return Nodes(
@@ -68,7 +68,7 @@ class Nodes:
 
     @classmethod
     def of(cls, nodes: Iterable[Node]) -> Nodes:
-        """The table of some nodes."""
+        """Return the table of some nodes."""
         nodes = sorted(nodes, key=lambda node: node.id)
         instances: dict[str, list[int]] = {}
         for node in nodes:
@@ -99,7 +99,7 @@ class View:
     rows: Callable[[int], EdgeRows]
 
     def mask(self, nodes: Iterable[int]) -> int:
-        """Some nodes as a set of numbers."""
+        """Return some nodes as a set of numbers."""
         return mask_of(map(self.index.__getitem__, nodes))
 
 
@@ -189,7 +189,7 @@ def _is_room_or_door(node: Node) -> bool:
 
 @lru_cache(maxsize=64)
 def nodes_of(home: Home) -> Nodes:
-    """The table of a home: a prediction and its reference end in worlds of the same one.
+    """Return the table of a home: a prediction and its reference end in worlds of the same one.
 
     Of a home that was made from another by adding nodes, only these are read.
     """

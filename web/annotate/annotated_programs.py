@@ -18,7 +18,7 @@ CHANGED = (DRAFT, RETURNED)
 
 
 def text_of(store: Store, text: str) -> Row:
-    """A description by its id.
+    """Return a description by its id.
 
     Raises:
         WebError: UNKNOWN_ID.
@@ -31,7 +31,7 @@ def text_of(store: Store, text: str) -> Row:
 
 
 def own_program(store: Store, person: str, text: str) -> Row | None:
-    """The program that a person has begun for a description."""
+    """Return the program that a person has begun for a description."""
     query = sql.select(PROGRAMS).where(PROGRAMS.c.session == person, PROGRAMS.c.text == text)
     return store.row(query)
 

@@ -48,7 +48,7 @@ def write_collected(web: Web) -> None:
 
 
 def collected(store: Store) -> dict[str, bytes]:
-    """The files by name; empty where there is nothing for one."""
+    """Return the files by name; empty where there is nothing for one."""
     accepted = annotated_programs.accepted(store)
     marks = _marks(store)
     described = {row["text"]: row for row in reversed(accepted)}
@@ -90,7 +90,7 @@ _KINDS: Mapping[str, type] = {"sketch": list, "completeness": int, "film": dict}
 
 
 def _marked(mark: Row) -> Any:
-    """The value of a mark.
+    """Return the value of a mark.
 
     Raises:
         HearthError: DAMAGED_FILE: it is none, as in a store that was changed by hand.
@@ -111,7 +111,10 @@ def _marks(store: Store) -> list[Row]:
 
 
 def _sketches(accepted: Sequence[Row], marks: Iterable[Row]) -> bytes:
-    """The steps that are the activity, in the form of the release's annotations; the first mark of each program."""
+    """Return the steps that are the activity, in the form of the release's annotations.
+
+    The first mark of each program counts.
+    """
     programs = {row["id"]: row for row in accepted}
     first = {mark["subject"]: mark for mark in reversed(list(marks)) if mark["kind"] == "sketch"}
     answers: list[list[int]] = []
@@ -128,7 +131,7 @@ def _sketches(accepted: Sequence[Row], marks: Iterable[Row]) -> bytes:
 
 
 def ratings_sheet(store: Store) -> str:
-    """The grades of completeness, as the sheet that `corpus completeness --sheet` reads."""
+    """Return the grades of completeness, as the sheet that `corpus completeness --sheet` reads."""
     programs = {row["id"]: row for row in annotated_programs.accepted(store)}
     rows: list[tuple[object, ...]] = [(*COLUMNS[:-1], f"rating ({HELP})")]
     for mark in _marks(store):

@@ -32,7 +32,7 @@ EXAMPLES = (
 
 
 def describe(visit: Visit) -> Response:
-    """The page of stage one."""
+    """Return the page of stage one."""
     thanks = visit.fields.get("thanks") == "yes"
     return _page(visit, title="", description="", wishes=(), thanks=thanks)
 
@@ -74,7 +74,7 @@ def lacks(title: str, description: str) -> tuple[str, ...]:
 
 
 def _scene(visit: Visit) -> str:
-    """The room that is drawn for a person's next description."""
+    """Return the room that is drawn for a person's next description."""
     query = sql.select(sql.func.count()).select_from(TEXTS).where(TEXTS.c.session == visit.person)
     count = visit.web.store.scalar(query)
     return rng(0, "annotate", visit.person, count).choice(SCENES)

@@ -38,13 +38,13 @@ class Block(NamedTuple):
     text: str = ""
 
     def line(self) -> str:
-        """The step as program text; an empty slot is left out, which the check reports."""
+        """Return the step as program text; an empty slot is left out, which the check reports."""
         if self.action == SPECIAL:
             return f"[{SPECIAL}] <{self.text}>"
         return print_step(Step(self.action, tuple(filter(None, self.things))))
 
     def words(self, known: Knowledge) -> str:
-        """The step as a phrase: `Put cup 1 on table 1`."""
+        """Return the step as a phrase: `Put cup 1 on table 1`."""
         if self.action == SPECIAL:
             return f"Special: {self.text}"
         names = [f"{ref.name.replace('_', ' ')} {ref.instance}" if ref else "…" for ref in self.things]
@@ -66,11 +66,11 @@ class Draft:
     blocks: tuple[Block, ...] = ()
 
     def lines(self) -> list[str]:
-        """The steps as program text, one line each."""
+        """Return the steps as program text, one line each."""
         return [block.line() for block in self.blocks]
 
     def things(self) -> list[ObjectRef]:
-        """Every declared thing, rooms first."""
+        """Return every declared thing, rooms first."""
         both = [*self.rooms.items(), *self.props.items()]
         return [ObjectRef(name, number) for name, count in both for number in range(1, count + 1)]
 
@@ -98,7 +98,7 @@ class Draft:
 
 
 def stored(text: str) -> Draft:
-    """A draft as it was stored.
+    """Return a draft as it was stored.
 
     Raises:
         HearthError: DAMAGED_FILE: it is none, as in a store that was changed by hand.
@@ -128,7 +128,7 @@ def _stored_thing(name: str, instance: int) -> ObjectRef:
 
 
 def read_quantity(text: str, place: str) -> int:
-    """A quantity from a form, from 0 to `MOST_PIECES`.
+    """Return a quantity from a form, from 0 to `MOST_PIECES`.
 
     Raises:
         WebError: BAD_ARGUMENT.
@@ -191,7 +191,7 @@ def is_plain(text: str) -> bool:
 
 
 def _special(text: str, place: str) -> str:
-    """The free text of a special block, with single spaces.
+    """Return the free text of a special block, with single spaces.
 
     Raises:
         WebError: BAD_ARGUMENT: it is longer than any person's.

@@ -37,7 +37,7 @@ class Found(NamedTuple):
 
 
 def check_draft(draft: Draft, title: str, description: str, known: Knowledge) -> list[Found]:
-    """All faults and warnings of a draft, ordered by step."""
+    """Return all faults and warnings of a draft, ordered by step."""
     lines = _shown_plain(draft).lines()
     expanded = special.expand("\n".join(lines), 0)
     pairs = zip(expanded.text.split("\n"), expanded.lines, strict=True)
@@ -62,7 +62,7 @@ _UNFIT = (
 
 
 def _shown_plain(draft: Draft) -> Draft:
-    """The draft without texts of special blocks that can't stand in a line; they are faults of their own."""
+    """Return the draft without texts of special blocks that can't stand in a line; they are faults of their own."""
     blocks = (each if is_plain(each.text) else each._replace(text="") for each in draft.blocks)
     return replace(draft, blocks=tuple(blocks))
 

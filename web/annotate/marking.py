@@ -45,7 +45,7 @@ class Film(NamedTuple):
 
 @lru_cache(maxsize=2)
 def films_of(dataset: Path) -> dict[str, Film]:
-    """The films of a published dataset by the id of their execution; one of each program."""
+    """Return the films of a published dataset by the id of their execution; one of each program."""
     opened = Dataset.open(dataset)
     query = """SELECT min(v.execution_id), min_by(v.file, v.execution_id), e.program_id
         FROM videos v JOIN executions e USING (execution_id) GROUP BY e.program_id ORDER BY 1"""
@@ -60,7 +60,7 @@ def films_of(dataset: Path) -> dict[str, Film]:
 
 
 def sketch_page(visit: Visit) -> Response:
-    """The next accepted program, each step with a box."""
+    """Return the next accepted program, each step with a box."""
     return _program_page(visit, SKETCH, "annotate/sketch.html")
 
 
@@ -76,7 +76,7 @@ def keep_sketch(visit: Visit) -> Response:
 
 
 def rating_page(visit: Visit) -> Response:
-    """The next accepted program, to be graded."""
+    """Return the next accepted program, to be graded."""
     return _program_page(visit, COMPLETENESS, "annotate/rate.html", grades={int(each): SAID[each] for each in SAID})
 
 
@@ -90,7 +90,7 @@ def keep_rating(visit: Visit) -> Response:
 
 
 def film_page(visit: Visit) -> Response:
-    """The next film."""
+    """Return the next film."""
     return _film_page(visit, 200, "", "", ())
 
 
@@ -105,7 +105,7 @@ def keep_film(visit: Visit) -> Response:
 
 
 def film_file(visit: Visit) -> Response:
-    """The film itself."""
+    """Return the film itself."""
     path = _film(visit).path
     return FileResponse(path, media_type=KINDS[path.suffix])
 

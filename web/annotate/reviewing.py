@@ -58,7 +58,7 @@ def mend_page(visit: Visit) -> Response:
 
 
 def work(visit: Visit) -> Response:
-    """The program, the blocks and the things, for the page's scripts."""
+    """Return the program, the blocks and the things, for the page's scripts."""
     program, _ = _waiting(visit)
     return visit.answer(composing.work_of(visit, program, stored(program["draft"])))
 

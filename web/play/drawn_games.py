@@ -101,7 +101,7 @@ class DrawnGame:
 
     @property
     def camera(self) -> Camera:
-        """The eyes now."""
+        """Return the eyes now."""
         return self.sensor.camera(self.game.playing.env, self.number)
 
     def as_json(self) -> dict[str, Any]:
@@ -120,7 +120,7 @@ class DrawnGame:
         return {"base": self.address, "off": off, "on": on, "camera": eyes}
 
     def model(self, key: str) -> bytes:
-        """A model that is there now, or was sent to a page before, which may ask once the game has gone on.
+        """Return a model that is there now, or was sent to a page before, which may ask once the game has gone on.
 
         Raises:
             HearthError: UNKNOWN_ID: there is none with that key.
@@ -148,7 +148,7 @@ class DrawnGame:
         return data.tobytes()
 
     def pick(self, x: int, y: int) -> int:
-        """The node id that a pixel of the picture shows; 0 of the background."""
+        """Return the node id that a pixel of the picture shows; 0 of the background."""
         ids = self.sensor(self.game.playing.env, self.number, ("instance_ids",))["instance_ids"]
         return int(ids[min(max(y, 0), SIZE[1] - 1), min(max(x, 0), SIZE[0] - 1)])
 

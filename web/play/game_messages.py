@@ -164,7 +164,7 @@ PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}
 
 
 def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
-    """The instructions that are offered: action -> the ids that each of its places may have.
+    """Return the instructions that are offered: action -> the ids that each of its places may have.
 
     They are those that can be done with things that the page shows, and that make sense to people. `me` is the node of
     the person's character, which the page does not show as a thing.
@@ -183,12 +183,12 @@ def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
 
 
 def usable_things(home: Home) -> int:
-    """The things of a home that pages show."""
+    """Return the things of a home that pages show."""
     return home.rooms | home.characters | _with(home, USES)
 
 
 def _with(home: Home, properties: Iterable[str]) -> int:
-    """The things that have one of some properties."""
+    """Return the things that have one of some properties."""
     return reduce(or_, (home.properties[name] for name in properties))
 
 
@@ -217,7 +217,7 @@ def _wanted(counted: Counted, home: Home) -> dict[str, Any]:
 
 
 def _classes(literal: Any, home: Home) -> Iterator[str]:
-    """The classes of the home's things that a literal is about, so that pages can mark them."""
+    """Yield the classes of the home's things that a literal is about, so that pages can mark them."""
     for term in literal.terms:
         if isinstance(term, int):
             yield home.classes[home.index[term]]
@@ -226,7 +226,7 @@ def _classes(literal: Any, home: Home) -> Iterator[str]:
 
 
 def goal_words(literal: Any, home: Home) -> str:
-    """A literal of a goal for people: `Put plate on dining table`."""
+    """Return a literal of a goal for people: `Put plate on dining table`."""
     names = [_name(term, home) for term in literal.terms]
     if literal.name == HOLDS:
         return f"Hold {names[1]}"

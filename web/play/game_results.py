@@ -20,13 +20,13 @@ Kind = tuple[str, str, str, str]
 
 
 def kind_of(game: Game) -> Kind:
-    """The file that a game belongs in."""
+    """Return the file that a game belongs in."""
     trial = game.trial
     return (trial.task.challenge, trial.task.split, trial.helper, trial.goal)
 
 
 def results(games: Iterable[Game]) -> dict[Kind, Results]:
-    """The results of games by their kind.
+    """Return the results of games by their kind.
 
     Of two games of one task with one seed, the later gets the next seed that is free: a seed names an episode.
     """
@@ -57,5 +57,5 @@ def _results(kind: Kind, games: list[Game]) -> Results:
 
 
 def as_bytes(found: Results) -> bytes:
-    """A file of results."""
+    """Return a file of results."""
     return b"".join((first_line(found.header), *(line(found.header, each) for each in found.records)))

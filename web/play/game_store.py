@@ -98,7 +98,7 @@ def join(connection: sql.Connection, session: str, code: str) -> str:
 
 
 def seat(connection: sql.Connection, game: str, session: str) -> int:
-    """The character that a session plays in a game.
+    """Return the character that a session plays in a game.
 
     Raises:
         WebError: UNKNOWN_ID: none; whether there is such a game is not said.
@@ -123,7 +123,7 @@ def stored(connection: sql.Connection, game: str) -> Stored:
 
 
 def games_of(connection: sql.Connection, session: str) -> list[Stored]:
-    """The games in which a session has a seat, the newest first."""
+    """Return the games in which a session has a seat, the newest first."""
     query = sql.select(GAMES).join(SEATS, SEATS.c.game == GAMES.c.id).where(SEATS.c.session == session)
     return [_stored(row) for row in connection.execute(query.order_by(GAMES.c.created.desc()))]
 
@@ -135,7 +135,7 @@ def played_before(connection: sql.Connection, task: str) -> int:
 
 
 def all_games(connection: sql.Connection) -> list[Stored]:
-    """Every game, the oldest first; for researchers."""
+    """Return every game, the oldest first; for researchers."""
     return [_stored(row) for row in connection.execute(sql.select(GAMES).order_by(GAMES.c.created, GAMES.c.id))]
 
 
@@ -145,7 +145,7 @@ def _stored(row: Any) -> Stored:
 
 
 def decisions(connection: sql.Connection, game: str, since: int = 0) -> dict[int, list[Decided]]:
-    """The decisions of the ticks from `since` on, by tick and character."""
+    """Return the decisions of the ticks from `since` on, by tick and character."""
     query = sql.select(DECISIONS).where(DECISIONS.c.game == game, DECISIONS.c.tick >= since)
     found: dict[int, list[Decided]] = {}
     for row in connection.execute(query.order_by(DECISIONS.c.tick, DECISIONS.c.agent)):

@@ -104,7 +104,7 @@ class Game:
         return self.playing.legal(number)
 
     def read(self, number: int, text: str | None) -> str | None:
-        """A decision of a person, as records have it; None to wait.
+        """Return a decision of a person, as records have it; None to wait.
 
         Raises:
             HearthError: it can't be done now, as far as the person sees; nothing changes then.
@@ -128,7 +128,7 @@ class Game:
         return self._answer[0]
 
     def _asked(self) -> Guarded:
-        """The helper, begun, and shown every tick that the store knew."""
+        """Return the helper, begun, and shown every tick that the store knew."""
         assert self._helper is not None
         agent = Guarded(self._helper, HELPER, self.allowed)
         if not self._begun:
@@ -166,7 +166,7 @@ class Game:
         self.end = {"agent": number, "code": str(code), "message": message}
 
     def record(self) -> Record:
-        """The episode as result files have it (see `challenges.result_files`)."""
+        """Return the episode as result files have it (see `challenges.result_files`)."""
         trial, playing = self.trial, self.playing
         metrics = measured(trial.challenge, self.start, playing.env.ticks, self.goals, playing.progress)
         asked = trial.helper_goal if trial.helped else None
@@ -180,7 +180,7 @@ _UNFINISHED = {"agent": 0, "code": str(Code.DISCONNECTED), "message": "not finis
 
 
 def made(trial: Trial) -> Agent:
-    """The agent that helps in a trial."""
+    """Return the agent that helps in a trial."""
     if trial.helper in HELPERS:
         return HELPERS[trial.helper].make(Person())
     return ONLINE[trial.helper].make(trial.challenge.goals_in)

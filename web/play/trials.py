@@ -71,7 +71,7 @@ class Trial:
 
     @property
     def people(self) -> tuple[int, ...]:
-        """The characters that people decide for."""
+        """Return the characters that people decide for."""
         return (0, 1) if self.helper == PERSON else (0,)
 
     @property
@@ -109,7 +109,7 @@ def offered(which: Challenge) -> dict[str, str]:
 
 
 def drawable() -> tuple[str, ...]:
-    """The interfaces that can be here: buttons alone where the extra `pictures` is not installed."""
+    """Return the interfaces that can be here: buttons alone where the extra `pictures` is not installed."""
     return INTERFACES[:1] if lacking("pictures") else INTERFACES
 
 
@@ -122,7 +122,7 @@ def _can_help(helper: str, which: Challenge) -> bool:
 
 
 def published(name: str, split: str, number: int) -> Task:
-    """A published task by its place in its split, from 0.
+    """Return a published task by its place in its split, from 0.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is no such challenge, split or number.
@@ -191,7 +191,7 @@ def _asked(task: Task, kind: str, seed: int, knowledge: Knowledge) -> Goal | Non
 
 
 def read_trial(given: Mapping[str, Any]) -> Trial:
-    """A trial as the store has it.
+    """Return a trial as the store has it.
 
     Raises:
         HearthError: BAD_JSON, DAMAGED_FILE, BAD_ARGUMENT: it is not as it was written.

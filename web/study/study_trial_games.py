@@ -21,7 +21,7 @@ BACK = "/study/"
 
 
 def begun(web: Web, conduct: Conduct, standing: Standing) -> str:
-    """The game of the trial or practice that a person is at; it is begun if it was not."""
+    """Return the game of the trial or practice that a person is at; it is begun if it was not."""
     chosen = _chosen(web, conduct, standing)
     key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
 
@@ -42,7 +42,7 @@ def _query(key: dict[str, Any]) -> sql.Select[Any]:
 
 
 def _chosen(web: Web, conduct: Conduct, standing: Standing) -> Trial:
-    """The trial as the room Play has it; a practice is alone."""
+    """Return the trial as the room Play has it; a practice is alone."""
     study = conduct.study
     seconds = study.limits.minutes * 60
     if standing.stage == PRACTICE:
