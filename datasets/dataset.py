@@ -105,7 +105,7 @@ class Dataset:
 
         Raises:
             HearthError: MISSING_FILE, if a table is missing; DAMAGED_FILE, if one cannot be read; errors of
-                `published_manifest`, if the replacement is no dataset.
+                `published_manifest`, if the replacement is not a dataset.
         """
         now = version(self.folder)
         if now is not None and now != self._version:
