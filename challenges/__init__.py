@@ -1,1 +1,1 @@
-"""Tasks for agents, and their results: tasks, episodes, metrics, boards, and ways in for others' agents."""
+"""Tasks for agents, and their results: tasks, goals, episodes, metrics, results; wire protocol."""

@@ -92,7 +92,7 @@ def attempt(
         rules: how actions are read.
         default_state: begin with the home in its default state; else as it is given.
         add: sample an environment when the home alone has no binding that runs.
-        size: of what is sampled for one character; `LEAST` adds only what the program needs.
+        size: of the environment that is sampled for one character; `LEAST` adds only the program's needs.
 
     Returns:
         The trial, or why the program can be grounded neither way. Where the program has or names more characters than
@@ -122,6 +122,6 @@ def attempt(
 
 
 def _characters(program: Program) -> int:
-    """Who takes part: those who act, and whom the first of them meets."""
+    """Return the participants: the acting characters, and the one that the first of them meets."""
     acting = max((step.agent for step in program.steps), default=0)
     return 1 + max(acting, sum(ref.name == CHARACTER_CLASS for ref in program.objects()))

@@ -133,7 +133,7 @@ def _label(thing: Thing) -> Shape:
 
 
 def bounds(layout: Layout) -> Rect:
-    """What the drawing covers, metres."""
+    """Extent of the drawing, metres."""
     return Rect.over(room.rect for room in layout.plan.rooms).inset(-BORDER)
 
 

@@ -14,9 +14,9 @@ class Form:
 
     Attributes:
         size: width (along its back), height and depth in metres.
-        mount: `floor`; `flat` (a rug: others stand over it); `wall`; `ceiling`; `window`; `sunk` (into what it is on);
+        mount: `floor`; `flat` (a rug: others stand over it); `wall`; `ceiling`; `window`; `sunk` (into its support);
             `door`; or `item` (stands on or in something).
-        up: the height of the underside of what hangs on a wall.
+        up: the height of the underside of a thing that hangs on a wall.
         levels: heights above its underside at which things stand ON it; empty: on its top.
         shelves: at how many heights things stand INSIDE it.
         front: free depth that using it takes, in metres.

@@ -1,7 +1,7 @@
-"""What a graph's file leaves out of its nodes, filled in from the knowledge of their classes.
+"""Fields that a graph's file leaves out of its nodes, filled in from the knowledge of their classes.
 
-People write nodes with an id, a class and perhaps states; Unity writes the prefab as the category of what was added to
-a scene. A field that a file has is kept, an empty list of properties too.
+People write nodes with an id, a class and perhaps states; Unity writes the prefab as the category of an object that was
+added to a scene. A field that a file has is kept, an empty list of properties too.
 """
 
 from collections.abc import Mapping

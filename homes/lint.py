@@ -24,7 +24,7 @@ SITTING_ON_EDGES = "SITTING"
 
 
 class View:
-    """A graph with what the checks look up.
+    """A graph with the indexes that the checks use.
 
     Attributes:
         graph: the graph.
@@ -83,7 +83,7 @@ class View:
         return self.nodes[node_id].category == ROOM_CATEGORY
 
     def parents(self, node_id: int) -> list[int]:
-        """What it is INSIDE."""
+        """Return the node's container."""
         return self.targets["INSIDE"].get(node_id, [])
 
 
@@ -268,7 +268,7 @@ def _close(view: View) -> Iterator[Diagnostic]:
 
 
 def _on_foot(view: View) -> Iterator[Diagnostic]:
-    """What stands on the floor, and who, where the largest free region of it does not come near."""
+    """Return the things and characters on the floor that the largest free region of it does not come near."""
     if not has_geometry(view.graph):
         return
     layout = measured(view.graph, "", view.knowledge)

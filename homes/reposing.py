@@ -94,7 +94,7 @@ def _on_floor(
 
 
 def _carried(nodes: Mapping[int, Node], graph: EnvironmentGraph, moved: int, box: Box) -> Iterator[tuple[int, Node]]:
-    """What is on and in something that was moved, as far from it as it was."""
+    """Return the things on and in a moved thing, at the same distance from it as before."""
     old = nodes[moved].box
     if old is None:
         return
@@ -120,11 +120,11 @@ def _full(node: Node, relation: str, place: Node, why: str) -> HearthError:
 def room_for(
     class_name: str, holder: Thing, relation: str, others: Sequence[Thing], knowledge: Knowledge
 ) -> tuple[Box, float] | None:
-    """Return where one more thing finds room on or in another beside what is there; None where it does not.
+    """Return where one more thing finds room on or in another next to the things there; None where it does not.
 
     Args:
-        class_name: of what is to be put there.
-        holder: on or in what.
+        class_name: of the thing to be put there.
+        holder: its support or container.
         relation: `on` or `inside`.
         others: what is there.
         knowledge: for shapes.

@@ -1,4 +1,4 @@
-"""Figures of homes beside each other: room sizes, things, degrees, relations (thesis table 5.1), places."""
+"""Figures of several homes in comparison: room sizes, things, degrees, relations (thesis table 5.1), places."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable
@@ -29,11 +29,11 @@ REQUIRED: dict[str, tuple[tuple[str, ...], ...]] = {
     "bed": (("bed",),),
     "desk with a computer": (("desk", "computer"), ("desk", "laptop")),
 }
-"""What every designed home has, each as alternatives of classes that are all there (thesis 2.3)."""
+"""Things that every designed home has, each as alternatives of classes that are all there (thesis 2.3)."""
 
 
 def lacking(graph: EnvironmentGraph) -> tuple[str, ...]:
-    """What of `REQUIRED` a home has not; of a desk with a computer, the computer is ON the desk."""
+    """Return the parts of `REQUIRED` that a home lacks; of a desk with a computer, the computer is ON the desk."""
     classes = {node.class_name for node in graph.nodes}
     named = {node.id: node.class_name for node in graph.nodes}
     on = {(named[e.source], named[e.target]) for e in graph.edges if e.relation == "ON"}
@@ -96,7 +96,7 @@ def of_homes(graphs: Iterable[EnvironmentGraph], knowledge: Knowledge) -> dict[s
 
 
 def places(graphs: Iterable[EnvironmentGraph], knowledge: Knowledge) -> Places:
-    """What the things of some homes are on and in, by class; synonyms count as one class."""
+    """Return the supports and containers of the things of some homes, by class; synonyms count as one class."""
 
     def named(class_name: str) -> str:
         known = knowledge.object_class(class_name)

@@ -166,4 +166,4 @@ CHECKS: dict[str, Callable[[Knowledge], Iterator[tuple[str, str]]]] = {
     "class": _named,
     "usable": _usable,
 }
-"""What is checked, by name."""
+"""The checks, by name."""

@@ -1,4 +1,4 @@
-"""What the knowledge is made of: actions, requirements, object classes, placements, repairs."""
+"""Records of the knowledge: actions, requirements, object classes, placements, repairs."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from hearth.schemas.failures import Code
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """What an argument of an action must be: any of the alternatives suffices.
+    """A requirement of an action's argument: any of the alternatives suffices.
 
     Attributes:
         any_of: one of these properties.
@@ -149,7 +149,7 @@ class ObjectClass:
 
 
 class Placement(NamedTuple):
-    """Where a thing may be: `object` ON, IN or NEARBY `destination`, in `room` or anywhere ('').
+    """An allowed place of a thing: `object` ON, IN or NEARBY `destination`, in `room` or anywhere ('').
 
     `weight` says how usual it is, from 1 (it happens) to 5 (its place); `evidence` who says so.
     """

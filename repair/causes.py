@@ -1,4 +1,4 @@
-"""Which perturbation of a program's environment a failure comes of."""
+"""The perturbation of a program's environment that caused a failure."""
 
 from collections.abc import Sequence
 
@@ -19,7 +19,7 @@ MATTERS: dict[Code, str] = {
     **dict.fromkeys((Code.OCCUPIED, Code.NO_ROOM), "seat"),
     Code.NOT_FACING: "view",
 }
-"""What a failure is about, in the words of `Perturbation.claims`."""
+"""Return the subject of a failure, in the words of `Perturbation.claims`."""
 
 
 def cause(perturbations: Sequence[Perturbation], attempt: Attempt, program: Program) -> int | None:
@@ -31,7 +31,7 @@ def cause(perturbations: Sequence[Perturbation], attempt: Attempt, program: Prog
 
     Args:
         perturbations: all of the environment.
-        attempt: the failure, with what was done about it.
+        attempt: the failure, with its repair.
         program: the original, bound in the environment.
 
     Returns:

@@ -1,6 +1,7 @@
 """Circumstances: what the original's steps are done in, and a repaired program has to do them in, too.
 
-An activity is more than its end: who sits down to type has not done the same when it types first and sits down then.
+An activity is more than its end: a person that types standing and sits down afterwards has not done the same as one
+that sits down to type.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,11 +17,14 @@ from hearth.simulation.engine import Execution
 RESTING = ("SITTING", "LYING")
 
 _STATES = (*RESTING, "OPEN", "ON", "PLUGGED_IN", "CLEAN")
-"""States that are brought about for what follows; their opposites only end them."""
+"""States that are brought about for later steps; their opposites only end them."""
 
 
 class Lost(NamedTuple):
-    """The first step that a repaired program does in other circumstances: its number, its tick, and what is not so."""
+    """Return the first step that a repaired program does in other circumstances.
+
+    Its number, its tick, and the missing circumstance.
+    """
 
     step: int
     tick: int
@@ -30,10 +34,9 @@ class Lost(NamedTuple):
 def circumstances(execution: Execution) -> tuple[Postconditions, ...]:
     """For each step of a program that runs, what holds before it and repairs have to keep.
 
-    That is the posture of the step's character, and which seat of the program it rests on; that it does not hold an
-    object of the step; and what the steps before have brought about: what is held, open, on, plugged in and clean, and
-    which object is ON or INSIDE which. What the environment brought along, rooms, and what something was poured into
-    do not count.
+    Circumstances are the posture of the step's character and its seat in the program; that it does not hold an object
+    of the step; and the results of the earlier steps: objects held, open, on, plugged in and clean, and objects ON or
+    INSIDE others. Facts of the environment, rooms, and the targets of pouring do not count.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])

@@ -36,7 +36,7 @@ def complete(steps: Steps, world: World, knowledge: Knowledge, rules: Rules = DE
     Args:
         steps: of one agent; objects with nodes keep them.
         world: the start.
-        knowledge, rules: what the world goes by.
+        knowledge, rules: those of the world.
     """
     program = Program(steps=steps)
     program = nearest(program, world).apply(program)

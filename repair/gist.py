@@ -31,9 +31,9 @@ def replaceable(knowledge: Knowledge) -> frozenset[str]:
 def meant(goal: Postconditions, program: Program, conditions: Preconditions, knowledge: Knowledge) -> Postconditions:
     """The effects that a program is for, without those that are by the way.
 
-    By the way are: the room where the character or a thing ends up; that something stays open that was opened to get at
-    things; that something is still in the hand that was taken to be used, since whoever uses it has to hold it; and
-    what is in what it was poured into, since pouring is a step that is kept anyway.
+    Side effects are: the room where the character or a thing ends up; a container left open that was opened to take
+    something out; a tool still in the hand, since its user has to hold it; and the content of a vessel after pouring,
+    since pouring is a step that is kept anyway.
     """
     reached_into = {c.objects[1]: c.objects[0] for c in conditions if c.name in ("in", "inside")}
     preparation = knowledge.group("preparation")
@@ -57,7 +57,7 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
 def milestones(execution: Execution) -> Postconditions:
     """Effects that were undone again, but not before something was done meanwhile: the stove that was on while cooking.
 
-    Only what is switched on and what is put somewhere counts; what is held or open is so for another step's sake.
+    Only devices switched on and objects put somewhere count; objects are held or opened for another step's sake.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
@@ -79,7 +79,7 @@ def milestones(execution: Execution) -> Postconditions:
 
 
 def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
-    """What is switched on, and what is ON or INSIDE what, characters left out."""
+    """Return the devices switched on, and the objects ON or INSIDE others, characters left out."""
     found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
     return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]
 

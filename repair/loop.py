@@ -75,7 +75,7 @@ class Repaired:
 
 
 def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[bool, ...]:
-    """Which of one program's attempts helped: the program changed, and the failure did not come back at once.
+    """The successful attempts of one program: the program changed, and the failure did not come back at once.
 
     Args:
         attempts: in order.
@@ -87,7 +87,7 @@ def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[boo
 
 
 class _Task(NamedTuple):
-    """What a program is repaired for: its goal, about these nodes, and the circumstances of each of its steps."""
+    """The purpose of a repair: the program's goal, about these nodes, and the circumstances of each of its steps."""
 
     original: Program
     goal: Postconditions
@@ -131,7 +131,7 @@ def repair(
         program: bound to nodes of the world's home.
         world: the start.
         goal: what the original achieves in its own environment.
-        knowledge, rules: what the world goes by.
+        knowledge, rules: those of the world.
         handlers: by failure code.
         tries: repairs at most.
         canonical_only: remove the steps that the repaired program does not need; costs more than the repairs.

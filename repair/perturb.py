@@ -79,7 +79,7 @@ class Perturbed:
 
 @dataclass(frozen=True, slots=True)
 class Chances:
-    """How likely perturbations are.
+    """Probabilities of perturbations.
 
     Attributes:
         kinds: the probability of each kind, for every condition it applies to.
@@ -187,7 +187,7 @@ def _at_reach(case: Case) -> Iterator[Perturbation]:
 
 
 def _seats(case: Case) -> dict[int | None, str]:
-    """The class of what the character sits or lies on, by the numbers of the steps that the program does there."""
+    """Return the class of the character's seat or bed, by the numbers of the steps that the program does there."""
     found: dict[int | None, str] = {}
     seat = ""
     for number, step in enumerate(case.program.steps):

@@ -60,7 +60,7 @@ def sketch(
     Args:
         program: with instances as counters.
         homes: the first of them are tried, each in an environment sampled for the program.
-        knowledge: what homes and program go by.
+        knowledge: that of homes and program.
         seed, record_id: all the randomness there is.
         original: what the program needs, and how it runs in an environment of its own, which then is the first tried.
 

@@ -1,4 +1,4 @@
-"""What a learned sketch sees of a step: the action and its object, the steps around it, its effects, and the text.
+"""Features of a step for a learned sketch: the action and its object, the steps around it, its effects, and the text.
 
 Names are features of their own (`Grab soap`); numbers are counts and places; both stand in one mapping.
 """

@@ -22,7 +22,7 @@ MILD = "mild"
 
 @dataclass(frozen=True, slots=True)
 class Strength:
-    """How much programs are perturbed, and how much a repair clears away.
+    """Strengths of perturbation, and of the clearing that a repair does.
 
     Attributes:
         chances: how likely perturbations are.

@@ -59,7 +59,7 @@ def trim(
         keeps: whether a shorter program, with its sources, does its steps as it has to.
 
     Returns:
-        The execution of what is left, and the sources of its steps.
+        The execution of the remaining steps, and their sources.
     """
     nodes = nodes_of(original, execution.final)
     hands = _hands(execution.final)
@@ -151,5 +151,5 @@ def _repeated_walks(original: Program, walks: frozenset[str]) -> set[Step]:
 
 
 def _hands(world: World) -> tuple[int, ...]:
-    """What each character holds."""
+    """Return the objects that each character holds."""
     return tuple(agent.held for agent in world.agents)

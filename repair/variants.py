@@ -26,7 +26,7 @@ DRAWS = 3
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How a program is augmented.
+    """Settings of augmentation.
 
     Attributes:
         count: perturbed environments at most; there are fewer when no more distinct ones are found. One in which
@@ -151,7 +151,9 @@ def _is_refused(pair: Pair) -> bool:
 def _drawn(
     program: Program, base: Base, perturbed: Perturbed, seed: int, record_id: str, rules: Rules
 ) -> Environment | tuple[Environment, Condition]:
-    """An environment in which the perturbed conditions hold, or the last one drawn and what does not hold there."""
+    """Return an environment in which the perturbed conditions hold, or the last one drawn and the conditions that fail
+    there.
+    """
     for attempt in range(DRAWS):
         environment = draw(program, base, perturbed.conditions, seed, record_id, attempt, Size(), rules)
         nodes = {ref.key: ref.node for ref in environment.program.objects() if ref.node is not None}
@@ -201,5 +203,5 @@ def _judged(pair: Pair, seen: set[object]) -> Pair:
 
 
 def _shape(program: Program) -> object:
-    """What makes two programs of one parent the same: their steps, whatever they are bound to."""
+    """Return the key by which two programs of one parent are the same: their steps, whatever they are bound to."""
     return tuple((s.action, tuple(ref.key for ref in s.objects), s.agent, s.joins) for s in program.steps)

@@ -30,7 +30,7 @@ def explain(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping
 
 
 def _misfits(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> Iterator[str]:
-    """What is wrong with the arguments of a call."""
+    """Faults in the arguments of a call."""
     signature = inspect.signature(function)
     try:
         given = signature.bind(*args, **kwargs).arguments
@@ -83,7 +83,7 @@ def _is(value: Any, name: str) -> bool:
 
 
 def _split(expected: str) -> tuple[str, str]:
-    """The last name of a type, and what stands in its brackets."""
+    """Return the last name of a type, and the content of its brackets."""
     name, _, inner = expected.partition("[")
     return name.rpartition(".")[2].strip("'\""), inner.removesuffix("]")
 

@@ -1,10 +1,10 @@
-"""Where one program of a text ends and the next begins."""
+"""The boundaries between programs in a text."""
 
 import re
 from dataclasses import dataclass
 
 STEP = re.compile(r"\s*[\[<(|]")
-"""How a line begins that is, or tries to be, a step."""
+"""The beginning of a line that is, or tries to be, a step."""
 
 TITLE = re.compile(
     r"\s*(?:(?:task|title|activity|goal|plan|your task is to)(?:\s+name)?(?:\s*[#№]?\d{1,6})?\s*[:=](?!=)"

@@ -1,7 +1,8 @@
 """The difference of two graphs: the form in which ticks, environments and final graphs are published.
 
-`encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by what
-moved (`simulation.world.world_change`), with the same result; `datasets.format.codecs` reads and writes rows of tables.
+`encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by their
+movements (`simulation.world.world_change`), with the same result; `datasets.format.codecs` reads and writes rows of
+tables.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ _NO_NODES: Mapping[int, Node] = {}
 
 
 class Parts(NamedTuple):
-    """A graph as what is compared.
+    """A graph in the form that is compared.
 
     Attributes:
         edges: its edges.
@@ -205,7 +206,7 @@ def in_states(node: Node, names: Iterable[str]) -> Node:
 
 
 def compose(changes: Iterable[Change]) -> Change:
-    """What changes that follow one another come to; what came and went again is none of it.
+    """Return the sum of successive changes; an addition and its removal cancel out.
 
     They add and remove no nodes: ticks.
     """

@@ -16,7 +16,7 @@ def explained(function: Callable[P, T]) -> Callable[P, T]:
     What is raised though all arguments fit stays what it is: a documented KeyError, or a fault of ours.
 
     Raises:
-        HearthError: BAD_ARGUMENT, naming the argument, what it is and what it should be.
+        HearthError: BAD_ARGUMENT, naming the argument, its value and the value that it should have.
     """
 
     @wraps(function)

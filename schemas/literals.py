@@ -11,7 +11,7 @@ Key = tuple[str, int]
 """An object of a program: (class name, instance)."""
 
 Name = str | int
-"""What a goal is about: a class name, a node id, or `agent` (any character) or `agent:1` (the second by id)."""
+"""The subject of a goal: a class name, a node id, or `agent` (any character) or `agent:1` (the second by id)."""
 
 CHARACTER: Key = (CHARACTER_CLASS, 1)
 """The character of a program; the second of several is `(CHARACTER_CLASS, 2)`."""

@@ -16,7 +16,7 @@ _OBJECT = re.compile(r"<([^<>\[\]]*)>")
 _INSTANCE = re.compile(r"\(([^()<>\[\]|]*)\)")
 _NUMBER = re.compile(r"\s*(?!0+\s*$)[0-9]{1,9}(\.[0-9]{1,9})?\s*")
 _NEXT = ("", "<", "|", "{")
-"""What may follow an object without an instance."""
+"""Tokens that may follow an object without an instance."""
 
 _MODIFIERS = re.compile(r"\{[^{}]*\}")
 _WORD = re.compile(r"[^\W_]")
@@ -69,7 +69,7 @@ def _no_action(line: str, at: int) -> Fault:
 
 
 def _objects(line: str, at: int) -> Iterator[Fault]:
-    """The first fault among objects, instances and modifiers, and what follows them."""
+    """Return the first fault among objects, instances and modifiers, and the tokens after them."""
     while name := _OBJECT.match(line, at):
         if not _WORD.search(name[1]):
             yield name.start(), name.end(), "an object without a name", "write <cup> (1)", Code.SYNTAX

@@ -27,7 +27,10 @@ class ObjectRef:
 
     @property
     def key(self) -> tuple[str, int]:
-        """Identity within its program, whatever it is bound to; of what only a node names, that node, below 0."""
+        """Identity within its program, independent of its binding.
+
+        An object that only a node names has that node, below 0.
+        """
         return (self.name, self.instance or -(self.node or 0))
 
 
@@ -100,7 +103,7 @@ class Program:
         return Program(self.title, self.description, tuple(steps))
 
     def unbound(self) -> Program:
-        """The program as collected: node ids left out, and instances for what they alone named."""
+        """Return the program as collected: node ids left out, and instances for the objects that they alone named."""
         return self.numbered().bound({})
 
     def numbered(self) -> Program:

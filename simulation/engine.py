@@ -45,7 +45,7 @@ class Execution:
         return self.worlds[-1]
 
     def changes(self) -> tuple[Change, ...]:
-        """What each tick changed."""
+        """The changes of each tick."""
         return tuple(now.changes(before) for before, now in zip(self.worlds, self.worlds[1:], strict=False))
 
 
@@ -71,7 +71,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
 
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
-    """Only the end of a run, for who needs no trace."""
+    """Return only the end of a run, for callers that need no trace."""
     world = ready(world, program)
     for number, steps in enumerate(_ticks(program)):
         result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
@@ -131,7 +131,7 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
 
 
 def _in_place(before: World, done: World, instruction: Step, o: int, s: int) -> World | Failure:
-    """The world after an instruction, with its character's place and what its modifiers ask for."""
+    """Return the world after an instruction, with its character's place and the effects of its modifiers."""
     if before.agents[instruction.agent].pose is not None:
         done = followed(done, instruction.agent, instruction.action, o)
     return modified(before, done, instruction, o, s) if instruction.modifiers else done
@@ -179,7 +179,7 @@ def tick(
 
 
 def _only_moves(instruction: Step, before: World, now: World) -> bool:
-    """Return whether an instruction can't have become possible by what changed.
+    """Return whether an instruction stays impossible after a change.
 
     A move of metres that no door allowed.
     """

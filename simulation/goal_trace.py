@@ -1,4 +1,4 @@
-"""Whether a goal is reached over a run: what holds at its end, what was done, and in which order.
+"""A goal over a run: the facts at its end, the acts, and their order.
 
 A state or relation is reached while it holds; an action is reached once it has been done. The parts of `A then B` are
 reached one after the other. After a state, a state is reached only when it begins to hold; after an action it may have
@@ -34,11 +34,11 @@ class Trace(NamedTuple):
 
     @classmethod
     def of(cls, execution: Execution) -> Trace:
-        """What an execution did, up to its failure if it has one."""
+        """Return the acts of an execution, up to its failure if it has one."""
         return cls(execution.worlds, tuple(islice(execution.program.ticks(), len(execution.worlds) - 1)))
 
     def reached(self, goal: Goal, since: int = 0, now: int | None = None) -> bool:
-        """Return whether a goal is reached in the world of one number, by what was done since that of another."""
+        """Return whether a goal is reached in the world of one number, by the acts since that of another."""
         now = len(self.done) if now is None else now
         counted = all(self.times(literal, since, now) >= self.needed(literal, wanted) for literal, wanted in goal)
         return counted and all(self.has(part, since, now) for part in goal.parts)

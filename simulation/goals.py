@@ -1,4 +1,4 @@
-"""The progress of a goal, updated by changes and by what is done (thesis 6.3, tables B.1 and C.2)."""
+"""The progress of a goal, updated by changes and by acts (thesis 6.3, tables B.1 and C.2)."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ RELATED = frozenset({*RELATIONS, HOLDS})
 """The relations of goals."""
 
 LiteralFault = tuple[str, Code, str]
-"""Why a literal of a goal is refused: a message, a code and a suggestion."""
+"""Refusals of a goal's literal: a message, a code and a suggestion."""
 
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """A literal of a goal: what may make it hold, and what does now (see `holds.Candidates`)."""
+    """A literal of a goal: the nodes that can make it hold, and those that do now (see `holds.Candidates`)."""
 
     literal: Literal[Name]
     wanted: int
@@ -99,7 +99,9 @@ class Progress:
         return replace(found, trace=Trace.of(execution)) if found.trace else found
 
     def after(self, world: World, change: Change, done: Sequence[Step] = ()) -> Progress:
-        """The progress in a world that came of the last by a change; looks only at what the change names.
+        """Return the progress in a world that follows the last by a change.
+
+        Looks only at the nodes that the change names.
 
         Args:
             world: after the tick.
@@ -161,7 +163,7 @@ class Progress:
         return found / wanted if wanted else 1.0
 
     def unmet(self) -> Goal:
-        """What is still to be done: each literal with how many are missing, and the parts that are not reached."""
+        """Return the rest of the goal: each literal with its missing number, and the parts that are not reached."""
         missing = ((literal, wanted - found) for found, (literal, wanted) in self.required())
         parts = (part for part, reached in zip(self.goal.parts, self.has, strict=True) if not reached)
         return Goal(tuple((literal, number) for literal, number in missing if number > 0), tuple(parts))

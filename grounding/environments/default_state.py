@@ -24,7 +24,7 @@ WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
 
 
 class Spots(NamedTuple):
-    """Where things of a class belong in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
+    """Usual places of a class in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
 
     choices: tuple[tuple[str, int, str], ...]
     weights: tuple[int, ...]
@@ -91,7 +91,7 @@ class Base:
         return tuple(indices(self.home.instances(name)))
 
     def _kind(self, name: str) -> Kind:
-        """What a new node of a class is like."""
+        """Properties and states of a new node of a class."""
         thing = self.knowledge.object_class(name)
         properties = tuple(sorted(thing.properties)) if thing else ()
         category = thing.category if thing else "placable_objects"

@@ -53,5 +53,5 @@ def _turned(states: tuple[str, ...], state: str) -> tuple[str, ...]:
 
 
 def _is_full(partial: PartialEnvironment, i: int, place: int) -> bool:
-    """Return whether a seat or bed has but one place left, which is for who sits there."""
+    """Return whether a seat or bed has but one place left, which is for the person to sit there."""
     return partial.crowd(place) + 1 >= partial.base.home.limit(i)

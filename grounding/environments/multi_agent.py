@@ -30,7 +30,7 @@ def sample_together(
         program: instances as counters.
         home: any home; it is brought to its default state first.
         agents: how many characters take part.
-        seed: of what is added, and of the rooms that the characters stand in.
+        seed: of the added objects, and of the rooms that the characters stand in.
         rules: for the run.
 
     Returns:

@@ -22,8 +22,8 @@ class PartialEnvironment:
         added, removed: edges.
         states: changed states by node id.
         binding: the program's objects.
-        room: room's node id by node id, for what is not where the base has it.
-        where: (relation, node id) a node stands ON or INSIDE, for what was placed here.
+        room: room's node id by node id, for nodes that are not where the base has them.
+        where: (relation, node id) a node stands ON or INSIDE, for nodes placed here.
         movable: the random things, which come last.
         first_id: the first new node's; those after it are numbered on.
         made_bed: whether beds stay made, as by the rule of that name.
@@ -86,7 +86,7 @@ class PartialEnvironment:
         self.removed.extend(Edge(node_id, "CLOSE", ids[j]) for j in indices(home.close[i]))
 
     def put(self, node_id: int, relation: str, place: int) -> None:
-        """Put a node ON or INSIDE another: it is CLOSE to it and to what else stands there."""
+        """Put a node ON or INSIDE another: it is CLOSE to it and to its other contents."""
         self.where[node_id] = (relation, place)
         self.load[place] = self.load.get(place, 0) + 1
         self.added.append(Edge(node_id, relation, place))
@@ -117,7 +117,7 @@ class PartialEnvironment:
         return states_of(self.base.home.index[node_id], self.base.home.states)
 
     def places(self, node_id: int) -> tuple[int, ...]:
-        """Ids of what a node stands ON or INSIDE, rooms left out."""
+        """Return the ids of a node's supports and containers, rooms left out."""
         if node_id in self.where:
             return (self.where[node_id][1],)
         home = self.base.home
@@ -133,7 +133,7 @@ class PartialEnvironment:
         return standing + self.load.get(node_id, 0)
 
     def classes_on(self, node_id: int) -> list[str]:
-        """The classes of what `crowd` counts."""
+        """Return the classes of the nodes that `crowd` counts."""
         home, new = self.base.home, self.new
         i = home.index.get(node_id)
         put = [other for other, place in self.where.items() if place == ("ON", node_id)]
@@ -141,6 +141,6 @@ class PartialEnvironment:
         return found + ([home.classes[j] for j in indices(home.bears[i])] if i is not None else [])
 
     def turned_back(self, i: int) -> int:
-        """The bedding that the base has ON what one can lie on: it takes no room there."""
+        """Return the bedding of the base's beds and couches: it takes no room there."""
         home = self.base.home
         return home.bears[i] & home.bedding if home.properties["LIEABLE"] >> i & 1 else 0

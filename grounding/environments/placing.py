@@ -75,7 +75,10 @@ def requirements_of(program: Program, conditions: Preconditions, knowledge: Know
 
 
 def _follower(condition: Condition) -> Key:
-    """The object by which the other of a condition is placed: a seat is the anchor of what it faces."""
+    """Return the object by which the other one of a condition is placed.
+
+    A seat is the anchor of the object that it faces.
+    """
     return condition.objects[1] if condition.name == "facing" else condition.objects[0]
 
 
@@ -123,7 +126,7 @@ def _chosen(partial: PartialEnvironment, requirements: Requirements, key: Key) -
 
 
 def _wanted_room(partial: PartialEnvironment, requirements: Requirements, key: Key, links: Sequence[Condition]) -> int:
-    """Id of the room an object has to be in, or -1: that of what it is placed by, else the one its location names."""
+    """Return the id of the room an object has to be in, or -1: that of its anchor, else the one its location names."""
     for condition in links:
         room = partial.room_of(partial.binding[_anchor(condition)])
         if room >= 0:

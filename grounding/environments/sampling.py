@@ -86,12 +86,12 @@ def of_partial(partial: PartialEnvironment, seed: int, program: Program, conditi
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How many nodes an environment should have.
+    """The number of nodes of an environment.
 
     Attributes:
         least, most: the number is drawn from between.
         some: how many random ones are added at most to a home that is larger.
-        thin: whether a larger home goes without some of what it has, instead.
+        thin: whether a larger home loses some of its nodes instead.
     """
 
     least: int = 280

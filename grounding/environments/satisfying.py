@@ -29,7 +29,7 @@ def _node(partial: PartialEnvironment, key: Key) -> int:
 
 
 def _at_reach(partial: PartialEnvironment, condition: Condition) -> None:
-    """Close to the other, and to what the other stands on or in."""
+    """Place a node close to the other, and to the other's support or container."""
     one, other = (_node(partial, key) for key in condition.objects)
     partial.close(one, other)
     if other in partial.new and not partial.places(other):
@@ -40,7 +40,7 @@ def _at_reach(partial: PartialEnvironment, condition: Condition) -> None:
 
 
 def _set_down(partial: PartialEnvironment, node_id: int) -> None:
-    """Put something on a piece of furniture of its room: who takes it away stays near what was near it."""
+    """Put something on a piece of furniture of its room: a character that takes it away stays near its neighbors."""
     home, room = partial.base.home, partial.room_of(node_id)
     surfaces = home.properties["SURFACES"] & home.furniture & ~partial.base.seats
     good = [i for i in indices(surfaces) if partial.room_of(home.ids[i]) == room]
@@ -100,7 +100,7 @@ def _cleared(partial: PartialEnvironment, seat: int, which: int) -> int:
 
 
 def _occupied(partial: PartialEnvironment, condition: Condition) -> None:
-    """Fill the seat to its limit with what belongs there, takes room and can be taken off it."""
+    """Fill the seat to its limit with things that belong there, take room and can be removed."""
     knowledge = partial.base.knowledge
     seat = _node(partial, condition.objects[0])
     name = condition.objects[0][0]
@@ -124,7 +124,7 @@ def _takeable(knowledge: Knowledge, seat: str, is_bed: bool) -> list[str]:
 
 
 def _resting(partial: PartialEnvironment, condition: Condition) -> None:
-    """Sitting or lying on what is near at the start, else on any seat of the room, else where the character is."""
+    """Seat the character on something near at the start, else on any seat of the room, else at its place."""
     me = partial.base.character
     partial.set_state(me, condition.name.upper())
     home = partial.base.home

@@ -13,8 +13,8 @@ from hearth.simulation.world.world import World
 def superfluous(home: Home, most: int) -> tuple[int, ...]:
     """Ids of small movable things to remove, so that at most `most` nodes are left, if possible; sorted.
 
-    The first to go is what its room has most of: a household's twelfth plate is missed less than its only kettle.
-    Furniture, and what something stands on or in, stays.
+    The first to go are the commonest things of a room: a household's twelfth plate is missed less than its only kettle.
+    Furniture, supports and containers in use stay.
     """
     chooser = rng(0, "thinned", home.name, most)
     removed = 0

@@ -15,7 +15,7 @@ Target = tuple[int, str]
 
 
 def not_near(partial: PartialEnvironment, condition: Condition) -> None:
-    """The first object is not at reach of who stands at the second."""
+    """Move the first object out of reach of a character at the second."""
     key, anchor = condition.objects
     around = _around(partial, partial.binding[anchor])
     if not _beside(partial, partial.binding[key]) & around:
@@ -99,7 +99,7 @@ def pet(partial: PartialEnvironment, condition: Condition) -> None:
 
 
 def _around(partial: PartialEnvironment, node_id: int) -> set[int]:
-    """What a walk to a node makes the character close to itself: the node, what is on it and what it is in."""
+    """Return the nodes that a walk to a node brings near: the node, its contents and its containers."""
     home = partial.base.home
     found = {node_id, *partial.places(node_id)}
     found.update(other for other, (relation, place) in partial.where.items() if place == node_id and relation == "ON")
@@ -110,7 +110,7 @@ def _around(partial: PartialEnvironment, node_id: int) -> set[int]:
 
 
 def _beside(partial: PartialEnvironment, node_id: int) -> set[int]:
-    """The node, what it is CLOSE to and what it is on: whoever is close to one of them is close to it."""
+    """Return the node, its neighbors and supports: a character close to one of them is close to it."""
     home = partial.base.home
     found = {node_id, *partial.places(node_id)}
     for edge in partial.added:

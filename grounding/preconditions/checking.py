@@ -1,4 +1,4 @@
-"""Whether conditions hold in a world, as sampling guarantees."""
+"""Tests whether conditions hold in a world, as sampling guarantees."""
 
 from collections.abc import Mapping
 

@@ -26,7 +26,7 @@ class Condition:
 
     @property
     def name(self) -> str:
-        """What must hold."""
+        """Conditions that must hold."""
         return self.literal.name
 
     @property
@@ -57,7 +57,7 @@ _IN_WORDS = {
     "together": "in the same room as", "other_room": "in another room than", "not_near": "out of reach of",
     "in_closed_container": "in something closed",
 }  # fmt: skip
-"""What a condition says of its object, where its name alone does not."""
+"""The part of a condition's meaning that its name alone does not give."""
 
 
 @dataclass(frozen=True, slots=True)

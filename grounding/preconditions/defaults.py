@@ -59,7 +59,7 @@ def _belongs(thing: Key, relation: str, place: Key, knowledge: Knowledge) -> boo
 
 
 def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rule 9: who goes to a table-like thing and then uses another expects it there; to a chair, near it."""
+    """Rule 9: a character that goes to a table, then uses another thing, expects it there; at a chair, near it."""
     last: Key | None = None
     seen: set[Key] = set()
     for number, step in enumerate(program.steps):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 ALONG, ACROSS = 0.25, 0.5
 """Metres between places tried along walls, and out in the room."""
 FRONT = 0.55
-"""Free depth kept before what is used from its front."""
+"""Free depth kept in front of things that are used from their front."""
 MOST_LOOKED_AT = 40
 """Number of the best places tried for whether they block the way."""
 MARGIN = 0.5
@@ -36,9 +36,9 @@ MARGIN = 0.5
 SLACK = 0.2
 """Metres by which things are placed nearer than they need be: what is on and in them is not at their edge."""
 MUST = 60.0
-"""What being ON a wall, a tile or a rug is worth, in relations."""
+"""Worth of being ON a wall, a tile or a rug, in relations."""
 FREE_STANDING_WALL = 5.0
-"""What a place at a wall is worth, in relations: furniture out in the room needs a reason."""
+"""Worth of a place at a wall, in relations: furniture out in the room needs a reason."""
 
 
 class Crowd:
@@ -62,7 +62,7 @@ class Crowd:
 
 
 def furnish(crowd: Crowd, room_id: int, room: Room) -> bool:
-    """Place a room's things, with what stands on and in them; True when something of size found no place."""
+    """Place a room's things, with the things on and in them; return True when something of size found no place."""
     parts = crowd.parts
     solids: list[Thing] = []
     kept = [zone for name, zone, _ in crowd.built.kept_free if name == room.name]
@@ -229,7 +229,7 @@ def passable(room: Room, standing: list[Rect], doors: list[Rect]) -> bool:
     for rect in standing:
         if min(rect.width, rect.depth) > 0.1:
             free[cells(rect)] = False
-    # A cell more than a body needs: the home's own grid may lie half a cell beside this one.
+    # A cell more than a body needs: the home's own grid may lie half a cell away from this one.
     regions = raster.regions(raster.eroded(free, round(BODY / CELL) + 1))
     beyond = [set(np.unique((regions * outside)[cells(door.inset(-MARGIN))]).tolist()) - {0} for door in doors]
     return not doors or bool(set.intersection(*beyond))

@@ -1,4 +1,4 @@
-"""Where things of a graph's room probably are, from what is CLOSE to what alone: a first guess for furnishing.
+"""Likely positions of the things of a graph's room, from CLOSE edges alone: a first guess for furnishing.
 
 Steps along CLOSE are distances, and distances are a map (classical multidimensional scaling), which is then turned and
 stretched so that it fills the room's floor, doors to where the doors are.
@@ -56,7 +56,7 @@ def _guess(parts: Parts, node: int, room: str, x: float, z: float) -> Thing:
 def _anchors(parts: Parts, room: int, members: list[int], doors: Mapping[int, Thing]) -> dict[int, tuple[float, float]]:
     """Return where some of the members should be.
 
-    Doors at their holes, and what is CLOSE to another room on its side.
+    Doors are at their holes, and things CLOSE to another room are on its side.
     """
     found = {}
     for node in members:

@@ -32,7 +32,7 @@ LEAST_SIDE = 2.6
 SPACE = 2.4
 """Square metres of room for each square metre of furniture."""
 GOES = 2
-"""How often a home is furnished in a series, each time with what was learnt."""
+"""Number of times that a home is furnished in a series; each time uses the result of the one before."""
 ENLARGED = (1.0, 1.2, 1.45, 1.75, 2.1)
 """Factors by which a room's floor is enlarged until everything stands."""
 
@@ -175,7 +175,10 @@ def _ways_out(parts: Parts, rects: Mapping[int, Rect]) -> Iterator[Doorway]:
 
 
 def _windows(parts: Parts, room: int, rects: Mapping[int, Rect]) -> tuple[Window, ...]:
-    """As many as the graph has, in the middle of outer walls and then beside the middle; curtains as it has them."""
+    """Return as many windows as the graph has, in the middle of outer walls and then next to the middle.
+
+    Curtains as it has them.
+    """
     walls = outer_walls(rects[room], [rect for other, rect in rects.items() if other != room])
     if parts.of_class(room, "maindoor"):
         walls = walls[:-1]

@@ -70,7 +70,7 @@ def _thing(node: Node, room: str, box: Box, knowledge: Knowledge) -> Thing:
 def _openings(
     node: Node, rooms: list[int], names: Mapping[int, str], boxes: Mapping[int, Box], about: WallsAndJambs
 ) -> Iterator[Opening]:
-    """The hole of a doorway in the wall of each of its two rooms: where its jamb is, or beside its open leaf."""
+    """Return the hole of a doorway in the wall of each of its two rooms: at its jamb, or next to its open leaf."""
     if node.class_name not in ("door", "doorjamb") or node.box is None or len(rooms) != 2:
         return
     joined = (boxes[rooms[0]], boxes[rooms[1]])
@@ -85,7 +85,7 @@ def _openings(
 
 
 DoorHole = tuple[bool, float, float, float]
-"""Whether it runs along x, from where to where, and at which z (or x)."""
+"""An outline of a wall: whether it runs along x, its two ends, and its z (or x)."""
 
 
 def _hole(jamb: Box) -> DoorHole:

@@ -1,4 +1,4 @@
-"""What rooms are made of, as a graph counts it: places for its floors, ceilings, walls, windows, curtains and jambs.
+"""Parts of rooms, as a graph counts them: places for its floors, ceilings, walls, windows, curtains and jambs.
 
 Things of one class in one room are alike until something is CLOSE to one of them or ON it: which of them is where is
 chosen so that most of that is met.
@@ -93,7 +93,7 @@ def assigned(parts: Parts, places: Slots, things: Mapping[int, Thing], anew: boo
 
 
 def _drawn_before(parts: Parts, node: int, things: Mapping[int, Thing]) -> Iterator[Thing]:
-    """A curtain's place before what it is in, such as a shower."""
+    """Return a curtain's place in front of its holder, such as a shower."""
     for relation, other, outward in parts.relations.get(node, ()):
         thing = things.get(other)
         if relation == "INSIDE" and outward and thing is not None and thing.class_name != "curtain":
@@ -146,7 +146,7 @@ def _walls(room: Room, count: int, height: float) -> Iterator[Thing]:
 
 
 def _curtains(room: Room, count: int, built: Shell) -> Iterator[Thing]:
-    """Curtains more than the windows have: along walls, beside what opens in them."""
+    """Return the curtains that exceed those of the windows: along walls, next to the openings."""
     inner, (depth, width, height) = interior(room), HUNG
     holes = [o for o in built.openings if o.room == room.name]
     left = count

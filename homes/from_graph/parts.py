@@ -20,8 +20,8 @@ class Parts:
         nodes: by id.
         rooms: ids of the rooms.
         room: id of the room of each node that has one.
-        parent: (id, `on` or `inside`) of what a thing stands on or in, shell and rooms left out.
-        children: ids of what stands on or in a thing.
+        parent: (id, `on` or `inside`) of the thing's support or container, shell and rooms left out.
+        children: ids of the things on or in a thing.
         over: what else a thing is ON: rugs, the floor.
         between: the two rooms of each door.
         under: what is ON a rug, a tile or a wall, by that.
@@ -108,12 +108,12 @@ class Parts:
         return -1
 
     def both_ways(self, one: int, other: int) -> tuple[str, ...]:
-        """Which of ON and INSIDE two things have both ways round."""
+        """Return which of ON and INSIDE two things have in both directions."""
         return tuple(name for name, places in self._places.items()
                      if other in places.get(one, ()) and one in places.get(other, ()))  # fmt: skip
 
     def roots(self, room: int) -> list[int]:
-        """What stands in a room on nothing else, the largest first."""
+        """Return the things that stand in a room on nothing else, the largest first."""
         found = [n for n, r in self.room.items() if r == room and n not in self.parent and self._is_thing(n)]
         return sorted(found, key=lambda node: (-self._footprint(node), node))
 
@@ -131,7 +131,7 @@ class Parts:
         return sum(self._footprint(node) for node, shaped in kinds if shaped and shaped.mount in ("floor", "item"))
 
     def piece(self, node: int) -> Piece:
-        """A thing with what stands on and in it, as a plan's entry that is called by the node's id."""
+        """Return a thing with the things on and in it, as a plan's entry that is called by the node's id."""
         shaped = self._shaped_family(node)
         pieces: dict[int, Piece] = {}
         for each in reversed(shaped):  # what is on and in a thing comes before it
@@ -144,7 +144,7 @@ class Parts:
         return pieces[node]
 
     def _shaped_family(self, node: int) -> list[int]:
-        """A thing and what has a form of all on and in it, each after what it is on or in."""
+        """Return a thing and everything with a form on and in it, each after its support or container."""
         found = [node]
         for each in found:  # it grows meanwhile: containers may be in each other a thousand deep
             children = self.children.get(each, ())

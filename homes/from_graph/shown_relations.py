@@ -54,7 +54,7 @@ def missed(parts: Parts, things: Mapping[int, Thing]) -> int:
 
 
 def _why(edge: Edge, things: Mapping[int, Thing], parts: Parts) -> str:
-    """What stands in the way of a relation."""
+    """Obstacles to a relation."""
     for node in (edge.source, edge.target):
         if node not in things:
             return f"{_called(node, parts)} has no place"
@@ -143,6 +143,6 @@ def _facing(one: Thing, other: Thing) -> bool:
 
 ROOM_MOUNT = "room"
 WEIGHTS = {"ON": 20, "INSIDE": 20, "CLOSE": 1, "FACING": 1}
-"""What relations are worth beside each other where not all can be had."""
+"""Worths of relations, for homes that can't show all of them."""
 SHOWS = {"ON": _on, "INSIDE": _inside, "CLOSE": _close, "FACING": _facing}
-"""Whether two things' boxes show a relation."""
+"""Tests whether two things' boxes show a relation."""

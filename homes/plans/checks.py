@@ -92,7 +92,7 @@ def _check_walls(thing: Thing, inner: Rect, height: float, faults: Faults) -> No
 
 
 def _check_openings(thing: Thing, inner: Rect, shell: Shell, faults: Faults) -> None:
-    """What hangs on a wall needs a wall behind it; what is tall must not hide a window."""
+    """Check the walls: a hanging thing needs a wall behind it, and a tall one must not hide a window."""
     if thing.mount != "wall" or thing.yaw is None:
         return
     rect = footprint(thing.box).inset(-0.02)
@@ -135,7 +135,7 @@ def _check_kept_free(things: Sequence[Thing], shell: Shell, faults: Faults) -> N
 
 
 def _check_reach(plan: Plan, things: Sequence[Thing], floor: Floor, faults: Faults) -> None:
-    """All rooms join on foot, and whoever is in a room gets to the front of what has one.
+    """Check that all rooms join on foot, and that a character in a room gets to the front of each thing that has one.
 
     Not checked where rooms, doors or the thing itself are at fault already.
     """
@@ -168,7 +168,7 @@ def _any_in(mask: np.ndarray, floor: Floor, zone: Rect) -> bool:
 
 
 def joined(start: Id, doors: Iterable[set[Id]]) -> set[Id]:
-    """What is reached from `start` through doors, each a set of what it joins."""
+    """Return the rooms reached from `start` through doors; a door is the set of rooms that it joins."""
     found, left = {start}, list(doors)
     while through := [ends for ends in left if ends & found]:
         left = [ends for ends in left if not ends & found]

@@ -23,7 +23,7 @@ LONGEST = 100
 
 
 def or_middle(read: ReadValue) -> ReadValue:
-    """A reader of what another reads, or of `middle`, as None."""
+    """Return a reader that reads `middle` as None, and everything else like another reader."""
     return lambda value: None if value == "middle" else read(value)
 
 
@@ -50,10 +50,10 @@ PLACE_KEYS: dict[str, ReadValue] = {
     "before": word, "opposite": word, "around": word, "above": word, "spot": spot, "facing": direction,
     "gap": number, "up": number,
 }  # fmt: skip
-"""How a thing is placed."""
+"""The placement of a thing."""
 
 ANCHORS = ("wall", "corner", "beside", "before", "opposite", "around", "above", "spot")
-"""The keys of which a piece of furniture has one; `corner` may have a `wall` beside it."""
+"""The keys of which a piece of furniture has one; `corner` may have a `wall` as well."""
 
 ON_TOP = ("spot", "before", "beside")
 """Those that also place what stands on something: `spot` is then [along its back, out from its back]."""
@@ -109,7 +109,7 @@ def _too_large(found: str, file: str) -> HearthError:
 
 
 def read_piece(entry: Any, knowledge: Knowledge) -> Piece:
-    """One entry with what is on and in it, wherever it is placed.
+    """One entry with the things on and in it, wherever it is placed.
 
     Raises:
         HearthError: its faults.

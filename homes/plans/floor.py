@@ -21,7 +21,7 @@ LONGEST = 500.0
 BODY = 0.2
 """Half the width of someone walking."""
 HEAD = 1.8
-"""What hangs higher is walked under."""
+"""Agents walk under objects that hang higher than this, metres."""
 REACH = 0.9
 """Metres from a thing's outline within which it can be handled."""
 
@@ -58,7 +58,7 @@ class Floor:
 
     @cached_property
     def main(self) -> np.ndarray:
-        """Bool, same shape: the largest region; who is elsewhere on the floor can't leave its pocket."""
+        """Return bool, same shape: the largest region; a character elsewhere on the floor can't leave its pocket."""
         numbered = self.regions()
         sizes = np.bincount(numbered.ravel())
         sizes[0] = 0

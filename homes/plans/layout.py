@@ -23,7 +23,7 @@ PERSON = (0.45, 1.7, 0.35)
 """Width, height and depth of a character."""
 SWITCH_FROM_DOOR = 0.12
 SEATS = frozenset({"chair", "stool", "bench", "high_chair"})
-"""What one eats from."""
+"""Classes of vessels from which people eat."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Layout:
     Attributes:
         plan: the plan.
         shell: its walls, tiles, openings.
-        things: all but rooms and the character: the shell's things, then the furniture with what is on and in it.
+        things: all but rooms and the character: the shell's things, then the furniture with the things on and in it.
     """
 
     plan: Plan
@@ -61,7 +61,7 @@ def read(text: str, file: str, knowledge: Knowledge) -> Layout:
     """A plan's text with everything in its place.
 
     Raises:
-        HearthError: every fault of the plan, each naming the thing, the file, the line and what would mend it.
+        HearthError: every fault of the plan, each naming the thing, the file, the line and the remedy.
     """
     faults = Faults(file)
     plan = read_plan(text, file, knowledge, faults)
@@ -101,7 +101,7 @@ def arrange(
 
 
 def _furnished(plan: Plan, room: Room, built: Shell, knowledge: Knowledge, faults: Faults) -> Iterator[Thing]:
-    """A room's furniture with what is on and in it, and what every room has."""
+    """Return a room's furniture with the things on and in it, and the things that every room has."""
     furnished = furnish(room, plan.height, knowledge, faults)
     yield from _implied(plan, room, built, furnished, knowledge)
     seats = [placed.thing for placed in furnished.placed if placed.thing.class_name in SEATS]
@@ -137,7 +137,10 @@ def _shell(built: Shell, room: str, class_name: str) -> Iterator[Thing]:
 
 
 def _implied(plan: Plan, room: Room, built: Shell, furnished: Furnishing, knowledge: Knowledge) -> Iterator[Thing]:
-    """What every room has though the plan need not say so: a lamp at the ceiling and a switch beside a door."""
+    """Return the things that every room has even if the plan lists none.
+
+    A lamp at the ceiling and a switch next to a door.
+    """
     classes = {placed.thing.class_name for placed in furnished.placed}
     if not classes & {"ceilinglamp", "ceilingfan"}:
         known = form("ceilinglamp", knowledge)
@@ -152,7 +155,9 @@ def _implied(plan: Plan, room: Room, built: Shell, furnished: Furnishing, knowle
 
 
 def _switch(room: Room, built: Shell, knowledge: Knowledge) -> Thing | None:
-    """A light switch beside the room's first doorway, on the side the door does not hang at, where there is wall."""
+    """Return a light switch next to the room's first doorway, on the side opposite to the door's hinges, where there is
+    wall.
+    """
     known = form("light", knowledge)
     inner = interior(room)
     for opening in built.openings:

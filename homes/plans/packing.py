@@ -1,4 +1,4 @@
-"""Where things stand on and in furniture: found automatically; tidy in containers, spread on tops, no overlaps."""
+"""Places of things on and in furniture, found automatically: tidy in containers, spread on tops, no overlaps."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ MARGIN = 0.015
 SHELL = 0.03
 """Thickness of a container's sides."""
 SINK = 0.18
-"""How deep a sink is let into what it is on."""
+"""Depth of a sink in its counter."""
 STEP = 0.02
 """Metres between the places that are tried, where they are not more than `MOST_STEPS` along a side."""
 MOST_STEPS = 40
@@ -102,13 +102,13 @@ def contents(
 def _direct(
     thing: Thing, piece: Piece, knowledge: Knowledge, faults: Faults, seats: Sequence[Thing] = ()
 ) -> Iterator[tuple[Piece, Thing]]:
-    """What stands on and in a thing itself, with its entry."""
+    """The things on and in a thing itself, with their entries."""
     numbers: dict[str, int] = {}
     shaped = shape(piece, knowledge)
     settings = list(_settings(thing, piece.lay, seats, numbers, knowledge))
     named = [(entry, names_of(entry, numbers), "on") for entry in piece.on]
     named += [(entry, names_of(entry, numbers), "inside") for entry in piece.inside]
-    # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
+    # Sinks and things placed by hand come first, then the large ones; names still follow the plan's order.
     named.sort(key=lambda item: _rank(item[0], knowledge))
     for level in ("on", "inside"):
         here = [item for item in named if _level_of(item[0], item[2], shaped, knowledge) == level]
@@ -125,7 +125,7 @@ def _direct(
 def _level_of(piece: Piece, relation: str, holder: Form, knowledge: Knowledge) -> str:
     """Return whether a thing stands where things are `on` its support or in its hollow.
 
-    A sink is INSIDE a counter and let into its top, and what is INSIDE a bookcase stands on its open shelves.
+    A sink is INSIDE a counter and let into its top. Things INSIDE a bookcase stand on its open shelves.
     """
     known = form(piece.class_name, knowledge)
     on_top = (known is not None and known.mount == "sunk") or len(holder.levels) > 1
@@ -369,7 +369,10 @@ def _steps(length: float) -> np.ndarray:
 
 
 def _free(level: Level, u: np.ndarray, v: np.ndarray, width: float, depth: float) -> np.ndarray:
-    """For a thing with its corner at each (v, u): the least distance to what stands there; negative where they meet."""
+    """Return, for a thing with its corner at each (v, u), the least distance to the things that stand there.
+
+    Negative where they meet.
+    """
     taken = np.array([local for _, local in level.taken], float).reshape(-1, 4)
     gap_u = np.maximum(taken[:, 0, None] - (u + width), u - taken[:, 2, None])
     gap_v = np.maximum(taken[:, 1, None] - (v + depth), v - taken[:, 3, None])
@@ -386,7 +389,7 @@ def _box(support: Support, level: Level, local: Local, under: float, height: flo
 
 
 def local_of(support: Support, rect: Rect) -> Local:
-    """A rectangle of the room in the support's own axes: the inverse of what `_box` does."""
+    """Return a rectangle of the room in the support's own axes: the inverse of `_box`."""
     over = footprint(support.thing.box)
     wall = wall_of(support.thing.yaw or 0.0)
     low = span(over, wall)[0]

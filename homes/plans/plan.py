@@ -23,7 +23,7 @@ class Window:
         at: where it begins, from the wall's west or south end; None: in the middle.
         width, height: of the glass, metres.
         sill: the height it begins at.
-        curtains: how many curtains hang beside it.
+        curtains: how many curtains hang at it.
         line: in the plan.
     """
 
@@ -38,7 +38,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """One entry of furniture or of what stands on and in it.
+    """One entry of furniture, or of a thing on or in it.
 
     Attributes:
         class_name: of the knowledge.

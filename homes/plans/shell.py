@@ -16,7 +16,7 @@ TILE = 2.5
 PANEL = 3.0
 DOOR_HEIGHT = 2.05
 LINTEL = 0.05
-"""What a wall has above its openings, at least."""
+"""Least height of wall above an opening."""
 LEAF = 0.045
 SAME = 0.011
 """Walls closer than this are one wall."""
@@ -31,12 +31,12 @@ class Thing:
         class_name: of the knowledge.
         room: the name of its room.
         box: where it is.
-        yaw: the way it faces; None for what has no front.
+        yaw: the way it faces; None for a thing without a front.
         mount: as `Form.mount`; `shell` for walls, floors and ceilings; `window` for windows and curtains.
-        on, inside: the name of what it is on or in, or "".
+        on, inside: the name of its support or container, or "".
         between: the rooms a doorway joins.
         front: free depth that using it takes, metres.
-        line: in the plan; 0 for what the plan implies.
+        line: in the plan; 0 for a thing that the plan implies.
     """
 
     name: str
@@ -69,7 +69,7 @@ class Opening:
 
 @dataclass(slots=True)
 class Shell:
-    """What the rooms are made of.
+    """Parts of which the rooms are made.
 
     Attributes:
         things: walls, floors, ceilings, doors, windows, curtains.

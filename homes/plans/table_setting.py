@@ -13,7 +13,10 @@ BETWEEN = 0.025
 
 
 class Place(NamedTuple):
-    """Where somebody eats: the table, the side of it before a seat, and where along that side the seat's middle is."""
+    """A place at a table.
+
+    The table, the side of it in front of a seat, and the position of the seat's middle along that side.
+    """
 
     table: Rect
     side: str
@@ -54,7 +57,7 @@ def setting(place: Place, sizes: Sequence[tuple[float, float]]) -> list[Rect]:
         else:
             across, out = beyond - width, EDGE + first_depth + BETWEEN
             beyond -= width + BETWEEN
-        # Who sits at the north or the east side has the west or the south on the right.
+        # A person at the north or the east side has the west or the south on the right.
         start = place.along + across if place.side in ("south", "east") else place.along - across - width
         found.append(band(place.table, place.side, start, start + width, out, out + depth))
     return found

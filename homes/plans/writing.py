@@ -101,6 +101,9 @@ def _text(value: str) -> str:
 
 
 def _quoted(value: str) -> str:
-    """A text in double quotes: as in JSON, which is YAML, with YAML's own escapes for what YAML may not contain."""
+    """Return a text in double quotes.
+
+    As in JSON, which is YAML, with YAML's own escapes for the characters that YAML forbids.
+    """
     written = orjson.dumps(value).decode()
     return "".join(letter if letter.isprintable() else f"\\U{ord(letter):08x}" for letter in written)

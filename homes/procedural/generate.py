@@ -76,8 +76,10 @@ def _furniture(room: Room, plan: Plan, built: Shell, knowledge: Knowledge, rng: 
 
 
 def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:
-    """The plan with everything in its place; small things that find none are left out, and what nobody gets to, unless
-    it is used from its front; other faults end it.
+    """Return the plan with everything in its place.
+
+    Small things without a place are left out, and so are things that nobody reaches, unless they are used from their
+    front; other faults end it.
     """
     known: dict[int, tuple[Room, tuple[Thing, ...]]] = {}
     for _ in range(3):

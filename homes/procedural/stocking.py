@@ -13,9 +13,9 @@ from hearth.kb.knowledge import Knowledge
 SHARPNESS = 3
 """Weights are raised to this power, so that rare placements stay rare."""
 MOVABLE = ("Props", "Food", "Clothes", "Decor", "Electronics", "Lamps", "Appliances")
-"""Categories of what stands on and in things."""
+"""Categories of things that stand on and in other things."""
 SHARE = 0.45
-"""How much of a top or of a container's floors is filled at most."""
+"""Largest filled share of a top or of a container's floors."""
 
 Candidates = tuple[tuple[str, ...], tuple[float, ...], tuple[float, ...]]
 """Classes, their weights, and the floor each takes in square metres."""
@@ -58,7 +58,7 @@ def _area(piece: Piece, knowledge: Knowledge) -> float:
 
 @lru_cache(maxsize=512)
 def _candidates(class_name: str, relation: str, room: str, knowledge: Knowledge) -> Candidates:
-    """What the knowledge allows there, small enough to be carried there; sorted by name."""
+    """Return the classes that the knowledge allows there, small enough to be carried there; sorted by name."""
     holder = form(class_name, knowledge)
     found: dict[str, float] = {}
     for placement in knowledge.holds(class_name):
@@ -77,7 +77,7 @@ def _candidates(class_name: str, relation: str, room: str, knowledge: Knowledge)
 
 
 def _goes_in(size: tuple[float, float, float], holder: tuple[float, float, float], shelves: int, relation: str) -> bool:
-    """Return whether it is small beside what is to hold it."""
+    """Return whether it is small compared with its holder."""
     flat, middle, long = sorted(size)
     room = min(holder[0], holder[2]), max(holder[0], holder[2])
     high = holder[1] / shelves - 0.08 if relation == "IN" else 0.6

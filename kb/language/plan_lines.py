@@ -34,7 +34,7 @@ _MARKER = re.compile(
     rf"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|{_TIME}(?:\s*[–—-]\s*{_TIME})?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])|@[\w-]+[:,]?\s+(?=[a-z])",
     re.IGNORECASE,
 )
-"""What stands before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
+"""Marks before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
 
 _HTML = re.compile(
     r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title|head|meta|!doctype)\b[^<>]*>", re.IGNORECASE
@@ -80,13 +80,13 @@ META = re.compile(
     r"|language|seed|explanation|reasoning)\s*:\s*\S",
     re.IGNORECASE,
 )
-"""What is said about a program, which is neither its title nor a step."""
+"""Remarks about a program, which are neither its title nor a step."""
 
 _INLINE = re.compile(r"(?:^|(?<=\s))(?:0[.)]\s+\S.*?\s1|1[.)]\s+\S.*?\s2)[.)]\s+\S")
 """The beginning of numbered steps on one line: `Plan: 1. walk to kitchen 2. open fridge`."""
 
 CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
-"""What joins the steps of a line: `walk to kitchen -> open fridge`."""
+"""Separators of the steps of a line: `walk to kitchen -> open fridge`."""
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")

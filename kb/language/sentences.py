@@ -25,7 +25,7 @@ _PLURAL = re.compile(r"\b[a-z]+es\b")
 _OBSERVED = re.compile(
     r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|notice|notices)\b", re.IGNORECASE
 )
-"""A sentence about what somebody sees asks for nothing."""
+"""A sentence about a person's observation asks for nothing."""
 
 _INSIDE = re.compile(r"((?:put|place|drop|set|lay|store)(?:s|ing|ped)?(?: back)? .+?)(?: back)? inside", re.IGNORECASE)
 _CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)

@@ -146,7 +146,7 @@ MOST_EFFECTS = 1_000
 
 @dataclass(slots=True)
 class _Left:
-    """How many effects of an action may still be read."""
+    """The number of an action's effects that may still be read."""
 
     rows: int = MOST_EFFECTS
 

@@ -7,7 +7,7 @@ from hearth.kb.loading.source_files import Entry, Faults
 
 
 class Shape(NamedTuple):
-    """A test that a value passes, and what such a value is, in words."""
+    """A test that a value passes, and the name of such values in words."""
 
     fits: Callable[[Any], bool]
     meaning: str

@@ -18,7 +18,8 @@ TERMS: Mapping[str, tuple[int, ...]] = {
     **dict.fromkeys(("affords", "is_room", OPTION), (1,)),
     "REMEMBERS": (1, 2),
 }
-"""How many terms relations and built-in predicates have; what remembers its place may leave open which it is."""
+"""Numbers of terms of relations and built-in predicates; a predicate that remembers its place may leave the place open.
+"""
 
 LIMITS = ("seat_limit", "bed_limit")
 """Numbers that are known of a thing."""

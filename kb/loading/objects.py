@@ -164,7 +164,10 @@ def load_placements(layers: Layers, known: Container[str], faults: Faults) -> li
 def load_associations(
     layers: Layers, objects: Container[str], actions: Container[str], faults: Faults
 ) -> tuple[Association, ...]:
-    """What goes with what, and what serves which action. A row whose weight is 0 takes an earlier layer's away."""
+    """Classes that are used together, and classes that serve an action.
+
+    A row whose weight is 0 removes an earlier layer's.
+    """
     columns = ("name", "relation", "other", "weight", "evidence")
     result = []
     for entry in csv_rows(layers, ("associations.csv",), columns, (0, 1, 2), faults).values():

@@ -1,4 +1,4 @@
-"""Our knowledge against another's, fact by fact, with the reason beside every deliberate difference.
+"""Our knowledge against another's, fact by fact, with the reason for every deliberate difference.
 
 The other may be a directory of our own files, or of the release's five JSON files (properties_data, object_states,
 object_script_placing, class_name_equivalence, affordances), as many as there are.
@@ -33,12 +33,12 @@ class Difference(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What differs, and how much there is.
+    """The differences, and their number.
 
     Attributes:
         theirs: facts of the other, by table.
         held: how many of them we hold, by table.
-        differences: the rest, and what we add, in order.
+        differences: the rest, and our additions, in order.
         cells: for affordances, how many accepted cells of the other come `by rule` and `by exception`, by position.
     """
 

@@ -13,7 +13,7 @@ from hearth.schemas.vocabulary import PROPERTIES
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """What is looked for; everything given must hold.
+    """A query; everything given must hold.
 
     Attributes:
         can: actions that take it as their first object.
@@ -64,7 +64,10 @@ def _places(query: Query) -> tuple[tuple[str, str], ...]:
 
 
 def _weights(knowledge: Knowledge, place: str, relation: str) -> dict[str, int]:
-    """What may stand in the relation to the place, and how usual that is; second names as their first ones."""
+    """Return the classes that may stand in the relation to the place, and how usual that is.
+
+    Second names as their first ones.
+    """
     own: dict[str, int] = {}
     for placement in knowledge.holds(place):
         if placement.relation == relation:

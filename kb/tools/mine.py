@@ -1,4 +1,6 @@
-"""New facts proposed from programs: what is used together, found where, near what, in which order (thesis 3.4).
+"""New facts proposed from programs.
+
+Classes used together, found in a room, near each other, and in which order (thesis 3.4).
 
 Nothing is believed here: proposals carry counts and confidence, and are written as lines to add to a file after review.
 """
@@ -42,7 +44,7 @@ class Proposal(NamedTuple):
 
 @dataclass
 class _Counts:
-    """What has been seen, each at most once a program."""
+    """Observed facts, each at most once a program."""
 
     programs: int = 0
     names: Counter[str] = field(default_factory=Counter)
@@ -56,7 +58,8 @@ class _Counts:
 def mine(
     programs: Iterable[ProgramSteps], knowledge: Knowledge, least: int = 3, confidence: float = 0.3
 ) -> tuple[Proposal, ...]:
-    """What the programs suggest at least `least` times with at least that confidence, most confident first.
+    """Return the facts that the programs suggest at least `least` times with at least that confidence, most confident
+    first.
 
     Objects and actions that nobody knows are left out. Memory grows with the facts, not with the programs.
     """
@@ -124,7 +127,7 @@ def _count(counts: _Counts, steps: list[tuple[str, tuple[str, ...]]], knowledge:
 
 
 def _placings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str, str]]:
-    """What is put on or in what, and what is taken from something just opened."""
+    """Yield the things put on or in others, and the things taken from a container just opened."""
     opened = ""
     for action, names in steps:
         if action in knowledge.group("puts") and names[0] != names[1]:
@@ -138,7 +141,7 @@ def _placings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) ->
 
 
 def _findings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str]]:
-    """Which things are first used in which room."""
+    """Yield the room in which each thing is first used."""
     room, carried = "", set[str]()
     moves = _moves(knowledge)
     for action, names in steps:
@@ -152,7 +155,7 @@ def _findings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) ->
 
 
 def _neighbours(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str]]:
-    """What stands within reach of a seat or bed: used while on it, not carried there, not carried at all."""
+    """Yield the things within reach of a seat or bed: used while on it, not carried there, not carried at all."""
     seat, held = "", set[str]()
     leaving = _moves(knowledge) | knowledge.group("rises")
     idle = knowledge.group("looks") | {"Greet"}

@@ -1,4 +1,4 @@
-"""How two things are related: the most specific chain of facts from one to the other."""
+"""Relations between two things: the most specific chain of facts from one to the other."""
 
 from __future__ import annotations
 

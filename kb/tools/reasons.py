@@ -15,7 +15,7 @@ FIELDS: dict[str, tuple[str, ...]] = {
     "synonyms": ("class", "name"),
     "affordances": ("action", "position", "class"),
 }
-"""The tables that are compared, and what the parts of their facts are."""
+"""The compared tables, and the parts of their facts."""
 
 
 def root_of(knowledge: Knowledge, name: str) -> str:

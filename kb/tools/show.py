@@ -8,7 +8,7 @@ from hearth.kb.tools.reasons import Reasons
 
 
 def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
-    """Everything about a class; placements and what is done with it, most usual first."""
+    """Return everything about a class; placements and uses, most usual first."""
     name = thing.name
     taken = [[a.name for a in knowledge.actions.values() if knowledge.affords(a.name, n, name)] for n in (0, 1)]
     return {

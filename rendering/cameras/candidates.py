@@ -16,10 +16,13 @@ TURNS = tuple(range(-180, 180, 30))
 """Degrees from the direction in which the person looks."""
 
 DISTANCES = (1.1, 1.5, 2.1, 2.9, 4.0)
-"""Metres from the middle of what is shown."""
+"""Distances of cameras from the middle of their target, metres."""
 
 HEIGHTS = ((1.5, 1.0), (1.05, 0.93), (2.1, 0.86))
-"""Metres above the floor, and how much they are preferred: eyes of who stands, of who sits, and the ceiling."""
+"""Heights of cameras above the floor, metres, with their preference.
+
+The eyes of a standing and of a sitting person, and the ceiling.
+"""
 
 NEAREST, BETWEEN, MORE = 0.8, (0.7, 1.8), tuple(range(-180, 180, 18))
 """A distance, heights and directions that are tried besides."""
@@ -40,7 +43,7 @@ UPPER = 0.35
 """Metres of height above the upper body that its pictures show."""
 
 AT_HAND = 0.2
-"""Metres from a person's joints to what it holds or touches, at most."""
+"""Largest distance from a person's joints to the objects that it holds or touches, metres."""
 
 INSET = 0.12
 """Metres from the walls of a room within which no camera stands."""
@@ -49,7 +52,7 @@ FAR_APART = 3.0
 """Metres between person and object beyond which both need not fill the picture."""
 
 FRONT = 0.12
-"""How much more a view from the front is worth than one from behind."""
+"""Preference of a view from the front over a view from behind, a factor."""
 
 
 def around(
@@ -137,7 +140,7 @@ def _nearest(who: Target, point: NDArray[np.float64]) -> int:
 
 
 def framed(actor: Actor, who: Target, objects: Sequence[Target], aspect: float) -> tuple[NDArray[np.float64], float]:
-    """The middle of what a camera should show, and the metres that its picture should be high there."""
+    """The middle of a camera's target, and the height that its picture should cover there, metres."""
     near = [target for target in objects if np.linalg.norm(_point(target, who) - who.points.mean(axis=0)) < FAR_APART]
     spans = [(who.low, who.high), *((_point(t, who) - _half(t), _point(t, who) + _half(t)) for t in near)]
     low, high = np.min([a for a, _ in spans], axis=0), np.max([b for _, b in spans], axis=0)
@@ -153,7 +156,7 @@ def framed(actor: Actor, who: Target, objects: Sequence[Target], aspect: float) 
         middle, height = 0.55 * _point(target, who) + 0.45 * head, max(small, CLOSEST, 0.8 * reach + 0.4)
         in_hand = np.linalg.norm(who.points - _point(target, who), axis=1).min() < AT_HAND
         if in_hand and small < height:
-            # Of who holds a tiny thing, such as a coin, the hands are enough.
+            # For a tiny held object, such as a coin, the hands suffice.
             share = 0.45 * small / height
             middle, height = (1 - share) * _point(target, who) + share * head, max(small, HANDS)
     return middle, height
@@ -197,6 +200,6 @@ def preference(cameras: Sequence[Camera], actor: Actor) -> NDArray[np.float64]:
 
 
 def free(cameras: Sequence[Camera], obstacles: Obstacles) -> tuple[list[Camera], NDArray[np.float64]]:
-    """The cameras with nothing close in front of them, and what each loses by what is near (see `Ahead`)."""
+    """The cameras with nothing close in front of them, and the worth that each loses by near objects (see `Ahead`)."""
     found = ahead(cameras, obstacles)
     return [cameras[number] for number in np.flatnonzero(found.free).tolist()], found.loss[found.free]

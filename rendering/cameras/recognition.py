@@ -35,7 +35,7 @@ class Recognition(NamedTuple):
 
 
 def recognition(shot: Shot, node: int) -> Recognition:
-    """Return how well a picture shows a node, by what it covers and by what it would cover alone."""
+    """Return how well a picture shows a node, from its visible pixels and the pixels that it would cover alone."""
     things = shot.geometry.things
     numbers = [number for number, thing in enumerate(things) if thing.id == node]
     if not numbers:

@@ -69,7 +69,7 @@ class CameraSensor:
         return render(self.scene(env), self.camera(env, agent), modalities, **how)
 
     def scene(self, env: Env) -> Scene:
-        """What there is to picture now."""
+        """The current content of a picture: the scene and its moving parts."""
         self._follow(env)
         if self._scene is None:
             self._scene = scene_at(self.prepared, self.places, self.actors)

@@ -1,4 +1,4 @@
-"""What cameras would show of persons and objects, estimated from a few rays to points on them, without a picture.
+"""Estimates of the visible share of persons and objects, from a few rays to their points, without a picture.
 
 A picture's pixels decide in the end (`recognition`); this finds the cameras worth a picture, some thousand a second.
 """
@@ -35,10 +35,10 @@ BROAD, SHOULDERS = 0.17, 0.85
 """Metres of a body's radius, and the share of its height up to which it hides things."""
 
 HEAD, HEAD_FROM_TO = 0.2, (-0.1, 0.14)
-"""What the head adds to a camera's worth, and metres of it below and above the highest joint."""
+"""Worth that a visible head adds to a camera, and the range of the head below and above the highest joint, metres."""
 
 AT_WORK, SKIN = 0.15, 0.06
-"""What hands at work add to a camera's worth, and metres of them before the middle of a palm."""
+"""Worth that working hands add to a camera, and their range in front of the middle of a palm, metres."""
 
 GRID = (12, 9)
 """Rays by which a camera finds what is close in front of it."""
@@ -47,10 +47,10 @@ FREE = 0.06
 """Share of these that may hit something close."""
 
 REACH, BEFORE = 1.6, 0.75
-"""Metres, and share of the way to what a camera looks at, nearer than which things crowd its picture."""
+"""Objects crowd a picture if they are nearer to the lens than this: metres, and share of the distance to the target."""
 
 CROWDED = 5.0
-"""What a picture would lose of its worth that things at the lens fill; it is less the farther they are."""
+"""Worth that a picture loses if objects at the lens fill it; the loss is smaller for farther objects."""
 
 Coordinates = NDArray[np.float64]
 
@@ -100,7 +100,7 @@ def thing(scene: Scene, node: int) -> Target | None:
 
 
 class Obstacles(NamedTuple):
-    """What hides things: parts of a scene, each with the node ids of its triangles, and persons."""
+    """Occluders: parts of a scene, each with the node ids of its triangles, and persons."""
 
     parts: tuple[tuple[Part, NDArray[np.int64]], ...]
     people: tuple[Actor, ...] = ()
@@ -117,13 +117,13 @@ class Obstacles(NamedTuple):
 
     @classmethod
     def exact(cls, scene: Scene) -> Obstacles:
-        """Those of a scene with its figures and what hands hold, triangle by triangle."""
+        """The occluders of a scene with its figures and held objects, triangle by triangle."""
         geometry = scene.geometry
         parts = [part for part in (geometry.static, geometry.moving) if len(part.mesh)]
         return cls(tuple((part, np.array([one.id for one in part.things], np.int64)[part.owner]) for part in parts))
 
     def cast(self, rays: Floats) -> tuple[Floats, NDArray[np.int64]]:
-        """(N,) distances of the first hits of rays, in units of their directions, and the ids of what they hit."""
+        """(N,) distances of the first hits of rays, in units of their directions, and the ids of the hit nodes."""
         far, ids = np.full(len(rays), np.inf, np.float32), np.zeros(len(rays), np.int64)
         for part, known in self.parts:
             hits = part.caster.cast(rays)
@@ -150,11 +150,11 @@ class Obstacles(NamedTuple):
 
 
 class Sight(NamedTuple):
-    """What some cameras show of a target.
+    """Views of a target by some cameras.
 
     Attributes:
         share: (cameras,) of the picture.
-        unhidden: (cameras,) share of what is in the picture.
+        unhidden: (cameras,) share of the visible target in the picture.
     """
 
     share: Coordinates
@@ -203,7 +203,7 @@ def _areas(eyes: Coordinates, target: Target) -> Coordinates:
 
 
 class Ahead(NamedTuple):
-    """What stands before some cameras, whatever it is: furniture, doors, or what a step is about, seen from behind.
+    """Everything that stands in front of some cameras: furniture, doors, or the step's own objects, seen from behind.
 
     Attributes:
         free: (cameras,) whether nothing is close in front of them.
@@ -215,7 +215,7 @@ class Ahead(NamedTuple):
 
 
 def ahead(cameras: Sequence[Camera], obstacles: Obstacles) -> Ahead:
-    """What stands before cameras, by a few rays."""
+    """Obstacles in front of cameras, found by a few rays."""
     if not cameras:
         return Ahead(np.zeros(0, np.bool_), np.zeros(0))
     cast = _grids(cameras)
@@ -248,10 +248,10 @@ def too_near(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:
 
 
 class Worth(NamedTuple):
-    """What some cameras are worth.
+    """Worths of some cameras.
 
     Attributes:
-        total: (cameras,) 1 for what shows a person and objects well enough, more for what shows them well.
+        total: (cameras,) 1 for a camera that shows a person and objects well enough, more for a better view.
         enough: (cameras,) whether they seem to be recognisable.
     """
 
@@ -260,7 +260,7 @@ class Worth(NamedTuple):
 
 
 def values(cameras: Sequence[Camera], who: Target, objects: Sequence[Target], obstacles: Obstacles) -> Worth:
-    """What cameras are worth that show a person and objects."""
+    """Worths of cameras that show a person and objects."""
     found = [sight(cameras, target, obstacles) for target in (who, *objects)]
     parts = []
     enough = np.ones(len(cameras), np.bool_)

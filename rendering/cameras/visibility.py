@@ -28,7 +28,7 @@ class TickVisibility(NamedTuple):
         missed: those of `named` that the chosen camera's picture does not show.
         unseen: those of `missed` that the picture from above does not show either.
         in_closed: those of `unseen` in a closed container, where no camera could see them.
-        shown: whether the person and what the objects are seen by (see `seen_as`) can be recognised in the chosen
+        shown: whether the person and the nodes that show the objects (see `seen_as`) can be recognised in the chosen
             camera's picture: 1.5 % and 0.1 % of it, and less than half hidden.
     """
 
@@ -73,7 +73,7 @@ def _shown_as(node: int, keyframe: Keyframe) -> int:
 def seen_as(node: int, places: Places) -> int:
     """The node by which an onlooker sees a node.
 
-    Body parts and worn clothes are drawn with their wearer, and what is in a closed container is seen by that.
+    Body parts and worn clothes are drawn with their wearer; a closed container shows the objects inside it.
     """
     states: Mapping[int, tuple[str, ...]] = {known.id: known.states for known in places.graph.nodes}
     if any(known.id == node and known.category == "BodyParts" for known in places.graph.nodes):

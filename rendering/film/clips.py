@@ -25,7 +25,7 @@ FRAMES = 9
 """Frames of a clip."""
 
 SECONDS = 2.0
-"""How long a clip is."""
+"""Length of a clip."""
 
 RATE = FRAMES / SECONDS
 """Frames a second."""

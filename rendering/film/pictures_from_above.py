@@ -1,7 +1,7 @@
 """Demonstrations from above: a picture of the whole home after each tick of an execution, with class masks.
 
-The thesis predicts sketches from such pictures (5.4.3). Homes look the same in all of them, at ten in the morning: what
-differs is who acts, and what is done. That a home's things are drawn once makes it twice as fast.
+The thesis predicts sketches from such pictures (5.4.3). Homes look the same in all of them, at ten in the morning; only
+the person and the act differ. Each home's objects are drawn once, which halves the time.
 """
 
 from __future__ import annotations

@@ -21,7 +21,9 @@ RATE = 2.0
 
 
 class StepShown(NamedTuple):
-    """Whether a film shows a step: the person and what the step is about can be recognised in one of its pictures.
+    """The verdict whether a film shows a step.
+
+    The person and the step's objects can be recognised in one of its pictures.
 
     Attributes:
         tick, step: the step.

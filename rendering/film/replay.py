@@ -1,4 +1,4 @@
-"""An execution in 3D for pages: the home's shapes, and after each tick what of them is gone and what else is there."""
+"""An execution in 3D for pages: the home's shapes, and the shapes removed and added after each tick."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def home_shapes(home: EnvironmentGraph, knowledge: Knowledge) -> dict[str, Any]:
 
 
 def run_shapes(execution: Execution, home: EnvironmentGraph, knowledge: Knowledge) -> dict[str, Any]:
-    """An execution, as what differs from `home_shapes` of its home at the start and after each tick.
+    """Return an execution as its differences from `home_shapes` of its home, at the start and after each tick.
 
     Args:
         execution: a recorded run.
@@ -38,7 +38,7 @@ def run_shapes(execution: Execution, home: EnvironmentGraph, knowledge: Knowledg
 
     Returns:
         `shapes` of things that the home lacks, and `ticks`: `off`, places of the home's `things` that are not there;
-        `on`, rows of number of the shape, x, y, z, yaw and node id; `at`, x, y, z of the feet of who acts.
+        `on`, rows of number of the shape, x, y, z, yaw and node id; `at`, x, y, z of the acting character's feet.
 
     Raises:
         HearthError: the home has no geometry.

@@ -51,7 +51,7 @@ IN_THE_WAY = 1.5
 """Loss of value of a camera at a moment at which a person is close in front of it."""
 
 SEEN, HALF = 8.0, 2.0
-"""Value of seeing an act, and how many times as much the acts count of who is seen in less than half of them."""
+"""Value of seeing an act, and the factor for acts of a person that is visible in less than half of its acts."""
 
 MOST = 3
 """Agents whose acts are counted apart."""
@@ -173,7 +173,7 @@ class Planner:
         return [step for step in frame.steps if step.agent == agent]
 
     def _obstacles(self, frame: Frame) -> Obstacles:
-        """What hides things at a moment: what moves least is looked at once a tick."""
+        """Occluders at a moment; slow ones are computed once a tick."""
         if frame.tick not in self.obstacles:
             keyframe = self.keyframes[frame.tick]
             held = frozenset(node for things in keyframe.places.holds.values() for node in things)
@@ -319,7 +319,7 @@ class Verified:
         ]
 
     def _rare(self, missed: Sequence[tuple[int, int]]) -> set[int]:
-        """Who is seen in less than half of its acts."""
+        """Persons that are visible in less than half of their acts."""
         acts, unseen = Counter(bit for _, bit in self._acts()), Counter(bit for _, bit in missed)
         return {bit for bit in acts if unseen[bit] > acts[bit] / 2}
 

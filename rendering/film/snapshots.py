@@ -207,7 +207,7 @@ def _keyframes(
 
 
 def people_seed(execution: Execution, seed: int) -> int:
-    """The seed of who performs an execution: other programs and homes have other people."""
+    """Return the seed of the person who performs an execution: other programs and homes have other people."""
     return derive(seed, "people", execution.worlds[0].home.name, execution.program.title)
 
 
@@ -258,7 +258,7 @@ def advanced(
 
 
 def _settled(places: Places, graph: EnvironmentGraph, actors: Sequence[Actor], steps: Sequence[Step]) -> Places:
-    """The places after steps: what is put down is put down beside the actors, or where the steps say."""
+    """Yield the places after each step: objects are put down next to the actors, or where the steps say."""
     near = {actor.node.id: _put_down_at(actor) for actor in actors}
     put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}
     return places.settled(graph, near, {node: (at[0], at[1]) for node, at in put.items() if node is not None and at})
@@ -269,7 +269,7 @@ BESIDE = (0.42, 0.0, 0.12)
 
 
 def _put_down_at(actor: Actor) -> Point:
-    """Return where an actor puts things down: near itself; who sits or lies, not under itself."""
+    """Return where an actor puts things down: near itself, and not under itself if it sits or lies."""
     return actor.position if actor.body_pose.posture == "standing" else actor.world(BESIDE)
 
 

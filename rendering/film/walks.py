@@ -1,4 +1,4 @@
-"""Walks of a film, and whether they lead through solid things; measured from what is drawn, not from the routes."""
+"""Walks of a film, and whether they lead through solid things; measured from the drawn figures, not from the routes."""
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise

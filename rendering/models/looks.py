@@ -20,7 +20,7 @@ FALLBACK = "crate"
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """How a class is drawn: the recipe's name and fixed parameters of its look."""
+    """The look of a class: the recipe's name and its fixed parameters."""
 
     recipe: str
     color: str = ""

@@ -130,7 +130,7 @@ PICTURES = tuple(name for name in entries_of(PACKAGE, FILE) if name != "shared")
 PAINTINGS = ("mountains", "sea", "flowers", "abstract", "portrait")
 SHOWS = ("show_news", "show_cartoon", "show_match")
 PROGRAMMES = (*SHOWS, "show_weather", "show_kitchen", "show_street")
-"""What a television shows, one after the other."""
+"""Pictures of a television, in order."""
 
 DESKTOPS = ("desktop", "screen_text", "screen_site", "screen_chart")
-"""What a computer's screen shows, one after the other."""
+"""Pictures of a computer's screen, in order."""

@@ -124,7 +124,7 @@ def moved(
 ) -> Actor:
     """The character at the position where it performs a step, hands in default pose.
 
-    It is seated if the graph says so, and gets up only for what hands cannot reach from there.
+    The actor is seated if the graph says so, and gets up only for objects that its hands cannot reach from there.
     """
     room = room_of(graph, actor.node.id) or actor.room
     if _states(graph, actor.node.id) & {"SITTING", "LYING"}:
@@ -179,7 +179,7 @@ def _hinders(actor: Actor, step: Step | None, floor: FreeFloor, top: int) -> boo
 
 
 def _still(step: Step | None) -> bool:
-    """Return whether doors stay as they are: who only comes to a thing may open it next."""
+    """Return whether doors stay as they are: a person that only walks to a thing may open it next."""
     return gesture_of(step).near and not gesture_of(step).swings
 
 
@@ -198,7 +198,7 @@ def _goal(step: Step | None) -> int:
 
 
 def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -> Actor:
-    """The actor standing in front of the seat that it used, or beside the bed, with the back to it."""
+    """Return the actor standing in front of the seat that it used, or next to the bed, with the back to it."""
     pose, lay = places.poses.get(actor.place), actor.body_pose.posture == "lying"
     front = (open_side(pose) if lay else pose.yaw) if pose else None
     spot = next(floor.spots_for(pose.box, front, actor.room, actor.spot, others), None) if pose else None
@@ -275,7 +275,7 @@ def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | 
 
 
 BACK = 0.42
-"""Metres from the end of a bathtub to the hips of who sits in it."""
+"""Distance from the end of a bathtub to the hips of a person sitting in it, metres."""
 
 
 def _depth(z0: float, z1: float) -> float:

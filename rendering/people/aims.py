@@ -29,7 +29,7 @@ PROTRUDING = 0.012
 
 
 class Aim(NamedTuple):
-    """Where a palm goes, in the person's frame, and the form of its hand."""
+    """The target of a palm, in the person's frame, and the form of its hand."""
 
     palm: Point
     hand: Hand
@@ -53,7 +53,7 @@ def with_aims(pose: BodyPose, aims: Aims) -> BodyPose:
 
 
 def held_by(graph: EnvironmentGraph, me: int) -> dict[str, int]:
-    """Side -> id of what the hand holds."""
+    """Side -> id of the held object."""
     return {HANDS[e.relation]: e.target for e in graph.edges if e.source == me and e.relation in HANDS}
 
 

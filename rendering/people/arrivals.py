@@ -30,8 +30,9 @@ AT_ONCE = 0.02
 
 @dataclass(frozen=True)
 class Arrivals:
-    """What is not yet in its place when the hands arrive: what is pushed or pulled, what a hand does not quite reach,
-    and what was in or on a thing that somebody takes.
+    """Objects that are not yet in place when the hands arrive.
+
+    Pushed or pulled objects, objects that a hand does not quite reach, and the contents of a taken object.
 
     Attributes:
         ways: id -> the way that is left then, from where it will be to where it is.
@@ -63,13 +64,13 @@ def _takes(way: Point) -> float:
 def arrivals(
     prepared: PreparedScene, before: Places, after: Places, actors: Sequence[Actor], without: Container[int]
 ) -> Arrivals:
-    """What has a way left when the hands arrive.
+    """Objects that still move when the hands arrive.
 
     Args:
         prepared: of the home.
         before, after: the step.
         actors: as they are when their hands arrive.
-        without: ids of what moves otherwise.
+        without: ids of the objects that move otherwise.
     """
     changed = {
         node

@@ -23,7 +23,7 @@ QUICKENING = 9.0
 
 
 COMES = 2.45
-"""How much faster than evenly the gap between a hand and what it holds closes at its fastest."""
+"""Largest speed at which the gap between a hand and its object closes, as a multiple of the even speed."""
 
 TURNING = 360.0
 """Greatest speed at which things turn in the hand, degrees per second."""

@@ -28,7 +28,7 @@ class Foot(NamedTuple):
 
 
 class Held(NamedTuple):
-    """How a held thing differs from the way in which it is usually held.
+    """The difference of a held thing's pose from its usual pose in the hand.
 
     Attributes:
         turn: degrees about y by which it is turned further.

@@ -57,7 +57,7 @@ def _motions(body_pose: BodyPose, shape: Shape, height: float, body: Proportions
 
 @lru_cache(maxsize=64)
 def _rest(shape: Shape, height: float) -> Joints:
-    """Joints and ends of bones in the rest pose; Hearth's names, and those of the rig for what only it has."""
+    """Joints and ends of bones in the rest pose, by Hearth's names, and by the rig's names where Hearth has none."""
     data, person, body = body_data(), shaped(shape, height), proportions(shape, height)
     found: Joints = {name: person.heads[number] for number, name in enumerate(data.bones)}
     found |= {f"{name}_end": person.tails[number] for number, name in enumerate(data.bones)}

@@ -21,7 +21,10 @@ STEP_TIME = 0.52
 """Seconds of a walking step."""
 
 LONGEST = 0.62
-"""Metres of a step of an adult, at most: who runs takes quicker steps; for longer ones the hips would drop."""
+"""Longest step of an adult, metres.
+
+A running person takes quicker steps instead, because longer ones would lower the hips.
+"""
 
 ADULT = 1.65
 """Metres of height below which steps are shorter."""
@@ -33,10 +36,13 @@ TURNING = 130.0
 """Degrees per second."""
 
 CORNERING = 170.0
-"""Degrees per second at most of who walks round a corner: one slows down for sharp ones, where the head would fly."""
+"""Fastest turn of a person walking round a corner, degrees per second.
+
+The person slows down at sharp corners, so that the head does not jerk.
+"""
 
 SWUNG = 1.5
-"""Metres per second of hands at most as the body turns: who carries something wide turns slowly."""
+"""Fastest movement of hands while the body turns, metres per second: a person carrying a wide object turns slowly."""
 
 BRIEF = 0.6
 """Share of `TURNING` at which one turns, on average, on a way of a few steps."""
@@ -186,7 +192,7 @@ def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float, reac
         ends = eased(way / 0.45) * eased((route.length - way) / 0.45) * turned
         straight = place.yaw + angle(place.yaw, yaw) * eased(way / route.length)
         aside = angle(straight, route.heading(way))
-        # Who walks backwards does not flip from one side to the other.
+        # A person walking backwards does not flip from one side to the other.
         return Place(*route.spot(way), straight + aside * ends * min(1.0, (180 - abs(aside)) / 120))
 
     return slowed(Movement(route.seconds * slower, at), reach)
@@ -237,7 +243,7 @@ class Gait:
     """The motion of a body and its feet over the floor.
 
     Args:
-        actor: who moves, standing; its feet begin where they are.
+        actor: the walking actor, standing; its feet begin where they are.
         moves: what its body does.
         arms: how far both arms are drawn in at places every `SAMPLED` seconds, (n, 2); None draws in none.
         end: how far they are drawn in at the end.
@@ -251,7 +257,7 @@ class Gait:
         self.actor, self.moves, self.end = actor, moves, end
         self.effort = effort_of(actor.body_pose, actor.body.proportions)
         self.moving = sum(move.seconds for move in moves)
-        # Who has shorter legs takes more steps.
+        # A person with shorter legs takes more steps.
         step = min(STEP_TIME, LONGEST / speed) * min(actor.body.height / ADULT, 1.0)
         self.count = max(1, ceil(self.moving / step))
         self.step = self.moving / self.count

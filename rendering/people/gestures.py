@@ -22,7 +22,7 @@ class Gesture:
         about: index of the object that hands or gaze go to.
         rests: whether the object is a seat or bed to sit or lie on.
         asleep: whether the eyes stay closed until the next action.
-        tools: classes and kinds of what acts if a hand holds it.
+        tools: classes and kinds of the tools that act if a hand holds them.
         moves: metres by which the object slides away from the actor; below 0 towards it.
         swings: whether doors or drawers of the object swing.
         into: whether hands go into an open container, that of the object or the object itself.

@@ -24,7 +24,7 @@ from hearth.schemas.graph import Box, Node, Point
 from hearth.schemas.yaml_extent import packaged
 
 HOLDS: Mapping[str, Mapping[str, Any]] = packaged("hearth.rendering.people", "holding.yaml")
-"""How models are held, by recipe. To add one: a row of `holding.yaml`."""
+"""Ways of holding models, by recipe. To add one: a row of `holding.yaml`."""
 
 BROAD, SMALL, THIN = 0.25, 0.06, 0.035
 """Metres: widths from which things are held with both hands, up to which between fingers; height of sheets."""
@@ -39,11 +39,11 @@ CARRIED: Mapping[str, Point] = {
     "handle": (0.12, 0.665, 0.235), "body": (0.11, 0.67, 0.235), "rim": (0.12, 0.64, 0.23),
     "pinch": (0.11, 0.67, 0.235), "sheet": (0.12, 0.655, 0.225), "two hands": (0.0, 0.6, 0.15),
 }  # fmt: skip
-"""Where the right palm is while a thing is carried, by grip, as shares of the person's height."""
+"""Positions of the right palm while a thing is carried, by grip, as shares of the person's height."""
 
 
 class Hold(NamedTuple):
-    """How a thing is held by one hand.
+    """A hand's grip of a thing.
 
     Attributes:
         grip: form of the fingers.
@@ -112,7 +112,7 @@ def grip_point(hold: Hold, box: Box, yaw: float) -> Point:
 
 
 def held_things(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...]) -> dict[int, tuple[Thing, ...]]:
-    """The drawn things that hands hold and heads wear, what is in and on them, and what pours out of them, by id."""
+    """The drawn things that hands hold and heads wear, their contents, and the liquid that pours out of them, by id."""
     nodes = {node.id: node for node in places.graph.nodes}
     found: dict[int, tuple[Thing, ...]] = {}
     for actor in actors:
@@ -176,13 +176,13 @@ def nearest_surface(model: Model, point: Point) -> Point:
 POURED = {"water": "#bcd8ea", "milk": "#f4f1ea", "juice": "#e8a13a", "wine": "#6a1f2e", "coffee": "#4a3020",
           "tea": "#9a5a2a", "oil": "#d8b84a", "cereal": "#c89a58", "rice": "#efe9da", "sugar": "#f4f2ee",
           "salt": "#f4f2ee", "soap": "#7ab0d8", "detergent": "#5a8ac8", "shampoo": "#8ac0a8"}  # fmt: skip
-"""Colours of what is poured, by parts of the names of classes; water for others."""
+"""Colours of poured liquids, by parts of the names of classes; water for others."""
 
 
 def _stream(
     prepared: PreparedScene, actor: Actor, node: Node, hold: Hold, held: Held, palm: Vector, size: Point
 ) -> Iterator[Thing]:
-    """What pours from the lip of a tilted thing."""
+    """The stream that pours from the lip of a tilted thing."""
     lip = palm + tilted((held.pitch, held.roll, 0.0)) @ _lip(hold, held, size)
     assert held.stream is not None
     high = float(lip[1] - held.stream[1])

@@ -24,7 +24,7 @@ STRETCHED = 0.997
 """Share of their length to which legs on a bed are stretched."""
 
 HEEL = 0.03
-"""Metres from a mattress to the heels of who sits on it."""
+"""Distance from a mattress to the heels of a person sitting on it, metres."""
 
 APART = 0.17
 """Metres of each hand to the side of where both take hold."""
@@ -47,7 +47,7 @@ def lying_down(sits: Actor, lying: Actor, bed: Remade) -> list[Segment]:
 
 
 def made_ready(stands: Actor, bed: Remade) -> list[Segment]:
-    """Who stands beside a bed lays its bedding as it is wanted."""
+    """Lay a bed's bedding as wanted, by a person standing next to it."""
     if not bed.moved:
         return []
     ways = bed.moved.get(bed.cover) or next(iter(bed.moved.values()))
@@ -62,7 +62,7 @@ def made_ready(stands: Actor, bed: Remade) -> list[Segment]:
 
 
 def sitting_up(lying: Actor) -> Actor:
-    """Who lies, sitting up on the bed with the legs stretched."""
+    """Return the lying person sitting up on the bed with the legs stretched."""
     body, seat = lying.body.proportions, lying.body_pose.seat
     x, _, z = lying.world((0.0, 0.0, lying.body.height * 0.5 - body.pelvis))
     ahead = (body.thigh + body.shin) * STRETCHED
@@ -71,7 +71,7 @@ def sitting_up(lying: Actor) -> Actor:
 
 
 def _ready(sits: Actor, up: Actor) -> Actor:
-    """Who sits on an edge or in a seat, arms and back as they will be when the legs are up."""
+    """Return the person sitting on an edge or in a seat, arms and back as they will be when the legs are up."""
     pose = replace(up.body_pose, seat=sits.body_pose.seat, feet=feet_of(sits.body_pose, sits.body.proportions))
     return replace(sits, body_pose=pose)
 

@@ -87,7 +87,7 @@ def _bedding(before: Keyframe, after: Keyframe, tracks: Sequence[Track], past: f
 
 
 def _arrivals(trajectory: Trajectory, before: Keyframe, after: Keyframe, tracks: Sequence[Track]) -> Arrivals:
-    """What has a way left when all hands have arrived; bedding that people move is not counted."""
+    """Objects that still move when all hands have arrived; bedding that people move is not counted."""
     change = _change(tracks)
     actors = tuple(track.at(change) for track in tracks)
     moved = _bedding(before, after, tracks, change).keys()

@@ -1,7 +1,7 @@
 """Pacing: motions that take so long that heads, hands and held things are as slow as people's all along the way.
 
-The straight way between two poses says little: who stoops moves the hands further, and a long thing that turns in the
-hand moves its far end.
+The straight way between two poses is a poor measure: a stooping person moves the hands further, and a long object that
+turns in the hand moves its far end.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ BODY = 3
 """Points of the body that are looked at: the head and the hands."""
 
 Holds = dict[str, Hold]
-"""How the `r` and `l` hands hold what they hold."""
+"""The grips of the `r` and `l` hands."""
 
 
 def holds_of(actor: Actor, places: Places) -> Holds:

@@ -18,14 +18,17 @@ SHARES = (1.0, 0.6, 0.3)
 """Shares of the way that are tried until nothing is hit."""
 
 SLIPS = 0.02
-"""Metres between a thing that slides and what is beside it."""
+"""Distance between a sliding thing and its neighbors, metres."""
 
 FLAT = frozenset({"floor", "mat", "rug", "carpet", "doormat"})
 """Classes on which things slide."""
 
 
 def slid(places: Places, actors: Sequence[Actor], steps: Sequence[Step]) -> Places:
-    """The places after steps that push or pull: away from who pushes, or towards who pulls, as far as there is room."""
+    """Yield the places after steps that push or pull.
+
+    Away from the pushing actor, or towards the pulling one, as far as there is room.
+    """
     poses = dict(places.poses)
     for step in steps:
         way, actor = gesture_of(step).moves, actors[step.agent] if step.agent < len(actors) else None

@@ -35,7 +35,7 @@ FORWARD = np.array((0.0, 0.0, 1.0))
 
 
 class Shape(NamedTuple):
-    """What shapes a person.
+    """Parameters of a person's shape.
 
     Attributes:
         sex: 0 female to 1 male.

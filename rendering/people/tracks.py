@@ -40,13 +40,13 @@ RUBBED = 0.06
 """Metres to each side by which a hand rubs."""
 
 CARRIED = 1.2
-"""Least height of the hands of who has got up, as a share of that of the hips."""
+"""Least height of the hands of a person who has got up, as a share of that of the hips."""
 
 AT_COUCH = 0.5
-"""Metres from the middle of who lies on a couch to the floor in front of it."""
+"""Distance from the middle of a person lying on a couch to the floor in front of it, metres."""
 
 AT_BED = 0.5
-"""Metres from where one stands beside a bed to the hips of who sits on its edge."""
+"""Distance from the place where a person stands next to a bed to the hips of a person sitting on its edge, metres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class Track:
         return sum(segment.seconds for segment in self.segments)
 
     def done(self, work: str, time: float) -> float | None:
-        """The share of what happens to bedding that is done `time` seconds after the start; None if nobody does it."""
+        """Return the share of a bedding's movement that is done after `time` seconds; None if nobody moves it."""
         for segment in self.segments:
             if segment.work == work:
                 share = eased(time / segment.seconds)
@@ -187,7 +187,7 @@ def _approach(
 
 
 def _bed(keyframes: tuple[Keyframe, Keyframe], place: int) -> Remade:
-    """What differs between two keyframes in the bed at a place."""
+    """Return the differences between two keyframes in the bed at a place."""
     return Remade.between(keyframes[0].places, keyframes[1].places, place)
 
 
@@ -208,7 +208,7 @@ def _walked(
 
 
 def _reach(actor: Actor) -> float:
-    """Metres from the body's axis to the farther palm, or to what it holds."""
+    """Distance from the body's axis to the farther palm, or to the object in it, metres."""
     joints, pose = actor.figure().joints(), actor.body_pose
     palms = [joints[f"palm_{side}"] + np.array(pose.hand(side).held.gap) for side in "rl"]
     return max(hypot(float(palm[0]), float(palm[2])) for palm in palms)
@@ -217,7 +217,7 @@ def _reach(actor: Actor) -> float:
 def _got_up(
     segments: list[Segment], one: Actor, ways: WalkableFloor | None, bed: Remade, front: float | None = None
 ) -> Actor:
-    """Append getting up from a seat or bed; returns the actor beside it, in front of a couch."""
+    """Append getting up from a seat or bed; return the actor next to it, in front of a couch."""
     stop = _beside(one, ways, one.spot, front)
     side = one
     if one.body_pose.posture == "lying":
@@ -239,7 +239,7 @@ def _not_below(hand: Point | None, low: float) -> Point | None:
 
 
 def _front(rests: Actor, keyframe: Keyframe) -> float | None:
-    """The direction of the front of the couch on which somebody lies; None for who does not, or lies in a bed."""
+    """Return the direction of the front of the couch on which a person lies, or None for other persons and for beds."""
     pose = keyframe.places.poses.get(rests.place)
     return open_side(pose) if pose and rests.body_pose.posture == "lying" else None
 
@@ -259,7 +259,7 @@ def _beside(rests: Actor, ways: WalkableFloor | None, near: Spot, front: float |
 
 
 def _on_edge(lying: Actor, stop: Spot) -> Actor:
-    """Who lies, sitting on the edge of the bed, with the back to its middle."""
+    """Return the lying person sitting on the edge of the bed, with the back to its middle."""
     away = hypot(stop[0] - lying.spot[0], stop[1] - lying.spot[1])
     share = min(AT_BED / max(away, 1e-6), 1.0)
     yaw = degrees(atan2(stop[0] - lying.spot[0], stop[1] - lying.spot[1])) if away > 1e-3 else lying.yaw

@@ -19,7 +19,7 @@ from hearth.schemas.yaml_extent import packaged
 
 
 class Worn(NamedTuple):
-    """How a thing is worn on the head.
+    """The way in which a thing is worn on the head.
 
     Attributes:
         at: from the head's joint, in the head's own directions, shares of the person's height.

@@ -76,7 +76,7 @@ def _shifts(shot: Shot, after: Shot) -> Floats:
 
 
 def _part(thing: Thing) -> tuple[int, str]:
-    """What stays the same of a part of a node: a machine's steam is not the machine."""
+    """The identity of a part of a node: a machine's steam is not the machine."""
     return thing.id, thing.model.recipe if isinstance(thing.model, Model) else ""
 
 

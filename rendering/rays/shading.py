@@ -214,7 +214,7 @@ def _own_groups(surface: SurfacePoints, geometry: Geometry) -> Ints:
 
 
 class Looked(NamedTuple):
-    """What rays to a light are looked up by: see `shadow_maps.occluded`."""
+    """Data by which rays to a light are looked up: see `shadow_maps.occluded`."""
 
     places: Ints
     own: Ints
@@ -294,7 +294,7 @@ def _target(setting: Setting, column: int) -> Floats:
 
 
 def _moves_before(moving: Part, setting: Setting, column: int) -> bool:
-    """Return whether something that moves may lie between a light and what it lights."""
+    """Return whether something that moves may lie between a light and its lit objects."""
     return len(moving.mesh) > 0 and (column == SUN or _between(setting.rows[column - 1], moving.boxes))
 
 

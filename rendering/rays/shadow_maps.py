@@ -21,7 +21,7 @@ from hearth.rendering.rays.threads import each
 from hearth.rendering.rays.unshaded_groups import unshaded_groups
 
 WORTH = 600_000
-"""Rays to a light from which on its map is made: about what making it costs."""
+"""Number of rays to a light from which on its map is made: about the cost of making it."""
 
 CUBE, PLANE = 256, 1024
 """Width in texels of a face of a lamp's map, and of the sun's."""
@@ -46,7 +46,7 @@ class ShadowMap(NamedTuple):
     scale: float = 0.0
 
     def certain(self, rays: Floats, index: Ints, own: Ints, blocked: Any, rest: Floats, places: Ints) -> int:
-        """Fill in what is certain; returns the number of rays left; see `shadow_loops.look_up_cube`."""
+        """Fill in the rays that are certain; return the number of the others; see `shadow_loops.look_up_cube`."""
         bounds = self.first, self.other, self.covered, self.groups
         if self.frame is None:
             return int(loops.look_up_cube(rays, index, own, *bounds, blocked, rest, places))

@@ -76,7 +76,7 @@ def shoot(
     *,
     by_rays: bool = False,
 ) -> Shot:
-    """What each of a camera's rays hits first; see `Shot`."""
+    """The first hits of a camera's rays; see `Shot`."""
     rays, skipped = camera_rays(camera)
     geometry = scene.geometry if camera.cut is None else scene.opened
     by_rays = by_rays or not drawable(camera)

@@ -20,7 +20,7 @@ class StillCameras:
         self.known: dict[Camera, Shot] = {}
 
     def shoot(self, scene: Scene, camera: Camera) -> Shot:
-        """What each of a camera's rays hits first; see `shot.shoot`."""
+        """Return the first hits of a camera's rays; see `shot.shoot`."""
         key = replace(camera, name="")
         known = self.known.pop(key, None)
         shot = shoot(scene, camera) if known is None else shoot_after(scene, replace(known, camera=camera))

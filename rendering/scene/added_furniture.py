@@ -36,7 +36,7 @@ FREE = 0.55
 """Metres in front of furniture that stay free, so that one can use it."""
 
 LEGS = 0.45
-"""Metres in front of a seat that the legs of who sits there need."""
+"""Space in front of a seat for the legs of a sitting person, metres."""
 
 
 def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places:

@@ -43,7 +43,7 @@ class Shine:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What is seen of a thing in a state; the fields of `effects.yaml`."""
+    """The visible effect of a thing's state; the fields of `effects.yaml`."""
 
     light: Shine | None = None
     moments: int = 1

@@ -1,4 +1,4 @@
-"""Free positions for things: on and in others, beside what stands there already."""
+"""Free positions for things, on and in others, next to the things that stand there already."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where things are by the relations of a graph: in hands, worn, on, inside, or in a room."""
+"""Locations of things by the relations of a graph: in hands, worn, on, inside, or in a room."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 
 FITS = 1.5
-"""How many times as long as a vessel what it holds may be, so that it is carried along."""
+"""Largest length of a vessel's content that is carried along, as a multiple of the vessel's length."""
 
 NOWHERE: Mapping[int, Spot] = MappingProxyType({})
 
@@ -45,7 +45,7 @@ class Places:
 
     @cached_property
     def building(self) -> frozenset[int]:
-        """Floors, walls and the like: supports that actors do not walk to."""
+        """Supports that actors do not walk to, such as floors and walls."""
         return frozenset(node.id for node in self.graph.nodes if node.class_name in BUILDING)
 
     @cached_property
@@ -236,7 +236,7 @@ class Places:
         return [other for other in found if overlap(other, space) > 0]
 
     def _on_floor(self, node: Node, room: Node, poses: Mapping[int, Pose], near: tuple[Point, ...]) -> Pose | None:
-        """A pose on the floor beside a character, else in the middle of the room."""
+        """Return a pose on the floor next to a character, else in the middle of the room."""
         base = poses.get(room.id)
         if base is None:
             return self.poses.get(node.id)
@@ -251,7 +251,7 @@ class Places:
 
 
 def _carried(locations: Mapping[int, Location]) -> list[int]:
-    """Ids of what is held or worn, and of what is in or on that."""
+    """Return the ids of held and worn objects, and of the objects in or on them."""
     found: dict[int, bool] = {}
 
     def carried(number: int, depth: int = 8) -> bool:

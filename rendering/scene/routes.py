@@ -184,9 +184,9 @@ def path(floor: WalkableFloor | None, start: Spot, goal: Spot, others: Sequence[
 def led_on(floor: WalkableFloor | None, route: Sequence[Spot], goal: Spot) -> tuple[Spot, ...]:
     """A route that may end before its goal, led on to it.
 
-    Where the world has somebody whom no way leads to by what is drawn, such as beside an open oven, one passes between
-    the things, however near they are. Where things or walls are all around, the way is the one that leads through them
-    for the fewest metres. Only where no floor is known, the rest is the straight line.
+    Where the world has a character that no drawn way leads to, such as next to an open oven, the way passes between the
+    things, however near they are. Where things or walls are all around, the way is the one that leads through them for
+    the fewest metres. Only where no floor is known, the rest is the straight line.
     """
     if dist(route[-1], goal) < SAME:
         return tuple(route)
@@ -240,7 +240,7 @@ def _found(
 
 
 def _roomier(floor: WalkableFloor, ways: Ways, before: Spot, corner: Spot, after: Spot) -> Spot:
-    """A point beside a corner of a path with room for arms, if the path can lead over it."""
+    """Return a point next to a corner of a path with room for arms, if the path can lead over it."""
     for x, z in BESIDE:
         point = corner[0] + x, corner[1] + z
         if floor.has_room(point) and floor.clear(before, point, ways) and floor.clear(point, after, ways):

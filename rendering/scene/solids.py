@@ -61,7 +61,7 @@ class Solids:
         return Solids(self.all[k] for k in np.flatnonzero(far < reach) if self.all[k].node not in without)
 
     def contain(self, points: Floats, margin: float = 0.0) -> Found:
-        """(n,) whether points (n, 3) are in any of them, or less than `margin` metres beside it."""
+        """Return (n,) whether points (n, 3) are in any of them, or less than `margin` metres from it."""
         offset = points[:, None, (0, 2)] - self.middles
         x = offset[..., 0] * self.cosines - offset[..., 1] * self.sines
         z = offset[..., 0] * self.sines + offset[..., 1] * self.cosines

@@ -26,7 +26,10 @@ SIDE = 0.26
 
 
 AHEAD, CLOSE, TURN = 2.0, 0.9, 30
-"""Metres of floor that matter ahead of who reads, and up to which something is close; degrees between directions."""
+"""Length of floor that matters ahead of a reader, largest distance that counts as close, metres.
+
+And angle between directions, degrees.
+"""
 
 APART = 0.19
 """Metres between spots among which one chooses."""

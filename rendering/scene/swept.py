@@ -26,7 +26,7 @@ REACHED = 1.7
 
 
 class Floors:
-    """The free floors of a home, by where things stand and what is open; each is computed once."""
+    """The free floors of a home, by the places of things and the open doors; each is computed once."""
 
     def __init__(self, prepared: PreparedScene) -> None:
         self.prepared = prepared

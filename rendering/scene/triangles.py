@@ -71,12 +71,12 @@ class Part:
 
     @cached_property
     def shadow_maps(self) -> ShadowMaps:
-        """What lights see of the things."""
+        """The lights' view of the things."""
         return ShadowMaps(self.mesh.corners, self.owner, self._lamps)
 
     @cached_property
     def light_grids(self) -> LightGrids:
-        """Which of the triangles lie in each direction from a light."""
+        """The triangles in each direction from a light."""
         return LightGrids(self.mesh.corners, self.owner, self._lamps)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What the handlers share: the context they are given, and the edits they answer with."""
+"""Shared parts of the handlers: the context given to them, and the edits that they return."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ class RepairContext(FailureContext):
     """A failure to repair.
 
     Attributes:
-        rules: what the execution goes by.
+        rules: those of the execution.
         goal: what the program has to reach (thesis eq. A.1).
         nodes: the nodes of the objects that the goal names.
         missed: the facts of the goal that do not hold, where the program ran to its end; or of the circumstances of a

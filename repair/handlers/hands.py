@@ -8,7 +8,7 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import OPEN
 
 _CLOTHS = ("rag", "towel", "sponge", "paper_towel", "cloth_napkin", "napkin", "dish_towel", "toilet_paper")
-"""What one wipes with, best first."""
+"""Tools for wiping, best first."""
 
 
 def no_free_hand(context: RepairContext) -> Edit | None:
@@ -93,7 +93,10 @@ def _hand_is_free(context: RepairContext, thing: ObjectRef) -> int | None:
 
 
 def _wanted(context: RepairContext) -> int | None:
-    """Index of what the step has to hold: a knife to cut with, a cloth to wipe with, else its object."""
+    """Return the index of the object that the step has to hold.
+
+    A knife to cut with, a cloth to wipe with, else its object.
+    """
     if context.step.action == "Cut":
         home = context.world.home
         knives = (i for name, mask in home.by_class.items() if "knife" in name for i in indices(mask))

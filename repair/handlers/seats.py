@@ -1,4 +1,7 @@
-"""Who sits: errands are run before the seat is taken, and what is used there is brought within reach."""
+"""Repairs for seated characters.
+
+Ways are walked before the seat is taken, and objects used there are brought within reach.
+"""
 
 from hearth.repair.circumstances import RESTING
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, tick_start
@@ -31,7 +34,7 @@ def stays(context: RepairContext, last: int) -> bool:
 
 
 def brought(context: RepairContext, name: str) -> Edit | None:
-    """Bring seat and thing together before the seat is taken: come from beside it, fetch it, or move the seat."""
+    """Bring seat and thing together before the seat is taken: come from its side, fetch it, or move the seat."""
     seat = context.seat_taken()
     if seat is None:
         return None
@@ -66,7 +69,7 @@ def _is_put(context: RepairContext, thing: ObjectRef, seat: ObjectRef) -> bool:
 
 
 def _supports(world: World, i: int) -> int:
-    """What bears a thing, and what bears that."""
+    """Return the supports of a thing, and the supports of these."""
     found = rows.on(world, i)
     for j in indices(found):
         found |= rows.on(world, j)
@@ -98,7 +101,7 @@ def _approach(context: RepairContext, seat: int) -> int:
 
 
 def _walks(context: RepairContext, number: int) -> bool:
-    """Return whether the character goes somewhere else in a step: not by a Find of what is close."""
+    """Return whether the character goes somewhere else in a step: not by a Find of a close object."""
     step, world = context.program.steps[number], context.world_before(number)
     if step.agent != context.failure.agent or step.action not in context.group("goes") or step.joins:
         return False

@@ -1,7 +1,7 @@
 """Distance fields of floors on disk: made beforehand, one file a floor, read where they lie and shared by processes.
 
-A file is named for its floor, so that every home with that floor finds it, and a home that is changed does not. What a
-file says is compared with the floor before it is used: whoever wrote it, the ways are the shortest.
+A file is named for its floor, so that every home with that floor finds it, and a home that is changed does not. The
+content of a file is compared with the floor before it is used: whoever wrote the file, the ways are the shortest.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Ends = tuple[int, ...]
 
 
 def folder() -> Path:
-    """Return where ways are stored: in `HEARTH_WAYS`, else beside our homes."""
+    """Return where ways are stored: in `HEARTH_WAYS`, else next to our homes."""
     given = os.environ.get(VARIABLE)
     return Path(given) if given else Path(__file__).resolve().parents[2] / "data_raw/homes/ways"
 

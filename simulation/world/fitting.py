@@ -1,4 +1,4 @@
-"""Whether things fit where they are put, by the knowledge: placements, seat limits, possible states."""
+"""Tests whether things fit into their places, by the knowledge: placements, seat limits, possible states."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ _USES = {"ON": ("SURFACES", "SITTABLE", "LIEABLE"), "INSIDE": ("CONTAINERS", "CA
 def unfit(world: World, i: int, relation: str, j: int) -> Failure | None:
     """Return why node i can't be put ON or INSIDE node j, or None when it can.
 
-    Rooms take everything INSIDE. A character may be ON what it can sit or lie on. Other things go where the placements
-    say, or, when there are none for them, ON what has a surface and INSIDE what contains.
+    Rooms take everything INSIDE. A character may be ON things that it can sit or lie on. Other things go where the
+    placements say, or, when there are none for them, ON things with a surface and INSIDE containers.
 
     Returns:
         NO_PLACE; or OCCUPIED, when a seat or bed already bears as much as its limit.

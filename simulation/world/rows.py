@@ -161,7 +161,7 @@ def character(world: WorldState, i: int) -> Agent:
 
 
 def containers(world: WorldState, i: int) -> int:
-    """What i is INSIDE, characters included, and whether or not it is a character itself."""
+    """Return the containers of i, characters included, and whether or not it is a character itself."""
     if world.home.characters >> i & 1:
         return character(world, i).inside
     found = inside(world, i)
@@ -181,18 +181,18 @@ def bearing(world: WorldState, i: int) -> int:
 
 
 def turned_back(world: WorldState, i: int) -> int:
-    """The bedding ON i that takes no room there by the rule `made_bed`: that on what one can lie on."""
+    """Return the bedding ON i that takes no room there by the rule `made_bed`: the bedding of beds and couches."""
     home = world.home
     return bearing(world, i) & home.bedding if home.properties["LIEABLE"] >> i & 1 else 0
 
 
 def taking_room(world: WorldState, i: int, made_bed: bool = True) -> int:
-    """What is ON i and takes room from who would sit or lie there, with the rule `made_bed` or without."""
+    """Return the things ON i that take room from a sitting or lying character, with the rule `made_bed` or without."""
     return bearing(world, i) & ~turned_back(world, i) if made_bed else bearing(world, i)
 
 
 def held_indices(agent: Agent) -> Iterator[int]:
-    """What a character holds, right hand first."""
+    """Return the objects that a character holds, right hand first."""
     yield from indices(agent.right)
     yield from indices(agent.left & ~agent.right)
 

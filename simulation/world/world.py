@@ -84,7 +84,7 @@ class World(WorldState):
 
     @explained
     def changes(self, since: World) -> Change:
-        """What is different from an earlier world of the same home; cost follows what differs."""
+        """Return the differences from an earlier world of the same home; the cost follows their number."""
         return encode(since, self)
 
     def key(self) -> tuple[object, ...]:
@@ -116,6 +116,6 @@ class World(WorldState):
         return f"World({self.home!r}, {len(self.agents)} agents)"
 
     def holding(self) -> Mapping[int, tuple[int, ...]]:
-        """What each agent holds, by agent number: node ids, right hand first."""
+        """The objects that each agent holds, by agent number: node ids, right hand first."""
         ids = self.home.ids
         return {number: tuple(ids[i] for i in rows.held_indices(agent)) for number, agent in enumerate(self.agents)}
