@@ -1,4 +1,4 @@
-"""Agents of others in an episode: what crashes, hangs or answers nonsense ends it with a code, and nothing else."""
+"""Guards around others' agents in an episode: an agent that crashes, hangs or answers nonsense ends it with a code."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Guarded:
             self.agent.reset(observation, goal, seed)
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """What it says, where that is allowed, or its instruction, if it may be tried; None otherwise.
+        """Return its message, where messages are allowed, or its instruction, if it may be tried; None otherwise.
 
         Raises:
             AgentError: there is no instruction: AGENT_FAILED, TIMED_OUT, BAD_ARGUMENT.
@@ -86,13 +86,13 @@ class Guarded:
             return None
 
     def _plain(self, step: Step, view: View) -> Step:
-        """The instruction as records have it: an action and nodes. Agents could write one in many ways."""
+        """Return the instruction as records have it: an action and nodes. Agents could write one in many ways."""
         home = view.world.home
         nodes = [ref.node for ref in step.objects if ref.node is not None]
         return Step(step.action, tuple(ObjectRef(home.classes[home.index[i]], 0, i) for i in nodes), self.number)
 
     def _may_try(self, step: Step, view: View) -> bool:
-        """Return whether it is about what is seen; the engine says then why it can't be done."""
+        """Return whether an instruction is about visible nodes; the engine then says why it is impossible."""
         ids = [ref.node for ref in step.objects]
         return step.action in self.allowed and all(isinstance(node, int) and view.sees(node) for node in ids)
 
@@ -109,7 +109,7 @@ class Guarded:
 
 
 def _fault_of(error: BaseException) -> Diagnostic:
-    """What an agent raised, of whose text nothing is taken for granted."""
+    """Return the diagnostic of an error that an agent raised; its text may itself fail."""
     if isinstance(error, HearthError) and error.diagnostics:
         return error.diagnostics[0]
     try:
@@ -121,7 +121,7 @@ def _fault_of(error: BaseException) -> Diagnostic:
 
 @contextmanager
 def _within(seconds: float) -> Iterator[None]:
-    """Interrupt what takes longer, where this is the thread that gets signals."""
+    """Interrupt a longer computation, if this is the thread that gets signals."""
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
         yield
         return

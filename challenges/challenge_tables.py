@@ -228,7 +228,7 @@ def _trajectory(found: Results, record: Record) -> Iterator[dict[str, Any]]:
 
 
 def _posterior(found: Results, record: Record, known: Known) -> Iterator[challenge_rows.PosteriorRow]:
-    """What a helper that infers the goal believed; nothing of others."""
+    """Yield the beliefs of a helper that infers the goal; nothing for other helpers."""
     helper = found.header.lineup.helper
     if helper not in ONLINE or not record.helped or record.helper_goal is not None:
         return

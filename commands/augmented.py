@@ -15,13 +15,14 @@ def augmented(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Print table 5.1 of the thesis beside a dataset's own figures, and the effects of augmenting.
+    """Print table 5.1 of the thesis next to a dataset's own figures, and the effects of augmenting.
 
-    Counts programs, steps, nodes and edges; lengths of programs before and after; conditions of their objects at the
-    start (figure 5-4, for cups and sauce pans); near-duplicates of one parent in one home (none are expected). With
-    --circumstances every augmented program and its original run again: the share of programs that do each step they
-    have kept as the original does it (sitting, lying, holding, with what was opened or switched on), and the number
-    that are never seated at what the original does in its seat.
+    The output counts programs, steps, nodes and edges. It has lengths of programs before and after, and conditions of
+    their objects at the start (figure 5-4, for cups and sauce pans). It counts near-duplicates of one parent in one
+    home (none are expected). With --circumstances every augmented program and its original run again. The output then
+    has the share of programs that do each step they have kept as the original does it: sitting, lying, holding, with
+    the same things opened or switched on. It also has the number of programs that are never seated for an activity that
+    the original does in its seat.
 
     \b
     Examples:

@@ -58,8 +58,8 @@ def build(
 
     Sources are recognised by content: the ActivityPrograms release (zip or folder), tables (CSV), program text, plans
     of language models, JSON or JSON Lines, sketches, scene graphs, a dataset; packed or not. A second build runs only
-    what changed, and a stopped build continues. The last table counts the records of each stage. Folders may be URLs
-    (s3://bucket/folder), with the extra `remote`.
+    the changed parts, and a stopped build continues. The last table counts the records of each stage. Folders may be
+    URLs (s3://bucket/folder), with the extra `remote`.
 
     \b
     Examples:
@@ -76,7 +76,7 @@ def build(
 
 
 def _tiered(context: typer.Context, tier: str = "") -> dict[str, Any]:
-    """The options of a command, with those that its tier and its strength set."""
+    """Return the options of a command, with those that its tier and its strength set."""
     from hearth.pipelines.engine.tiers import tiered
 
     sources_of = {name: context.get_parameter_source(name) for name in context.params}
@@ -195,7 +195,7 @@ def augment(
 
 
 def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
-    """The values of --homes: a folder, and names of homes."""
+    """Return the values of --homes: a folder, and names of homes."""
     texts = [text for text in given or () if text != _ALL]
     folder = next((Path(text) for text in texts if Path(text).is_dir()), None)
     return folder, [name for text in texts if not Path(text).is_dir() for name in text.split(",") if name]
@@ -255,7 +255,7 @@ _OTHERS = frozenset({"sources", "out", "only", "tier", "size", "log_json", "as_j
 
 
 def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of a build, from the options of a command."""
+    """Return the settings of a build, from the options of a command."""
     found = {_NAMES.get(name, name): value for name, value in chosen.items() if name not in _OTHERS}
     folders = {name: str(found[name]) for name in ("homes_folder", "kb_folder") if found.get(name) is not None}
     return {**found, **folders, **({"homes": tuple(found["homes"] or ())} if "homes" in found else {})}

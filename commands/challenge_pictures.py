@@ -1,4 +1,4 @@
-"""`challenge stats | show`: where tasks start, and what was done in an episode, printed and drawn."""
+"""`challenge stats | show`: the starts of tasks, and the actions of an episode, printed and drawn."""
 
 from __future__ import annotations
 
@@ -51,11 +51,13 @@ def show(
     goal_beliefs: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6, and what
-    the helper believed of the goal as in figure 7-4.
+    """Show the agents' actions in an episode.
 
-    An episode with a helper is drawn beside that of the main agent alone. With --belief it is where the main agent
-    believes wanted things to be, as time goes by (figure B-3).
+    Draw their ways on the floor plan as in the thesis's figure 6-6, and the helper's beliefs about the goal as in
+    figure 7-4.
+
+    An episode with a helper is drawn next to that of the main agent alone. With --belief the drawing shows the places
+    where the main agent believes wanted things to be, over time (figure B-3).
 
     \b
     Examples:

@@ -75,7 +75,7 @@ def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
 
 
 def _program_text(path: Path, name: str) -> str | None:
-    """The text of a file that is nothing but programs; None for any other form.
+    """Return the text of a file that is nothing but programs; None for any other form.
 
     Raises:
         HearthError: it can't be read.
@@ -142,7 +142,7 @@ def _check_programs(
 
 
 def _strictly(checked: Checked) -> Checked:
-    """The same with fuzzy matches among the faults."""
+    """Return the findings with fuzzy matches among the faults."""
     fuzzy = tuple(each for each in checked.warnings if each.code == Code.FUZZY_MATCH)
     others = tuple(each for each in checked.warnings if each.code != Code.FUZZY_MATCH)
     return replace(checked, faults=(*checked.faults, *fuzzy), warnings=others)

@@ -113,7 +113,7 @@ def stats(
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Print statistics of a corpus beside the thesis's: funnel, variety, diversity, averages, missing actions.
+    """Print statistics of a corpus next to the thesis's: funnel, variety, diversity, averages, missing actions.
 
     With --out: histograms of actions and objects, the funnel, the similarity matrix of activities and the
     co-occurrence of objects as PNG and SVG, and all numbers as Parquet.
@@ -233,7 +233,7 @@ def fuzz(seconds: float = 300, seed: int = 0, most: int | None = None, as_json: 
 
 
 def _mutated_input() -> Any:
-    """The module of the tests that mutates input: what is installed does without it."""
+    """Return the module of the tests that mutates input; an installed package is without it."""
     tests = Path(__file__).resolve().parents[1] / "tests"
     if not tests.is_dir():
         raise HearthError.of(Code.MISSING_FILE, "mutated input belongs to the tests", suggestion="run it in a checkout")
@@ -287,7 +287,7 @@ def completeness(
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Estimate the completeness of programs by the steps that repairs insert, beside raters and the thesis's 64/28/8%.
+    """Estimate how complete programs are by the steps that repairs insert, next to raters and the thesis's 64/28/8%.
 
     \b
     Examples:

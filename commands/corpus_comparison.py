@@ -21,7 +21,7 @@ def realism(
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Compare a corpus with another, as people's: what their halves know of each other, and what this one knows.
+    """Compare a corpus with another, such as people's: this one and half of the other predict the other half.
 
     The other corpus is split into two halves; as many programs of this one are drawn as a half has. Both, the draw and
     the first half, are asked about the second half: perplexity of its steps, instructions never seen, divergence of

@@ -57,7 +57,7 @@ def _failures(found: Coverage) -> Iterator[dict[str, Any]]:
 
 
 def _row(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> dict[str, Any]:
-    """The reason why a program does not run, with the lines of the steps that contradict each other."""
+    """Return the reason why a program does not run, with the lines of the steps that contradict each other."""
     return {
         "program": script.program_id,
         "place": script.place,

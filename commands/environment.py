@@ -21,7 +21,7 @@ app = typer.Typer(
 
 @app.command()
 def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> None:
-    """Print the preconditions of a program, step by step, beside those of the release's rules.
+    """Print the preconditions of a program, step by step, next to those of the release's rules.
 
     \b
     Example:

@@ -1,4 +1,4 @@
-"""What `model show` prints for a film: its steps with times, and the program that runs in a home."""
+"""The output of `model show` for a film: its steps with times, and the program that runs in a home."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MASKS = "masks"
 def show(
     model: str, film: Path, home: str, homes: Path | None, kb: Path | None, out: Path | None, masks: str = MASKS
 ) -> dict[str, Any]:
-    """What a film shows, as JSON, with the pages that were written into `out`.
+    """Return the contents of a film, as JSON, with the pages that were written into `out`.
 
     Args:
         model: a classifier of clips by masks.

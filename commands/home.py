@@ -77,7 +77,7 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
     """Report the faults of a home or of any scene graph; the status is 1 if there are any.
 
     Nodes without category, properties or states have those of their class in the knowledge, here and wherever a graph
-    is read. Named beside the faults: how many these are, and things that nothing can be done with.
+    is read. The output also names the number of these nodes, and the things that no action applies to.
 
     With --layout, a graph without geometry is laid out, and every relation that the layout can't show is named; these
     are not faults.
@@ -120,7 +120,7 @@ def _codes(faults: Sequence[Diagnostic]) -> dict[str, int]:
 
 
 def met(layout: GraphLayout) -> list[dict[str, Any]]:
-    """For nodes and for each relation, the number in the graph and the number that the layout shows."""
+    """Return for nodes and for each relation the number in the graph and the number that the layout shows."""
     edges = Counter(edge.relation for edge in layout.graph.edges)
     lost = Counter(
         "things" if fault.code == "NO_PLACE" else next(name for name in edges if f") {name} " in fault.message)
@@ -134,7 +134,7 @@ def met(layout: GraphLayout) -> list[dict[str, Any]]:
 def convert(home: str, out: Path, layout: bool = False, homes: Path | None = None, as_json: bool = False) -> None:
     """Write a home as a scene graph in the release's layout, or its node ids by name.
 
-    A file `x.ids.csv` beside a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
+    A file `x.ids.csv` next to a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
 
     \b
     Examples:
@@ -161,10 +161,10 @@ def export(
     homes: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Write what is in a home for other programs, as they draw it: Blender, three.js, MuJoCo.
+    """Write the drawn contents of a home for other programs: Blender, three.js, MuJoCo.
 
-    A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colours, in an
-    .mtl beside it, and no textures.
+    A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colors, in an
+    .mtl next to it, and no textures.
 
     \b
     Examples:
@@ -287,7 +287,7 @@ def stats(
 def ways(names: list[str] | None = None, homes: Path | None = None, workers: int = 0, as_json: bool = False) -> None:
     """Make the shortest ways to everything in homes beforehand, and store them; walks by metres then read them there.
 
-    All homes if none is named. The files are beside our homes, or in the folder that HEARTH_WAYS names. Each belongs
+    All homes if none is named. The files are next to our homes, or in the folder that HEARTH_WAYS names. Each belongs
     to a floor: a home that is changed makes its ways anew, stored or not.
 
     \b
@@ -360,7 +360,7 @@ def _figures(graph: EnvironmentGraph) -> dict[str, Any]:
 
 
 def _rooms(graph: EnvironmentGraph) -> list[dict[str, Any]]:
-    """Each room with what is INSIDE it, counted by class."""
+    """Return each room with the objects INSIDE it, counted by class."""
     nodes = {node.id: node for node in graph.nodes}
     inside: dict[int, Counter[str]] = {node.id: Counter() for node in graph.nodes if node.category == "Rooms"}
     for edge in graph.edges:

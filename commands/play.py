@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hearth.challenges.episode_loop import Played
 
 TEXT, WAIT, LISTEN, STDIO = "text", "wait", "listen", "stdio"
-"""Agents that are not commands: the terminal, nobody, who connects to a port, and whoever started this command."""
+"""Agents that are not commands: the terminal, none, a program that connects to a port, and this command's parent."""
 
 
 def play(
@@ -85,7 +85,7 @@ class _Seat(NamedTuple):
 
 
 class _How(NamedTuple):
-    """What agents have in common."""
+    """The settings that all agents share."""
 
     ticks: int
     within: float
@@ -101,7 +101,7 @@ PLAYED = "played"
 MOST_AGENTS = 16
 
 FORMS = {"graph": ("graph",), "text": ("text",), "both": ("graph", "text")}
-"""What `--form` may be, and what programs are then sent."""
+"""The values of `--form`, and the parts of an observation that programs are then sent."""
 
 
 def _seats(given: list[str]) -> list[_Seat]:

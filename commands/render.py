@@ -88,7 +88,7 @@ def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) 
 
 
 def _check(mode: str, width: int, given: Mapping[str, bool]) -> None:
-    """Refuse options that would have no effect; `given` says of some whether they differ from what they are anyway."""
+    """Refuse options without effect; `given` has for some options whether they differ from their defaults."""
     import typer
 
     for name in ("--cameras", "--fps", "--vary"):
@@ -107,7 +107,7 @@ def _height(width: int, mode: str) -> int:
 
 
 class Shooting(NamedTuple):
-    """What is pictured, in which folder, and how: width and height, seed, hour, title of the sheet, whether to vary."""
+    """A job of pictures: execution, folder, width and height, seed, hour, title of the sheet, whether to vary."""
 
     execution: Execution
     graph: EnvironmentGraph
@@ -143,7 +143,7 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
 def videos(
     shooting: Shooting, names: list[str], fps: float, quality: str = "draft", modalities: Sequence[str] = ("rgb",)
 ) -> dict[str, Any]:
-    """Film what is to be pictured by some cameras; files, pages and steps."""
+    """Film an execution by some cameras, and return files, pages and steps."""
     import orjson
 
     from hearth.rendering.film.contact_sheet import caption

@@ -72,7 +72,7 @@ def _refuse(failure: Any, home: str, as_json: bool) -> NoReturn:
 
 
 def _strength(name: str, kinds: list[str] | None) -> Strength:
-    """A strength by its name; with kinds of perturbation, these alone, applied wherever possible.
+    """Return a strength by its name; with kinds of perturbation, these alone, applied wherever possible.
 
     Raises:
         HearthError: UNKNOWN_ID, with the known kinds or strengths.

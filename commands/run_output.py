@@ -1,4 +1,4 @@
-"""A run as text and as JSON: what each step changed, why it stopped, and what would fix it."""
+"""A run as text and as JSON: the changes of each step, the reason why it stopped, and the fix."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Outcome(NamedTuple):
     unsampled: str = ""
 
     def additions(self) -> Additions:
-        """Return what the start has more than the home, and otherwise."""
+        """Return the additions of the start to the home, and the other changes."""
         from hearth.simulation.world.world import World
 
         return additions(World.start(self.place).graph(), self.trial.execution.worlds[0].graph())
@@ -120,7 +120,7 @@ def _ticks(execution: Execution) -> list[tuple[Step, ...]]:
 
 
 def _reached(execution: Execution) -> list[Step]:
-    """The steps that were done, and those of the tick that failed."""
+    """Return the steps that were done, and those of the tick that failed."""
     return [step for steps in _ticks(execution)[: len(execution.worlds)] for step in steps]
 
 
@@ -192,7 +192,7 @@ def _print_checks(found: list[Check]) -> None:
 
 
 def _poses(execution: Execution) -> tuple[tuple[HandAndBasePose, ...], ...]:
-    """The hand and base pose of the characters for each tick; nothing in homes without geometry."""
+    """Return the hand and base pose of the characters for each tick; nothing in homes without geometry."""
     from hearth.simulation.motion.base_pose import hand_and_base_poses
 
     return hand_and_base_poses(execution)

@@ -32,10 +32,10 @@ def sketch(
     """Print the sketches of programs: the steps that do not depend on the environment.
 
     A sketch has the fewest steps from which, in several homes, repairs still reach the goal of the program, and the
-    steps of which only the description speaks. With --judge the sketches are compared with people's: precision, recall
-    and F1 over steps, beside two baselines, one of which knows the answers. With --model a learned model decides:
-    `ours`, fitted on our own annotations, or a file that --fit wrote, fitted on others' on top of ours. With --folds it
-    is cross-validated: fitted on some activities, tested on others.
+    steps of which only the description speaks. With --judge the sketches are compared with people's. The output then
+    has precision, recall and F1 over steps, and those of two baselines, one of which knows the answers. With --model a
+    learned model decides: `ours`, fitted on our own annotations, or a file that --fit wrote, fitted on others' on top
+    of ours. With --folds it is cross-validated: fitted on some activities, tested on others.
 
     \b
     Examples:

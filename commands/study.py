@@ -90,8 +90,8 @@ def simulate(
 ) -> None:
     """Let agents take part in people's places, by the code that people's trials go through, until all is done.
 
-    The other study that it is about, such as people's lengths alone, is simulated first. What a stopped simulation had
-    written is kept; the same command goes on from there.
+    The other study that it is about, such as people's lengths alone, is simulated first. The events of a stopped
+    simulation are kept; the same command continues from there.
 
     \b
     Examples:
@@ -155,7 +155,7 @@ def prepare(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Make what a study with people needs: the agent's episodes in its tasks, and the films that are judged.
+    """Make the files that a study with people needs: the agent's episodes in its tasks, and the films to judge.
 
     Films that are there already are kept.
 
@@ -284,7 +284,7 @@ def forget(source: Path, person: str, *, store: str = "", study: str = "", as_js
 
 
 def _opened(source: Path, store: str, study: str) -> Collected:
-    """The study of a folder that was simulated into, or that the server keeps its store in."""
+    """Return the study of a folder that was simulated into, or that the server keeps its store in."""
     from hearth.kb.loading.load import default
     from hearth.studies.study_folder import EVENTS, opened
 
@@ -299,7 +299,7 @@ def _opened(source: Path, store: str, study: str) -> Collected:
 
 
 def _alone(collected: Collected, source: Path, store: str) -> Collected | None:
-    """The study whose lengths are those without a helper, from where the other one is."""
+    """Return the study with the lengths without a helper, from the place of the other study."""
     from hearth.studies.study_folder import EVENTS, beside
 
     if (source / EVENTS).is_file() and not store:

@@ -97,7 +97,7 @@ def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
     if not perturbed and case["program_id"] != context.last:
         context.last = case["program_id"]
         yield f"programs.{case['split'] or LEFT_OUT}", {**program_row(case), **STAMP}
-    # What came of repairing: for an original, nothing.
+    # The outcome of repairing: for an original, nothing.
     came: Any = {"program_id": None, "execution_id": None, "parent_id": case["program_id"]} if perturbed else {}
     if case["environment_id"] != context.environment:
         context.environment = case["environment_id"]

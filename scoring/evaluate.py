@@ -43,7 +43,7 @@ BothLcs = tuple[LcsScore, LcsScore]
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How predictions are scored.
+    """Settings for scoring predictions.
 
     Attributes:
         rules: of simulation.
@@ -158,8 +158,11 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
     "goal_whole": lambda s: _whole(s, lambda found: found.whole),
     "goal_whole_fraction": lambda s: _whole(s, lambda found: found.whole_fraction),
 }
-"""Every score by name, from 0 to 1; None if it does not apply. `goal` counts only what did not hold at the start;
-`goal_whole` is the reading before version 2, which counts all. To add a scorer: a module, a row here, a test."""
+"""Every score by name, from 0 to 1; None if it does not apply.
+
+`goal` counts only literals that did not hold at the start. `goal_whole` is the reading before version 2, which counts
+all. To add a scorer: a module, a row here, a test.
+"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ _META = b"hearth"
 
 @dataclass(slots=True)
 class Counts:
-    """What became of records. `records_in = through + rejected` always, and every reject has its code counted.
+    """Counts of records by outcome. `records_in = through + rejected` always, and every reject has its code counted.
 
     Attributes:
         records_in: records read.

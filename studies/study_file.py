@@ -112,7 +112,7 @@ def named(given: str) -> Study:
 def study_of(content: str, file: str, begun: bool = False) -> Study:
     """The study of a text; errors as of `read_study`.
 
-    One that has `begun` is read whatever its helpers could do, so that what was collected stays to be had.
+    A study that has `begun` is read whatever its helpers could do, so that its collected data stays readable.
     """
     tree = located_yaml.read(content, file)
     faults = Faults(file)
@@ -188,7 +188,7 @@ def _condition(entry: Any, room: str, faults: Faults) -> Condition:
     line = located_yaml.line_of(entry)
     helper, goal = found.get("helper", NOBODY), found.get("goal", "")
     if room == JUDGE and (helper, goal) != (NOBODY, ""):
-        faults.add(Code.BAD_ARGUMENT, "who judges films has no helper", line, "leave out `helper` and `goal`")
+        faults.add(Code.BAD_ARGUMENT, "a person who judges films has no helper", line, "leave out `helper` and `goal`")
     elif ":" in helper:
         faults.add(Code.BAD_ARGUMENT, "a study's helper is one of ours", line, "`challenge run` runs others")
     else:

@@ -1,4 +1,4 @@
-"""Who wrote a dataset, how it was made, for what, and what it does not show: the same wherever it is said."""
+"""A dataset's authors, method, purpose and limits: the same in every place."""
 
 from pathlib import Path
 

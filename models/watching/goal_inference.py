@@ -1,4 +1,4 @@
-"""Goal inference from states (thesis 6.4, B.3.1): what somebody wants, from where things were seen."""
+"""Goal inference from states (thesis 6.4, B.3.1): a person's goal, from the observed places of things."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class GoalInference(Settings):
     shape: str = "things"
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", self.heads, "its `heads` share it")
 
     def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:
@@ -127,7 +127,10 @@ class GoalInference(Settings):
 
 
 def _parted(examples: Sequence[Watched]) -> tuple[list[Watched], list[Watched]]:
-    """What is learnt from, and the demonstrations of other goals, for validation; none where there are few goals."""
+    """Split examples into those to train on and those for validation, which have other goals.
+
+    There is no validation where there are few goals.
+    """
     goals = list(dict.fromkeys(each.counts for each in examples))
     chosen = set(rng(0, "validation goals").sample(goals, len(goals) // VALIDATION))
     return [e for e in examples if e.counts not in chosen], [e for e in examples if e.counts in chosen]
@@ -176,7 +179,7 @@ class TrainedGoalInference:
         """The goal of a demonstration.
 
         Args:
-            ticks: what happened.
+            ticks: of a demonstration.
             predicates: in the network's order, with the nodes of the demonstration's home; the goal is made of them.
             goals: all of single goal sets that there are, with the names of furniture.
 

@@ -110,7 +110,7 @@ def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
 
 
 def _sketches(job: Job, annotated: Iterable[stage_rows.SketchRow]) -> Iterator[stage_rows.SketchRow]:
-    """Inferred and inherited sketches, annotated ones, and what augmented programs inherit of these."""
+    """Yield inferred and inherited sketches, annotated ones, and those that augmented programs inherit of these."""
     yield from _rows(job, "augment", "sketches")
     yield from annotated
     of_program = {row["program_id"]: row for row in annotated}
@@ -223,7 +223,7 @@ def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:
 
 
 def _copy_pictures(job: Job) -> None:
-    """Copy the pictures beside the tables, and remove those of an earlier build."""
+    """Copy the pictures next to the tables, and remove those of an earlier build."""
     for name in ("frames", "films"):
         _copy_folder(job.settings.folder("render") / name, job.folder / name)
 

@@ -18,7 +18,7 @@ ACTIONS = ("action", "verb", "act", "function", "skill", "primitive", "operator"
 """Keys of the action of a step, the likeliest first."""
 
 _WITH_OBJECTS = frozenset({"skill", "primitive", "operator", "command", "name"})
-"""Keys that name an action only where objects stand beside them."""
+"""Keys that name an action only in a record with objects."""
 
 OBJECTS = frozenset({
     "object", "objects", "obj", "noun", "object_name", "where", "container", "surface", "target", "targets",
@@ -64,7 +64,7 @@ def step_of(value: dict[str, Any]) -> str:
 
 
 def _related(key: str, value: Any) -> Iterator[tuple[str, str]]:
-    """The names in a value with the word that relates each to what stands before it: its key."""
+    """Yield the names in a value, each with its key: the word that relates it to the names before it."""
     if isinstance(value, dict):
         yield from ((name, _bare(inside)) for inside, part in value.items() for name in _names({inside: part}))
     else:

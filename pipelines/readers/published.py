@@ -113,7 +113,7 @@ def _check_text(schema: Any, columns: list[str]) -> None:
 
 
 def read(item: Item) -> list[IngestedRow | Reject]:
-    """The record of a row."""
+    """Return the record of a row."""
     value = item.value
     try:
         origin = str(value["origin"])

@@ -1,4 +1,4 @@
-"""The researcher's view of annotating: what there is, which blocks are missing, the files."""
+"""The researcher's view of annotating: the contributions, the missing blocks, the files."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def overview(visit: Visit) -> Response:
 
 
 def download(visit: Visit) -> Response:
-    """A file of what was accepted, or the sheet of grades."""
+    """Return a file of the accepted contributions, or the sheet of grades."""
     name = visit.part("file")
     files = collected_files.collected(visit.web.store)
     data = collected_files.ratings_sheet(visit.web.store).encode() if name == RATINGS else files.get(name, b"")
