@@ -84,4 +84,5 @@ def _entries(path: Path) -> Iterator[dict[str, Any]]:
 def _is_file_s(row: Mapping[str, Any], files: Mapping[str, Any]) -> bool:
     """Return whether the picture of a row is the file that the row names."""
     image, known = row[IMAGE] or {}, files.get(row["file"], {})
-    return image.get("path") == row["file"] and sha256(image.get("bytes") or b"").hexdigest() == known.get("sha256")
+    is_named = bool(image.get("path") == row["file"])
+    return is_named and sha256(image.get("bytes") or b"").hexdigest() == str(known.get("sha256"))
