@@ -220,7 +220,7 @@ class Dataset:
 
         Raises:
             KeyError: the id is unknown; it names those that are like it.
-            TypeError: it is no text: programs have ids instead of places.
+            TypeError: the key is not a text: programs have ids instead of places.
         """
         if not isinstance(program_id, str):
             raise TypeError(self._no_id(program_id))
@@ -243,7 +243,7 @@ class Dataset:
         return Entry(found[0], tuple(map(self.run_of, runs)), tuple(repairs), tuple(sketches))
 
     def _no_id(self, key: object) -> str:
-        """Return the message for a key that is no id: what keys there are."""
+        """Return the message for a key that is not an id: which keys there are."""
         first = next(iter(self), None)
         example = f"dataset[{first!r}]" if first else "there is none here"
         return (

@@ -15,7 +15,7 @@ _SHOWN = 6
 
 
 def graph_fault(data: Any, error: Exception) -> str:
-    """Return why a JSON value is no scene graph.
+    """Return why a JSON value is not a scene graph.
 
     Args:
         data: the value.
