@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Record, read_choices, start_of
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task

@@ -20,8 +20,8 @@ def export(
 
     \b
     Examples:
-      python cli.py challenge export hp.jsonl --format minari --out hp-minari
-      python cli.py challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
+      hearth challenge export hp.jsonl --format minari --out hp-minari
+      hearth challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
     """
     from hearth.challenges.verification import read_whole
     from hearth.interop.episode_export import export as written

@@ -112,7 +112,7 @@ class Slots:
         return [slots for slots in product(*map(self.members, masks)) if len(set(slots)) == len(slots)]
 
     def count(self, legal: Legal) -> int:
-        """How many instructions `instructions` lists."""
+        """Return how many instructions `instructions` lists."""
         return sum(len(self.choices(masks)) for masks in legal.masks.values())
 
     def instruction(self, legal: Legal, place: int) -> Step | None:

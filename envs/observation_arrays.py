@@ -209,7 +209,7 @@ class Encoder:
 
 
 def _places(view: View, rows: Rows) -> NDArray[np.float32]:
-    """Where things are: with who holds them, where they have been put, or where the home has them."""
+    """Return where things are: with who holds them, where they have been put, or where the home has them."""
     world = view.world
     here = ground_of(world.home)
     found = rows.places.copy()

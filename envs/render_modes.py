@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from hearth.envs.action_codes import str_step
 from hearth.envs.session import Session
-from hearth.homes import drawing
-from hearth.homes.from_graph.measured import measured
+from hearth.homes import floor_plan_drawing
+from hearth.homes.from_graph.layout_from_boxes import measured
 from hearth.homes.geometry import Rect
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -112,9 +112,9 @@ class Pictures:
 def _drawn(home: Home) -> tuple[Picture, Rect]:
     """The floor plan without letters, and what it covers in metres."""
     layout = measured(World.start(home).graph(), home.name, home.knowledge)
-    area = drawing.bounds(layout)
+    area = floor_plan_drawing.bounds(layout)
     picture = np.full((round(area.depth * SCALE), round(area.width * SCALE), 3), 255, np.uint8)
-    for shape in drawing.shapes(layout):
+    for shape in floor_plan_drawing.shapes(layout):
         if shape.kind != "text" and shape.fill not in AGENTS:
             left, right = round((shape.rect.x0 - area.x0) * SCALE), round((shape.rect.x1 - area.x0) * SCALE)
             top, low = round((area.z1 - shape.rect.z1) * SCALE), round((area.z1 - shape.rect.z0) * SCALE)

@@ -50,7 +50,7 @@ HIERARCHICAL = Rewards(success=0.0, tick=-0.1, predicate=2.0)
 
 
 def counted(progress: Progress) -> int:
-    """How many of the required counts hold."""
+    """Return how many of the required counts hold."""
     pairs = zip(progress.counts, progress.goal, strict=True)
     return sum(min(found, wanted) for found, (_, wanted) in pairs)
 

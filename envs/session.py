@@ -181,12 +181,12 @@ class Session:
 
     @property
     def succeeded(self) -> bool:
-        """Whether the goal is reached."""
+        """Return whether the goal is reached."""
         return self.progress.satisfied
 
     @property
     def cut_off(self) -> bool:
-        """Whether time is over and the goal is not reached."""
+        """Return whether time is over and the goal is not reached."""
         return len(self.env.ticks) >= self.setting.limit and not self.succeeded
 
     def seen(self, agent: int) -> tuple[View, Legal]:

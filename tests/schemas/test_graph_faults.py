@@ -1,4 +1,4 @@
-"""The fault of JSON that is not a scene graph names the first node or edge that lacks a key, and the keys that it has."""
+"""The fault of JSON that is not a scene graph names the first node or edge that lacks a key, and the keys it has."""
 
 import re
 
