@@ -204,7 +204,7 @@ def _seats(view: View) -> Iterator[Diagnostic]:
             if node.category != FURNITURE or "GRABBABLE" in node.properties:
                 continue
             for seat in (holder for holder in holders if _is_seat(view.nodes[holder])):
-                message = f"{view.label(node_id)} is {relation} {view.label(seat)}: whoever sits there sits in it"
+                message = f"{view.label(node_id)} is {relation} {view.label(seat)}: a person sitting there sits in it"
                 yield _fault(Code.CONFLICT, message, (node_id, seat), "remove the edge")
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with the JSON of a scene graph, in words: the first node or edge that lacks a key, and its own keys."""
+"""Faults of the JSON of a scene graph, in words: the first node or edge that lacks a key, and its own keys."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table `frames` with its pictures as values, for `load_dataset`: it finds no file beside a Parquet file.
+"""The table `frames` with its pictures as values, for `load_dataset`: the library finds no file next to a Parquet file.
 
 `datasets` 5 gives every configuration of a folder one reader, here that of Parquet, which takes a path for one from the
 working directory. So the bytes of the pictures stand in files of their own, `frames/images/part-*.parquet`, that no
@@ -58,7 +58,7 @@ def _with_images(folder: Path, path: Path) -> Iterator[pa.RecordBatch]:
 
 
 def other_images(folder: Path, files: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
-    """Yield the files with pictures that differ from the table and from the pictures beside it, and why.
+    """Yield the files with pictures that differ from the table and from the pictures in its folder, and why.
 
     Args:
         folder: of a dataset; those before version 0.3 have no such files.

@@ -194,7 +194,7 @@ def _home_edges(job: Job, homes: Homes) -> Iterator[published_rows.HomeEdgeRow]:
 
 
 def _filmed(job: Job, table: str) -> Iterator[tuple[str | None, Row]]:
-    """Yield the rows of what was drawn of published executions, with the part of their programs or clips."""
+    """Yield the rows of pictures and films of published executions, with the part of their programs or clips."""
     kind, part_of = "" if table == "frames" else table, job.context.assignment.part_of
     run_of = _runs_of(job, {row["execution_id"] for row in _rows(job, "render", kind, ["execution_id"])})
     for row in _rows(job, "render", kind):
