@@ -193,7 +193,7 @@ _OTHER = len(RELATION_ID)
 
 
 _FORWARD = (0, 2, 4, 5, 7, 8, 9, 10)
-"""The table, of ten, of an edge of each relation, by relation id; 10 is no table."""
+"""The table, of ten, of an edge of each relation, by relation id; 10 stands for none."""
 
 _BACKWARD = (1, 3, 4, 6, 10, 10, 10, 10)
 """The table of its inverse."""
