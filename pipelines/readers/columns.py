@@ -154,12 +154,18 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
             name = next((name for name in likely if name not in found.values()), None)
             if name is not None and field not in given:
                 found.setdefault(field, name)
+    if words.get(found.get("title", "")) == ["goal"] and words.get(found.get("program", "")) in _PREDICTED:
+        found.pop("title") if "title" not in given else None
     asked = found.get("description", "")
     if "title" not in found.keys() | given.keys() and words.get(asked) == ["instruction"]:
         found["title"] = found.pop("description")
         text = next((name for name in columns if words[name] == ["text"] and name not in found.values()), None)
         found.update({"description": text} if text else {})
     return found
+
+
+_PREDICTED = (["prediction"], ["predicted"])
+"""Columns of programs beside which `goal` holds conditions, as in files to score."""
 
 
 def rivals(names: Iterable[str], found: FieldColumns, given: FieldColumns) -> dict[str, list[str]]:

@@ -7,8 +7,9 @@ from typing import Any
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
-from hearth.kb.language.program_lines import Titles, header, is_unmarked, titled, titles_of
+from hearth.kb.language.program_lines import Titles, header, is_unmarked, titled, titles_of, wrapping_of
 from hearth.kb.language.unmarked_lines import are_steps, is_order
+from hearth.kb.language.wrappings import bare, raw_of
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.placed_texts import Text
@@ -29,7 +30,7 @@ _LOOKED_AT = 60
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
     for number, block in _programs((number, line) for number, (line, _) in enumerate(lines(path), 1)):
-        text = "\n".join(block)
+        text = "\n".join(map(raw_of, block))
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
 
@@ -78,11 +79,12 @@ def read(item: Item) -> IngestedRow:
 def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs, in the form that its first lines are written in."""
     first = list(itertools.islice(lines, _LOOKED_AT))
-    form = form_of([line for _, line in first])
-    rest = itertools.chain(first, lines)
+    unwrap = wrapping_of([line for _, line in first])
+    rest = ((number, bare(line, unwrap)) for number, line in itertools.chain(first, lines))
+    looked_at = [bare(line, unwrap) for _, line in first]
+    form = form_of(looked_at)
     if form:
         return _blocks_of(form, rest)
-    looked_at = [line for _, line in first]
     if is_unmarked(looked_at):
         return unmarked_blocks(rest)
     return blocks(rest, titles=titles_of(looked_at, list(map(plan_line, looked_at))))

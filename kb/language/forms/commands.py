@@ -3,7 +3,8 @@
 import re
 from collections.abc import Callable, Sequence
 
-from hearth.kb.language.forms.form import Form, Placed, step, title, written
+from hearth.kb.language.composed_steps import written
+from hearth.kb.language.forms.form import Form, Placed, step, title
 
 _THING = r"([a-z]+(?: [a-z]+){0,2} \d{1,3})"
 _COMMANDS: dict[str, tuple[str, ...]] = {

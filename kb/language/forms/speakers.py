@@ -5,22 +5,32 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step, title
+from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import PlanLine, is_said_around, plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
 
 _CLOCK = r"\d{1,2}:\d\d(?::\d\d(?:[.,]\d{1,9})?)?(?:\s?[ap]m)?"
-_STAMP = rf"(?:\d{{9,13}}(?:\.\d{{1,9}})?|[\[(]?(?:\d{{4}}[-/]\d\d[-/]\d\d[ T])?{_CLOCK}Z?[\])]?)"
-_LEVEL = r"\[?(?:INFO|DEBUG|WARN(?:ING)?|ERROR|TRACE|FATAL)\]?"
+_DATE = (
+    r"(?:\d{4}[-/]\d\d[-/]\d\d|\d{1,2}[./-]\d{1,2}[./-]\d{2,4}"
+    r"|(?:jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\s+\d{1,2})"
+)
+_STAMP = rf"(?:\[?\d{{9,13}}(?:\.\d{{1,9}})?\]?|[\[(]?(?:{_DATE}(?:T|,?\s+))?{_CLOCK}(?:Z|[+-]\d\d:?\d\d)?[\])]?|[\[(]{_DATE}[\])])"
+_LEVEL = r"(?-i:\[?(?:INFO|DEBUG|WARN(?:ING)?|ERROR|TRACE|FATAL)\]?|\[(?:ACTION|EXEC|STEP)\]|(?<=[\d\]Z] )(?:ACTION|EXEC|STEP))"
+_LOGGER = r"(?:(?:[\w.-]+\s+)?[\w.-]+\[\d+\]:|\[[\w./-]+\]:?|[\w.-]+(?:\s+-\s+|:(?=\S)))"
+_HEAD = rf"(?P<head>(?:{_STAMP}|{_LEVEL}(?=[\s:|-]))(?:\s*[:|,–-]*\s+|:)(?:{_LOGGER}\s*)?(?:(?:{_STAMP}|{_LEVEL}(?=[\s:|-]))\s*[:|,–-]*\s*)*(?:{_LOGGER}\s+)?)"
+"""Times, levels and the name of the program, in the order in which loggers write them."""
+
 _LINE = re.compile(
-    rf"\s*(?P<time>{_STAMP}\s+)?(?:[-–]\s+)?(?P<level>{_LEVEL}:?\s+)?\**(?P<who>[A-Za-z][\w.-]{{0,20}})\**\s*:\**\s+(?P<said>\S.*)",
+    rf"\s*(?:\[[A-Za-z][\w ./#-]{{0,30}}\d\]\s+)?{_HEAD}?(?:[-–]\s+)?(?:<(?P<nick>[\w.@+-]{{1,20}})>\s*:?|\**(?P<who>[A-Za-z][\w.-]{{0,20}}(?: [A-Z][\w.-]{{0,20}})?)\**\s*:\**)\s+(?P<said>[^\s\[<].*|\[\d.*|<(?!\w+>\s*\().*)",
+    re.IGNORECASE,
 )
-_TIMED = re.compile(
-    rf"\s*(?:{_STAMP}\s+(?:[-–]\s+)?(?P<level>{_LEVEL}|ACTION|EXEC|STEP)|(?P<only>\[(?:{_LEVEL}|ACTION|EXEC)\])):?\s+(?P<said>\S.*)"
-)
+_TIMED = re.compile(rf"\s*{_HEAD}(?P<said>\S.*)", re.IGNORECASE)
+_LEVELS = re.compile(_LEVEL)
 _ACTS = re.compile(r"\W*(?:INFO|DEBUG|ACTION|EXEC|STEP)\W*")
 _QUESTION = re.compile(r"\s*\**\s*Q(?:uestion)?\s*\d*\s*:\s*(?P<said>[^*]*)\**\s*")
-_ROBOTS = re.compile(
-    r"(?:robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}", re.IGNORECASE
+ROBOTS = re.compile(
+    r"(?:step|action|do|doing|execut(?:e|ing|ed)|perform(?:ing|ed)?|running|sending|calling|robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}",
+    re.IGNORECASE,
 )
 """Names of those that do what they say; `A` answers where a question stands above."""
 
@@ -33,32 +43,39 @@ _SHARE = 0.6
 _MOST = 1_000
 
 
-class _Said(NamedTuple):
+class Said(NamedTuple):
     who: str
     text: str
     is_step: bool
 
 
-def _said(raw: str) -> _Said | None:
+def said_of(raw: str) -> Said | None:
     """Return a line's speaker and words; None where it has neither a speaker nor a level."""
     if len(raw) > _MOST:
         return None
     asked = _QUESTION.fullmatch(raw)
     if asked:
-        return _Said("q", asked["said"], False)
+        return Said("q", asked["said"], False)
     found = _LINE.fullmatch(raw)
-    if not found:
+    who = (found["who"] or found["nick"]) if found else ""
+    if not found or _LEVELS.fullmatch(who):
         timed = _TIMED.fullmatch(raw)
-        level = (timed["level"] or timed["only"]) if timed else ""
-        is_step = timed is not None and _ACTS.fullmatch(level) is not None and is_like_step(timed["said"])
-        return _Said("", timed["said"], is_step) if timed else None
-    return _Said(found["who"].lower(), found["said"], _ROBOTS.fullmatch(found["who"]) is not None)
+        levels = _LEVELS.findall(timed["head"]) if timed else []
+        is_step = timed is not None and all(map(_ACTS.fullmatch, levels)) and _reads(timed["said"])
+        return Said("", timed["said"], is_step) if timed else None
+    levels = _LEVELS.findall(found["head"] or "")
+    is_step = ROBOTS.fullmatch(who) is not None and all(map(_ACTS.fullmatch, levels))
+    return Said(who.lower(), found["said"], is_step)
+
+
+def _reads(text: str) -> bool:
+    return is_like_step(text) or bool(operator_step(text))
 
 
 def _fits(lines: Sequence[str]) -> bool:
     """Return whether most lines have a speaker, and a robot says steps, or answers a question."""
     texts = [line for line in lines if line.strip()]
-    said = [each for each in map(_said, texts) if each]
+    said = [each for each in map(said_of, texts) if each]
     if len(said) < _SHARE * len(texts) or not any(each.is_step for each in said):
         return False
     who = {each.who for each in said}
@@ -72,7 +89,7 @@ def _fits(lines: Sequence[str]) -> bool:
 
 def _is_step(text: str) -> bool:
     read = plan_line(text)
-    return read.number is not None or is_like_step(read.text)
+    return read.number is not None or _reads(read.text)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
@@ -80,7 +97,7 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
 
 
 def _of_line(row: int, raw: str) -> Iterator[Placed]:
-    said = _said(raw)
+    said = said_of(raw)
     if said is None:
         yield Placed(row, plan_line(raw)._replace(number=None, numbered=False))
     elif said.is_step:
@@ -106,7 +123,7 @@ def _parts(read: PlanLine, text: str) -> list[str]:
 SPEAKERS = Form(
     _fits,
     _lines,
-    lambda raw: (said := _said(raw)) is not None and said.is_step,
+    lambda raw: (said := said_of(raw)) is not None and said.is_step,
     re.compile(
         rf"\s*(?:(?:human|person|operator|owner)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{_STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
         re.IGNORECASE,
