@@ -138,7 +138,7 @@ _HTML_TABLE = re.compile(r"\s*(?:</?(?:table|tbody|thead|tr)\b[^>]*>\s*)+", re.I
 _ENTITY = re.compile(r"&(?:[a-z]+|#\d+|#x[0-9a-f]+);", re.IGNORECASE)
 _WIDE = str.maketrans({chr(0xFF01 + n): chr(0x21 + n) for n in range(94)})
 _CIRCLED = {chr(0x2460 + n): f"{n + 1}. " for n in range(20)}
-_ODD = re.compile(r">>> |[&\x1b\[<\u2460-\u2473\uff01-\uff5e\u200b\u200c\u2060\ufeff\u00ad]")
+_ODD = re.compile(r">>> |\[/?INST|</?s>|<\||<t|</t|[&\x1b\u2460-\u2473\uff01-\uff5e\u200b\u200c\u2060\ufeff\u00ad]")
 
 
 def cleaned(raw: str) -> str:
@@ -315,6 +315,7 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
     above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
+    title = title if named else asked_title(_ROLE.sub("", title, count=1))
     return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
 
 
@@ -322,6 +323,10 @@ def asked_title(line: str) -> str:
     """Return the title of a request, `Make tea` of `Write a plan for: Make tea`; the line itself if it is no request."""
     asked = _ASKED_FOR.fullmatch(line.strip())
     return asked[1] if asked else line
+
+
+_ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)
+"""Who asks for a plan, or what a letter names it by."""
 
 
 def is_aside(text: str) -> bool:

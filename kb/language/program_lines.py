@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.code_calls import calls_of
-from hearth.kb.language.forms.form import Placed
+from hearth.kb.language.forms.form import Form, Placed
 from hearth.kb.language.line_parts import listed
 from hearth.kb.language.operators import operator_step
-from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, cleaned, header_of, is_step, ordered, plan_line
+from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
 from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
 from hearth.kb.language.unmarked_lines import (
@@ -70,8 +70,7 @@ def lines_of_program(text: str) -> list[ProgramLine]:
     """Return the lines of a program's text in order; each step of a line of several is one."""
     if PLAIN.fullmatch(text) and not form_of([text.partition("\n")[0]]):
         return list(_plain_lines(text))
-    raw = _without_thoughts(bare_lines(text.split("\n")))
-    form = form_of(raw)
+    raw, form = formed(text.split("\n"))
     if form:
         return [ProgramLine(*each, _kind(each.line)) for each in map(_operated, form.lines(raw)) if not _ends(each)]
     return list(_kinds(_marked(_read(raw))))
@@ -104,21 +103,28 @@ def header(text: str) -> Header:
     if PLAIN.fullmatch(text) and not form_of([top]):
         line = plan_line(top)
         return header_of([line]) if line.number is None else Header("", "")
-    raw = _without_thoughts(bare_lines(text.split("\n")))
-    form = form_of(raw)
+    raw, form = formed(text.split("\n"))
     placed = form.lines(raw) if form else _marked(_read(raw))
     return header_of([line for _, line in placed])
 
 
-def bare_lines(lines: Sequence[str]) -> list[str]:
-    """Return the lines of a text without what stands around each, as the branches of a tree."""
-    return list(unwrapped(lines, wrapping_of(lines)))
+def formed(lines: Sequence[str]) -> tuple[list[str], Form | None]:
+    """Return the lines of a text without thoughts and what stands around each, and the form that they have then."""
+    unwrap, form = reading_of(lines)
+    found = _without_thoughts(list(unwrapped(lines, unwrap)))
+    return found, form
 
 
-def wrapping_of(lines: Sequence[str]) -> Unwrap | None:
-    """Return what unwraps the lines of a text, by its first lines: nothing where they have a form of their own."""
-    first = list(map(cleaned, lines[:_LOOKED_AT]))
-    return None if form_of(first) else unwrapping(first)
+def reading_of(lines: Sequence[str]) -> tuple[Unwrap | None, Form | None]:
+    """Return what unwraps the lines of a text, by its first lines, and the form of the lines then.
+
+    Nothing unwraps lines that have a form of their own.
+    """
+    first = list(unwrapped(_without_thoughts(list(lines[:_LOOKED_AT])), None))
+    if form := form_of(first):
+        return None, form
+    unwrap = unwrapping(first)
+    return unwrap, form_of([unwrap(line) for line in first]) if unwrap else None
 
 
 _LOOKED_AT = 60
@@ -126,14 +132,10 @@ _LOOKED_AT = 60
 
 def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan in any form but that of program text."""
-    lines = bare_lines(lines)
-    return (
-        any(map(_THOUGHT.match, lines))
-        or form_of(lines) is not None
-        or is_list(lines)
-        or _is_joined(lines)
-        or is_unmarked(lines)
-    )
+    if any(map(_THOUGHT.match, lines)):
+        return True
+    lines, form = formed(lines)
+    return form is not None or is_list(lines) or _is_joined(lines) or is_unmarked(lines)
 
 
 def is_unmarked(lines: Sequence[str]) -> bool:

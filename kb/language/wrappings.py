@@ -37,9 +37,14 @@ class Wrapping(NamedTuple):
     hint: re.Pattern[str]
 
 
+_MARKED = re.compile(r"\s*(?:(?:[-*+•]|(?:[Ss]tep )?\d{1,4}[.:)])\s+[A-Za-z]|\[[A-Za-z]+\]\s*<)")
+"""A step as most are marked, which nothing stands around."""
+
+
 def unwrapping(first: Sequence[str]) -> Unwrap | None:
     """Return what unwraps the lines of a text, by its first lines; None where nothing has to be."""
-    first = list(map(cleaned, first))
+    if any(map(_MARKED.match, first)):
+        return None
     for wrapping in WRAPPINGS.values():
         if any(map(wrapping.hint.match, first)) and (found := wrapping.of(first)):
             return found

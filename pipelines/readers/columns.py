@@ -154,8 +154,8 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
             name = next((name for name in likely if name not in found.values()), None)
             if name is not None and field not in given:
                 found.setdefault(field, name)
-    if words.get(found.get("title", "")) == ["goal"] and words.get(found.get("program", "")) in _PREDICTED:
-        found.pop("title") if "title" not in given else None
+    if "title" in found and "title" not in given and is_condition(found["title"], found):
+        found.pop("title")
     asked = found.get("description", "")
     if "title" not in found.keys() | given.keys() and words.get(asked) == ["instruction"]:
         found["title"] = found.pop("description")
@@ -164,8 +164,9 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
     return found
 
 
-_PREDICTED = (["prediction"], ["predicted"])
-"""Columns of programs beside which `goal` holds conditions, as in files to score."""
+def is_condition(name: str, found: FieldColumns) -> bool:
+    """Return whether a column holds conditions that a program achieves: `goal` beside predictions, in files to score."""
+    return name.strip().lower() == "goal" and found.get("program", "").strip().lower() in ("prediction", "predicted")
 
 
 def rivals(names: Iterable[str], found: FieldColumns, given: FieldColumns) -> dict[str, list[str]]:

@@ -27,8 +27,8 @@ from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
 from hearth.pipelines.readers.json_actions import is_only_action
-from hearth.pipelines.readers.step_lists import is_pair
 from hearth.pipelines.readers.relaxed_json import uncommented
+from hearth.pipelines.readers.step_lists import is_pair
 from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.columns import FieldColumns, Found, guessed, lacks, rivals
+from hearth.pipelines.readers.columns import FieldColumns, Found, guessed, is_condition, lacks, rivals
 from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, refused
 from hearth.pipelines.readers.json_actions import is_action
@@ -91,7 +91,8 @@ def table_of(path: Place, given: FieldColumns) -> Table:
         _guess_program(table, {name: cells[name] for name in texts})
     found.note = f"{NUMBERED} {found.note}".strip() if is_row else found.note
     if "title" not in found and "title" not in given and found:
-        title = next((name for name in texts if name not in found.values() and _is_title(cells[name])), "")
+        rest = (name for name in texts if name not in found.values() and not is_condition(name, found))
+        title = next((name for name in rest if _is_title(cells[name])), "")
         found.update({"title": title} if title else {})
     if not (table.number or steps) and _is_by_title(sample, layout, found):
         found.note = f"{found.note} {_ROWS_ARE_STEPS}".strip()

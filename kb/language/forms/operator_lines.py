@@ -11,11 +11,16 @@ from hearth.kb.language.unmarked_lines import is_like_step
 
 _ITEM = re.compile(r"\s*(?:[-*+•]|\d{1,3}[.):])\s+")
 _LAYOUT = re.compile(r"\s*(?:[\w ]*[=:]?\s*[\[({]|[\])};,]+|[A-Z]{3,8}|</?\w+[^<>]*>|`{3}.*|#.*|)\s*")
+_PROGRAM = re.compile(r"\s*(?:<\w+>\s*)?\[[A-Za-z ]+\]\s*(?:<|$)")
+"""A step in the syntax of programs, which is read as such."""
+
 _SHARE = 0.6
 _FEWEST = 2
 
 
 def _steps(raw: str) -> list[str]:
+    if _PROGRAM.match(raw):
+        return []
     text = _ITEM.sub("", raw, count=1).strip()
     one = operator_step(text)
     return [one] if one else [operator_step(each) or each for each in listed(text.rstrip(";"))]

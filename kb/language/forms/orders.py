@@ -66,6 +66,8 @@ def _talk(lines: Sequence[str]) -> _Talk | None:
 def _who(lines: Sequence[str], is_step: Callable[[str], bool]) -> str:
     """Return who says steps in a talk: no robot, and most of what he or she says are such; else empty."""
     texts = [line for line in lines if line.strip()]
+    if sum(":" in line or ">" in line for line in texts) < _SHARE * len(texts):
+        return ""
     said = [each for each in map(said_of, texts) if each and each.who]
     if len(said) < _SHARE * len(texts):
         return ""

@@ -5,28 +5,19 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step, title
+from hearth.kb.language.forms.log_heads import STAMP, head_of
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import PlanLine, is_said_around, plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
 
-_CLOCK = r"\d{1,2}:\d\d(?::\d\d(?:[.,]\d{1,9})?)?(?:\s?[ap]m)?"
-_DATE = (
-    r"(?:\d{4}[-/]\d\d[-/]\d\d|\d{1,2}[./-]\d{1,2}[./-]\d{2,4}"
-    r"|(?:jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\s+\d{1,2})"
-)
-_STAMP = rf"(?:\[?\d{{9,13}}(?:\.\d{{1,9}})?\]?|[\[(]?(?:{_DATE}(?:T|,?\s+))?{_CLOCK}(?:Z|[+-]\d\d:?\d\d)?[\])]?|[\[(]{_DATE}[\])])"
-_LEVEL = r"(?-i:\[?(?:INFO|DEBUG|WARN(?:ING)?|ERROR|TRACE|FATAL)\]?|\[(?:ACTION|EXEC|STEP)\]|(?<=[\d\]Z] )(?:ACTION|EXEC|STEP))"
-_LOGGER = r"(?:(?:[\w.-]+\s+)?[\w.-]+\[\d+\]:|\[[\w./-]+\]:?|[\w.-]+(?:\s+-\s+|:(?=\S)))"
-_HEAD = rf"(?P<head>(?:{_STAMP}|{_LEVEL}(?=[\s:|-]))(?:\s*[:|,–-]*\s+|:)(?:{_LOGGER}\s*)?(?:(?:{_STAMP}|{_LEVEL}(?=[\s:|-]))\s*[:|,–-]*\s*)*(?:{_LOGGER}\s+)?)"
-"""Times, levels and the name of the program, in the order in which loggers write them."""
-
 _LINE = re.compile(
-    rf"\s*(?:\[[A-Za-z][\w ./#-]{{0,30}}\d\]\s+)?{_HEAD}?(?:[-–]\s+)?(?:<(?P<nick>[\w.@+-]{{1,20}})>\s*:?|\**(?P<who>[A-Za-z][\w.-]{{0,20}}(?: [A-Z][\w.-]{{0,20}})?)\**\s*:\**)\s+(?P<said>[^\s\[<].*|\[\d.*|<(?!\w+>\s*\().*)",
-    re.IGNORECASE,
+    r"(?:[-–]\s+)?(?:<(?P<nick>[\w.@+-]{1,20})>\s*:?"
+    r"|\**(?P<who>[A-Za-z][\w.-]{0,20}(?: [A-Z][\w.-]{0,20})?)\**\s*:\**)\s+"
+    r"(?P<said>[^\s\[<].*|\[\d.*|<(?!\w+>\s*\().*)"
 )
-_TIMED = re.compile(rf"\s*{_HEAD}(?P<said>\S.*)", re.IGNORECASE)
-_LEVELS = re.compile(_LEVEL)
-_ACTS = re.compile(r"\W*(?:INFO|DEBUG|ACTION|EXEC|STEP)\W*")
+_ACTS = frozenset(("", "INFO", "DEBUG", "ACTION", "EXEC", "STEP"))
+"""Levels of what is done."""
+
 _QUESTION = re.compile(r"\s*\**\s*Q(?:uestion)?\s*\d*\s*:\s*(?P<said>[^*]*)\**\s*")
 ROBOTS = re.compile(
     r"(?:step|action|do|doing|execut(?:e|ing|ed)|perform(?:ing|ed)?|running|sending|calling|robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}",
@@ -44,6 +35,8 @@ _MOST = 1_000
 
 
 class Said(NamedTuple):
+    """What a line says: who speaks, the words, and whether a robot does them."""
+
     who: str
     text: str
     is_step: bool
@@ -56,16 +49,14 @@ def said_of(raw: str) -> Said | None:
     asked = _QUESTION.fullmatch(raw)
     if asked:
         return Said("q", asked["said"], False)
-    found = _LINE.fullmatch(raw)
-    who = (found["who"] or found["nick"]) if found else ""
-    if not found or _LEVELS.fullmatch(who):
-        timed = _TIMED.fullmatch(raw)
-        levels = _LEVELS.findall(timed["head"]) if timed else []
-        is_step = timed is not None and all(map(_ACTS.fullmatch, levels)) and _reads(timed["said"])
-        return Said("", timed["said"], is_step) if timed else None
-    levels = _LEVELS.findall(found["head"] or "")
-    is_step = ROBOTS.fullmatch(who) is not None and all(map(_ACTS.fullmatch, levels))
-    return Said(who.lower(), found["said"], is_step)
+    head = head_of(raw)
+    is_done = head.level in _ACTS
+    found = _LINE.fullmatch(raw, head.end)
+    if not found:
+        said = raw[head.end :]
+        return Said("", said, is_done and _reads(said)) if head.is_timed and said.strip() else None
+    who = found["who"] or found["nick"]
+    return Said(who.lower(), found["said"], is_done and ROBOTS.fullmatch(who) is not None)
 
 
 def _reads(text: str) -> bool:
@@ -125,7 +116,7 @@ SPEAKERS = Form(
     _lines,
     lambda raw: (said := said_of(raw)) is not None and said.is_step,
     re.compile(
-        rf"\s*(?:(?:human|person|operator|owner)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{_STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
+        rf"\s*(?:(?:human|person|operator|owner)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
         re.IGNORECASE,
     ),
 )

@@ -43,6 +43,10 @@ _WORDS = re.compile(r"[^\W\d_]{2}")
 _MOST = 1_000
 
 
+_HINT = re.compile(r".*[|│┃║\t&]|.*\S\s{2,}\S").match
+"""Whether a line may be a row."""
+
+
 class _Table(NamedTuple):
     """How the rows of a table are parted, and the names of its columns; none where it has no head."""
 
@@ -62,6 +66,8 @@ def _is_rule(raw: str) -> bool:
 
 def _table(lines: Sequence[str]) -> _Table | None:
     """Return the table of steps in a text, which has a rule, or several rows of a kind with as many cells."""
+    if not any(map(_HINT, lines)):
+        return None
     has_rule = any(map(_is_rule, lines))
     for kind in _KINDS:
         rows = [cells for line in lines if not _is_rule(line) and (cells := _cells(line, kind))]
