@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -17,9 +18,10 @@ _WORDS = (
 _COUNTS = [{word: number for number, word in enumerate(words.split(), 1)} for words in _WORDS]
 _SPELLED = "|".join(sorted((word for words in _COUNTS for word in words), key=len, reverse=True))
 _LINE = re.compile(
-    rf"[\s(<\[{{\"'*#]*(?P<path>(?:[a-z][a-z0-9]*[._-])*)(?P<word>[a-z]+?)?(?P<gap>[\s._#=:-]*)"
-    rf"(?<![a-z0-9])?(?P<count>0x[0-9a-f]{{1,4}}|\d{{1,4}}|(?<![a-z])(?:{_SPELLED}|[a-z]))(?:st|nd|rd|th)?(?![a-z0-9])"
-    rf"(?:\s*(?:/|of)\s*\d{{1,4}})?[)>\]}}\"'*]*(?P<mark>\s*[:=.,)\]>|–—-]*)\s*(?P<said>[^\s:=.,)\]>|–—-].*)",
+    rf"\s{{0,40}}+[(<\[{{\"'*#]{{0,6}}+\s{{0,3}}+(?P<path>(?:[a-z][a-z0-9]{{0,20}}[._-]){{0,4}})(?P<word>[a-z]{{1,12}}?)?"
+    rf"(?P<gap>[\s._#=:-]{{0,4}})(?<![a-z0-9])?"
+    rf"(?P<count>0x[0-9a-f]{{1,4}}|\d{{1,4}}|(?<![a-z])(?:{_SPELLED}|[a-z]))(?:st|nd|rd|th)?(?![a-z0-9])"
+    rf"(?:\s?(?:/|of)\s?\d{{1,4}})?[)>\]}}\"'*]{{0,4}}(?P<mark>\s{{0,3}}[:=.,)\]>|–—-]{{0,3}}\s{{0,9}})(?P<said>[^\s:=.,)\]>|–—-].*)",
     re.IGNORECASE,
 )
 _SECTION = re.compile(r"\s*\[+(?P<name>[A-Za-z][\w .-]*)\]+\s*")
@@ -76,7 +78,7 @@ def counting_of(lines: Sequence[str]) -> Callable[[str], str] | None:
         return None
     for kind in range(len(_COUNTS) + 2):
         found = [counted for line in texts if (counted := _counted(line, kind))]
-        shape = max({each.shape for each in found}, key=[each.shape for each in found].count, default=None)
+        (shape, _), *_ = Counter(each.shape for each in found).most_common(1) or [(None, 0)]
         if shape and _goes_up(own := [each for each in found if each.shape == shape]) and _are_steps(own, texts, kind):
             return lambda raw, kind=kind, shape=shape: _numbered(raw, kind, shape)  # type: ignore[misc]
     return None
