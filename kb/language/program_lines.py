@@ -24,7 +24,7 @@ from hearth.kb.language.unmarked_lines import (
     sentences,
 )
 from hearth.kb.language.wrappings import Unwrap, unwrapped, unwrapping
-from hearth.schemas.blocks import is_sentence
+from hearth.schemas.program_blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
 _END = re.compile(
@@ -37,7 +37,7 @@ _MAY_END = re.compile(r"done|end|finish|complete", re.IGNORECASE)
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
 _SEVERAL = re.compile(r"[>→⟶➔➡⇒⟹➜➝;•·∧|/]|\d[.):\]]| [-–—]{1,2} ")
-"""What a line of several steps has in any case."""
+"""A mark that every line of several steps has."""
 
 _OWNER = re.compile(r"[A-Z][a-z]{1,20}:\s+(?=\S)")
 """Who does a step, or what it is about, in a word before it."""
@@ -46,7 +46,7 @@ _THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>\s*$", re.IGNORECASE)
 
 
 class Kind(StrEnum):
-    """What a line of a program is.
+    """The kind of a line of a program.
 
     A detail is a line that may explain the step above: an item below a step, or a line without a number. It is a step
     if it reads exactly as one, else a note. A missing step is a line between numbered ones that is not a sentence.
@@ -293,7 +293,7 @@ _LABEL = re.compile(
     r"(?:plan|steps|answer|actions?|action sequence|sequence|procedure|instructions|method|solution|program)\s*[:=]\s*",
     re.IGNORECASE,
 )
-"""What stands before the steps of a line, `Plan: walk to sofa; sit on sofa`."""
+"""Words before the steps of a line, `Plan: walk to sofa; sit on sofa`."""
 
 
 def _after_label(text: str) -> str:

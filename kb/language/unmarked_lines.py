@@ -9,7 +9,7 @@ from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN
 from hearth.kb.language.typos import near_words
 from hearth.kb.loading.load import default
-from hearth.schemas.blocks import is_sentence
+from hearth.schemas.program_blocks import is_sentence
 
 _SUBJECT = r"(?:i|you|he|she|we|they|the (?:robot|person|agent|character|man|woman|child|user))"
 _NO_MANNER = (
@@ -37,10 +37,10 @@ _NO_ACT = frozenset((
     "let", "thank", "sorry", "like", "enjoy", "it", "this", "that", "these", "those", "there", "here", "no", "not",
     "we",
 ))  # fmt: skip
-"""Beginnings of what explains, as `Make sure`, `Note`, `It is`, though some are verbs."""
+"""Beginnings of explanations, such as `Make sure`, `Note`, `It is`, though some are verbs."""
 
 _STRONG = re.compile(rf"{CHAIN.pattern}|\s*(?:>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?then\s+", re.IGNORECASE)
-"""What joins steps of a line and nothing else."""
+"""Separators of steps in a line, and nothing else."""
 
 _LOOSE = tuple(map(re.compile, (r"\s+/{1,2}\s+", r"\s*[•·∧|]\s*", r"\s+&&\s+", r"\s+[-–—]{1,2}\s+")))
 """What joins steps of a line only where each part is one."""

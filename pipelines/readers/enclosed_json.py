@@ -12,7 +12,7 @@ from hearth.pipelines.readers.found_records import holds_program, named
 from hearth.pipelines.readers.item import Item, opened
 from hearth.pipelines.readers.placed_texts import Located
 from hearth.pipelines.readers.step_rows import Entry
-from hearth.schemas.blocks import TITLE
+from hearth.schemas.program_blocks import TITLE
 from hearth.storage.archives import Place, size_of
 
 NAME = "enclosed"

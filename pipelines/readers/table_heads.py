@@ -31,7 +31,7 @@ def begun(rows: Rows, given: FieldColumns) -> tuple[int, Layout, bool]:
 
 
 def _names(cells: Sequence[str]) -> tuple[str, ...]:
-    """What the columns of a table are called whose first line is a row; none if the line names them itself."""
+    """Return the names of the columns of a table whose first line is a row; none if the line names them itself."""
     counted = next((n for n, cell in enumerate(cells) if not (cell.strip() in ("0", "1") or is_time(cell))), 0)
     orders = tuple("time" if is_time(cell) else "number" for cell in cells[:counted])
     first, *rest = cells[counted:] or ("",)
