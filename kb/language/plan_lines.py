@@ -320,7 +320,7 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
 
 
 def asked_title(line: str) -> str:
-    """Return the title of a request, `Make tea` of `Write a plan for: Make tea`; the line itself if it is no request."""
+    """Return the title of a request, `Make tea` of `Write a plan for: Make tea`; else the line itself."""
     asked = _ASKED_FOR.fullmatch(line.strip())
     return asked[1] if asked else line
 

@@ -95,7 +95,7 @@ def chained(text: str) -> list[str]:
 
 
 def chained_strongly(text: str) -> list[str]:
-    """Return the steps that `->`, `;` or `then` join, or `/` and `|` if all are; none where nothing does, or not steps."""
+    """Return the steps that `->`, `;` or `then` join, or `/` and `|` if all are; none where nothing does."""
     parts = [part for part in _STRONG.split(text) if part.strip()]
     if len(parts) > 1 and _are_steps(parts):
         return parts

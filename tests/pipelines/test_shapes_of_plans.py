@@ -1,5 +1,8 @@
 """Plans in many shapes: each is read, or what is not is refused, and nothing becomes another step."""
 
+import json
+from pathlib import Path
+
 import pytest
 
 from hearth.commands.inputs import read_programs
@@ -10,7 +13,13 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
 
-from .shapes_of_plans import LAMP, NOT_YET, SHAPES
+LAMP = ["[Walk] <desk> (1)", "[Find] <lamp> (1)", "[SwitchOn] <lamp> (1)"]
+_ROWS = [json.loads(line) for line in Path(__file__).with_name("shapes.jsonl").read_text("utf-8").splitlines()]
+SHAPES = {row["name"]: row for row in _ROWS}
+"""Plans of one lamp as people, language models, planners and tools write them."""
+
+NOT_YET = frozenset(row["name"] for row in _ROWS if not row["is_read"])
+"""Shapes of which some line is refused."""
 
 
 def read(write, knowledge, file, text):
@@ -31,16 +40,16 @@ def read(write, knowledge, file, text):
 @pytest.mark.parametrize("name", sorted(SHAPES.keys() - NOT_YET))
 def test_a_plan_in_this_shape_is_read(write, knowledge, name):
     shape = SHAPES[name]
-    programs, _ = read(write, knowledge, shape.file, shape.text)
-    assert [step for _, steps in programs for step in steps] == shape.steps
+    programs, _ = read(write, knowledge, shape["file"], shape["text"])
+    assert [step for _, steps in programs for step in steps] == shape["steps"]
 
 
 @pytest.mark.parametrize("name", sorted(NOT_YET))
 def test_a_shape_that_is_not_known_gives_faults_and_no_other_steps(write, knowledge, name):
     shape = SHAPES[name]
-    programs, faults = read(write, knowledge, shape.file, shape.text)
+    programs, faults = read(write, knowledge, shape["file"], shape["text"])
     steps = [step for _, steps in programs for step in steps]
-    assert set(steps) <= set(shape.steps) and (faults or name == "todo.txt")
+    assert set(steps) <= set(shape["steps"]) and (faults or name == "todo.txt")
 
 
 @pytest.mark.parametrize(
@@ -90,7 +99,8 @@ def test_orders_that_are_not_understood_are_faults_of_their_lines(write, knowled
 
 
 def test_it_is_not_what_another_spoke_of(write, knowledge):
-    text = "Ann: I walk to the desk.\nAnn: I find the lamp.\nBo: And your book?\nAnn: I grab it.\nAnn: I switch on the lamp.\n"
+    text = "Ann: I walk to the desk.\nAnn: I find the lamp.\nBo: And your book?\nAnn: I grab it.\n"
+    text += "Ann: I switch on the lamp.\n"
     programs, faults = read(write, knowledge, "a.txt", text)
     assert programs[0][1] == LAMP and faults == [4]
 

@@ -71,7 +71,7 @@ def _named(thing: str) -> str:
 
 
 def _words(raw: str) -> str:
-    return _OTHERS.sub("", raw, count=1).strip()[:300]
+    return _OTHERS.sub("", raw.strip()[:300], count=1).strip()
 
 
 def _fits(lines: Sequence[str]) -> bool:

@@ -10,7 +10,7 @@ from hearth.kb.language.plan_lines import PlanLine, plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
 
 _ITEM = re.compile(r"\s*(?:[-*+•]|\d{1,3}[.):])\s+")
-_LAYOUT = re.compile(r"\s*(?:[\w ]*[=:]?\s*[\[({]|[\])};,]+|[A-Z]{3,8}|</?\w+[^<>]*>|`{3}.*|#.*|)\s*")
+_LAYOUT = re.compile(r"[\w ]{0,40}[=:]?\s?[\[({]|[\])};,]{1,9}|[A-Z]{3,8}|</?\w+[^<>]*>|`{3}.*|#.*|")
 _PROGRAM = re.compile(r"\s*(?:<\w+>\s*)?\[[A-Za-z ]+\]\s*(?:<|$)")
 """A step in the syntax of programs, which is read as such."""
 
@@ -28,7 +28,7 @@ def _steps(raw: str) -> list[str]:
 
 def _fits(lines: Sequence[str]) -> bool:
     """Return whether most lines are such actions, and there are two at least."""
-    texts = [line for line in lines if not _LAYOUT.fullmatch(line) or _steps(line)]
+    texts = [line for line in lines if not _LAYOUT.fullmatch(line.strip()) or _steps(line)]
     found = [steps for line in texts if (steps := _steps(line))]
     return sum(map(len, found)) >= _FEWEST and len(found) >= _SHARE * len(texts)
 
@@ -42,7 +42,7 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
             found += [step(row, each) for each in steps]
         elif read.heading or not read.text or not begun:
             found.append(Placed(row, read._replace(number=None, numbered=False)))
-        elif _LAYOUT.fullmatch(raw) and not _ELEMENT.match(raw):
+        elif _LAYOUT.fullmatch(raw.strip()) and not _ELEMENT.match(raw):
             found.append(Placed(row, PlanLine("")))
         elif read.number is not None or _ELEMENT.match(raw) or is_like_step(read.text):
             found.append(step(row, read.text or raw))

@@ -21,7 +21,7 @@ class _Talk(NamedTuple):
 
 _SENTENCES = re.compile(r"(?<=[a-z][.!?])\s+(?=[A-Z])")
 _SAID = re.compile(
-    r"(?:(?:great|good|nice|perfect|super|thanks|thank you|alright|right|well|excellent|lovely|ok|okay|yes|hey|hi|hello)"
+    r"(?:(?:great|good|nice|perfect|super|thanks|thank you|alright|right|well|excellent|lovely|ok|okay|yes)"
     r"(?: (?:job|work|done|then|now|robot|there))?\s*[,.!–—-]+\s*)+",
     re.IGNORECASE,
 )

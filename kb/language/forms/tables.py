@@ -1,5 +1,6 @@
-"""Tables of steps as text: Markdown's, those that databases and terminals print, LaTeX's, and columns parted by tabs."""
+"""Tables of steps as text: those of Markdown and LaTeX, as databases print them, and columns between tabs."""
 
+import itertools
 import re
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -90,7 +91,7 @@ def _is_most(rows: int, lines: Sequence[str], kind: str) -> bool:
 
 def _head(lines: Sequence[str], kind: str, rows: Sequence[list[str]]) -> tuple[str, ...]:
     """Return the names of columns: the row above the first rule, or the first row if it is made of such names."""
-    for above, line in zip(lines, lines[1:], strict=False):
+    for above, line in itertools.pairwise(lines):
         if _is_rule(line) and (cells := _cells(above, kind)) and cells == rows[0]:
             return tuple(cells)
     names = [cell for cell in rows[0] if cell]
