@@ -58,7 +58,8 @@ _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 """Endings of texts that are read as programs even without a step; others, such as notes, need one."""
 
 _NUMBER = re.compile(
-    r"\s*\[(?:\d{1,4}|[\d/.-]*,?[ T]?\d{1,2}:\d\d[\d:.]*(?:\s?[ap]m)?|[-+ox*✓✔✕✗✘ ])\]\s+[^\s,\]}]|\s*\[+[A-Za-z_][\w .-]*\]+\s*$|\s*\[(?:INFO|DEBUG|WARN)"
+    r"\s*\[(?:\d{1,4}|[\d/.-]*,?[ T]?\d{1,2}:\d\d[\d:.]*(?:\s?[ap]m)?|[-+ox*✓✔✕✗✘ ])\]\s+[^\s,\]}]"
+    r"|\s*\[+[A-Za-z_][\w .-]*\]+\s*$|\s*\[(?:INFO|DEBUG|WARN)"
 )
 """The number of a step in brackets, `[1] Walk to fridge`, or its time, `[09:15] robot: walk to fridge`."""
 
