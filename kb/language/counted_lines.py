@@ -78,7 +78,7 @@ def counting_of(lines: Sequence[str]) -> Callable[[str], str] | None:
         return None
     for kind in range(len(_COUNTS) + 2):
         found = [counted for line in texts if (counted := _counted(line, kind))]
-        (shape, _), *_ = Counter(each.shape for each in found).most_common(1) or [(None, 0)]
+        shape = next((shape for shape, _ in Counter(each.shape for each in found).most_common(1)), None)
         if shape and _goes_up(own := [each for each in found if each.shape == shape]) and _are_steps(own, texts, kind):
             return lambda raw, kind=kind, shape=shape: _numbered(raw, kind, shape)  # type: ignore[misc]
     return None
