@@ -10,7 +10,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
+from hearth.kb.language.plan_lines import BRACKETED, LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import (
     REMEMBERED,
@@ -18,8 +18,9 @@ from hearth.kb.language.sentences import (
     Mentioned,
     asked_in_part,
     asked_steps,
+    mentioned_by,
     nearest_steps,
-    said_by,
+    plain_step,
 )
 from hearth.kb.language.understanding import Candidate
 from hearth.kb.language.unmarked_lines import is_order
@@ -95,13 +96,16 @@ class _StepParser:
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
-        self._said: tuple[Mentioned, ...] = ()
+        self._mentioned: list[Mentioned] = []
         self._notes: list[tuple[str, str, int]] = []
         self._is_open = self._is_heading = False
 
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
-        if kind == Kind.STEP:
+        if kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
+            self._is_open = self._is_heading = False
+            self._append(*sure, number)
+        elif kind is Kind.STEP:
             before = len(self.steps)
             found = self._read(line, raw, number)
             is_unread = bool(found) and len(self.steps) == before
@@ -225,7 +229,7 @@ class _StepParser:
             program, faults = grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
-                self._said = said_by(self.steps)
+                self._mentioned = list(mentioned_by(self.steps[-REMEMBERED:]))
                 self.lines += [number] * len(found)
         return [self._placed(fault, text, raw, number) for fault in faults]
 
@@ -242,11 +246,20 @@ class _StepParser:
 
     def _add(self, asked: Asked, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        self.steps.append(_step(action, names, asked.instance))
+        self._append(_step(action, names, asked.instance), (action, names), number)
+        if asked.left_out.startswith("with it"):
+            # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
+            self._mentioned[-2:] = reversed(self._mentioned[-2:])
+
+    def _append(self, step: Step, mentioned: Mentioned, number: int) -> None:
+        self.steps.append(step)
         self.lines.append(number)
-        # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
-        last = self._said[:1] if asked.left_out.startswith("with it") else ()
-        self._said = (*last, (action, names), *self._said[len(last) :])[:REMEMBERED]
+        self._mentioned.append(mentioned)
+
+    @property
+    def _said(self) -> tuple[Mentioned, ...]:
+        """The steps of which a pronoun may speak, the last first."""
+        return tuple(self._mentioned[: -REMEMBERED - 1 : -1])
 
     def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
         message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"
@@ -266,6 +279,16 @@ class _StepParser:
         at = line.find(words)
         column = max(at if at >= 0 else line.find(words.split(maxsplit=1)[0]), 0) + 1
         return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, line[:200])
+
+
+@lru_cache(maxsize=65_536)
+def _sure_step(known: Knowledge, text: str) -> tuple[Step, Mentioned] | None:
+    """Return the step of a line that reads exactly as one, whatever was said before, as most lines do."""
+    asked = () if BRACKETED.match(text) else plain_step(known, _ORDINAL.sub("", text, count=1).removesuffix(":"))
+    if len(asked) != 1 or asked[0].fuzzy:
+        return None
+    meant = asked[0].meant
+    return _step(meant.action.name, meant.names, asked[0].instance), (meant.action.name, meant.names)
 
 
 @lru_cache(maxsize=65_536)

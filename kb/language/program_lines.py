@@ -4,9 +4,10 @@ import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
+from functools import lru_cache
 from typing import NamedTuple
 
-from hearth.kb.language.forms import form_of
+from hearth.kb.language.forms import form_of, form_of_line
 from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
@@ -29,8 +30,6 @@ _END = re.compile(
     re.I,
 )
 """Words that end a plan and are no step."""
-
-_MAY_END = re.compile(r"done|end|finish|complete", re.IGNORECASE)
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
 _SEVERAL = re.compile(r"[>→⟶➔➡;]|\d[.):\]]")
@@ -62,8 +61,8 @@ class ProgramLine(NamedTuple):
 
 def lines_of_program(text: str) -> list[ProgramLine]:
     """Return the lines of a program's text in order; each step of a line of several is one."""
-    if PLAIN.fullmatch(text) and not form_of([text.partition("\n")[0]]):
-        return list(_plain_lines(text))
+    if PLAIN.fullmatch(text) and not form_of_line(text.partition("\n")[0]):
+        return _plain_lines(text)
     raw = _without_thoughts(text.split("\n"))
     form = form_of(raw)
     if form:
@@ -78,24 +77,34 @@ PLAIN = re.compile(
 """A line above numbered steps of plain words, as most plans are: no form has to be tried."""
 
 
-def _plain_lines(text: str) -> Iterator[ProgramLine]:
-    """Yield the lines of a plain plan."""
-    several = _SEVERAL.search(text.partition("\n")[2]) is not None or " then " in text
-    may_end = _MAY_END.search(text) is not None
-    for row, raw in enumerate(text.split("\n")):
-        line = plan_line(raw)
-        if line.number is None:
-            yield ProgramLine(row, line, Kind.TEXT)
-            continue
-        for part in _parts(line) if several or not row else [line]:
-            if not (may_end and _END.fullmatch(part.text)):
-                yield ProgramLine(row, part, Kind.STEP)
+def _plain_lines(text: str) -> list[ProgramLine]:
+    """Return the lines of a plain plan."""
+    return [
+        ProgramLine(row, line, kind)
+        for row, raw in enumerate(text.split("\n"))
+        for line, kind in (_short_plain(raw) if len(raw) <= _SHORT else _plain(raw))
+    ]
+
+
+_SHORT = 200
+"""Characters of a line that is remembered, as plans say the same again and again."""
+
+
+def _plain(raw: str) -> tuple[tuple[PlanLine, Kind], ...]:
+    """Return the steps of a line of a plain plan, or the line if it is none."""
+    line = plan_line(raw)
+    if line.number is None:
+        return ((line, Kind.TEXT),)
+    return tuple((part, Kind.STEP) for part in _parts(line) if not _END.fullmatch(part.text))
+
+
+_short_plain = lru_cache(maxsize=16_384)(_plain)
 
 
 def header(text: str) -> Header:
     """Return title and description of a program's text."""
     top = text.partition("\n")[0]
-    if PLAIN.fullmatch(text) and not form_of([top]):
+    if PLAIN.fullmatch(text) and not form_of_line(top):
         line = plan_line(top)
         return header_of([line]) if line.number is None else Header("", "")
     raw = _without_thoughts(text.split("\n"))

@@ -70,13 +70,13 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
     Args:
         known: the grammar.
         words: the line.
-        said: the steps before, the last first, as `said_by` gives them.
+        said: the steps before, the last first.
         fuzzy: how far from known words a clause may be; off takes exact readings only.
     """
+    if plain := plain_step(known, words):
+        return plain
     if _OBSERVED.match(words):
         return ()
-    if plain := _plain(known, words):
-        return plain
     words = verb_phrase(" ".join(_plurals_of_said(known, words, said).split()))
     whole = _clause(known, words, said, Fuzzy.OFF)
     if whole:
@@ -88,9 +88,9 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
 
 
 @lru_cache(maxsize=65_536)
-def _plain(known: Knowledge, words: str) -> tuple[Asked, ...]:
-    """The step of a line that reads exactly, whatever was said before: without pronoun and without double plural."""
-    if _PRONOUN.search(words) or _double_plurals(known, words):
+def plain_step(known: Knowledge, words: str) -> tuple[Asked, ...]:
+    """Return the step of a line that reads exactly, whatever was said before: without pronoun and double plural."""
+    if _OBSERVED.match(words) or _PRONOUN.search(words) or _double_plurals(known, words):
         return ()
     meant = understand_exactly(known, words).meant
     return (Asked(meant),) if meant else ()
@@ -160,9 +160,9 @@ def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
     return understand(known, next(_referred(known, words, said), words), fuzzy)
 
 
-def said_by(steps: Sequence[Step]) -> tuple[Mentioned, ...]:
-    """Return the last steps, the last first, as pronouns need them."""
-    return tuple((step.action, tuple(ref.name for ref in step.objects)) for step in reversed(steps[-REMEMBERED:]))
+def mentioned_by(steps: Sequence[Step]) -> Iterator[Mentioned]:
+    """Yield the actions and things of steps, as pronouns need them."""
+    return ((step.action, tuple(ref.name for ref in step.objects)) for step in steps)
 
 
 def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
