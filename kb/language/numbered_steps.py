@@ -10,7 +10,16 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import BRACKETED, LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
+from hearth.kb.language.plan_lines import (
+    BRACKETED,
+    LOOSE,
+    META,
+    PlanLine,
+    header_of,
+    is_said_around,
+    plan_line,
+    unexplained,
+)
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.sentences import (
     REMEMBERED,
