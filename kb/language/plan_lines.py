@@ -245,7 +245,12 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     """
     is_ordered = ordered(lines)
     first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
-    found = [line for line in lines[:first] if line.text]
+    found = tuple(line for line in lines[:first] if line.text)
+    return _short_header(found) if sum(len(line.text) for line in found) <= _SHORT else _header(found)
+
+
+def _header(found: tuple[PlanLine, ...]) -> Header:
+    """Return title and description in the lines above the steps."""
     ranks = [
         (TITLE.match(line.text) is None, not line.heading, bool(META.match(line.text)), is_sentence(line.text), number)
         for number, line in enumerate(found)
@@ -262,6 +267,9 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
         title = asked[1].rstrip(" :.!") if asked else ""
     above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
     return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
+
+
+_short_header = lru_cache(maxsize=16_384)(_header)
 
 
 def is_aside(text: str) -> bool:
