@@ -21,16 +21,8 @@ from hearth.kb.language.plan_lines import (
     unexplained,
 )
 from hearth.kb.language.program_lines import Kind, lines_of_program
-from hearth.kb.language.sentences import (
-    REMEMBERED,
-    Asked,
-    Mentioned,
-    asked_in_part,
-    asked_steps,
-    mentioned_by,
-    nearest_steps,
-    plain_step,
-)
+from hearth.kb.language.pronouns import REMEMBERED, Mentioned
+from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
 from hearth.kb.language.understanding import Candidate
 from hearth.kb.language.unmarked_lines import is_order
 from hearth.schemas.diagnostics import Diagnostic
@@ -238,7 +230,7 @@ class _StepParser:
             program, faults = grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
-                self._mentioned = list(mentioned_by(self.steps[-REMEMBERED:]))
+                self._mentioned += [_mentioned(step)._replace(line=number) for step in program.steps]
                 self.lines += [number] * len(found)
         return [self._placed(fault, text, raw, number) for fault in faults]
 
@@ -255,7 +247,7 @@ class _StepParser:
 
     def _add(self, asked: Asked, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        self._append(_step(action, names, asked.instance), (action, names), number)
+        self._append(_step(action, names, asked.instance), asked.mentioned, number)
         if asked.left_out.startswith("with it"):
             # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
             self._mentioned[-2:] = reversed(self._mentioned[-2:])
@@ -268,7 +260,8 @@ class _StepParser:
     @property
     def _said(self) -> tuple[Mentioned, ...]:
         """The steps of which a pronoun may speak, the last first."""
-        return tuple(self._mentioned[: -REMEMBERED - 1 : -1])
+        last = zip(self._mentioned[: -REMEMBERED - 1 : -1], reversed(self.lines), strict=False)
+        return tuple(each if each.line else each._replace(line=line) for each, line in last)
 
     def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
         message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"
@@ -297,7 +290,12 @@ def _sure_step(known: Knowledge, text: str) -> tuple[Step, Mentioned] | None:
     if len(asked) != 1 or asked[0].fuzzy:
         return None
     meant = asked[0].meant
-    return _step(meant.action.name, meant.names, asked[0].instance), (meant.action.name, meant.names)
+    return _step(meant.action.name, meant.names, asked[0].instance), asked[0].mentioned
+
+
+def _mentioned(step: Step) -> Mentioned:
+    names = tuple(ref.name for ref in step.objects)
+    return Mentioned(step.action, names, step.objects[0].instance if names else 1)
 
 
 @lru_cache(maxsize=65_536)

@@ -10,39 +10,30 @@ from hearth.kb.language.adjectives import without_adjective
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import is_verb, noun_lemmas
 from hearth.kb.language.openings import verb_phrase
-from hearth.kb.language.things import thing_of
-from hearth.kb.language.trailing import changes_act, shortened
+from hearth.kb.language.pronouns import PRONOUN, Mentioned, referred, several, with_place
+from hearth.kb.language.things import thing_of, things_in
+from hearth.kb.language.trailing import SUBORDINATE, changes_act, shortened
 from hearth.kb.language.understanding import Candidate, Understood, understand, understand_exactly
-from hearth.schemas.program import Step
 
 _JOINTS = re.compile(
-    r"(?:\s*[,;])?\s+(?:and then|then|and)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])", re.IGNORECASE
+    r"(?:\s*[,;])?\s+(?:and then|then|and|&|\+)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])",
+    re.IGNORECASE,
 )
-_PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
-_THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
-_PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
 _PLURAL = re.compile(r"\b[a-z]+es\b")
 _OBSERVED = re.compile(
     r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|notice|notices)\b", re.IGNORECASE
 )
 """A sentence about what somebody sees asks for nothing."""
 
-_INSIDE = re.compile(r"((?:put|place|drop|set|lay|store)(?:s|ing|ped)?(?: back)? .+?)(?: back)? inside", re.IGNORECASE)
-_CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
-_PERSON = "PERSON"
-REMEMBERED = 6
-"""Steps of which a pronoun may speak."""
-
 _NUMBERS = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-_COUNTS = {"both": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
+_COUNTS = (
+    {"both": 2, "a couple": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
+)
 _COUNT = re.compile(rf"\b({'|'.join(_COUNTS)})\s+(?:of\s+)?(?:the\s+|my\s+|your\s+)?(?=[a-z])", re.IGNORECASE)
+_ANOTHER = re.compile(r"\b(another|one more|the other|(?:a|the) second)\s+(?=[a-z])", re.IGNORECASE)
 _BETWEEN = re.compile(r"\b(?:in|on|into|onto|with|to|at|inside)\b", re.IGNORECASE)
 _LEFT_OUT = 3
 _CLAUSES = 12
-
-
-Mentioned = tuple[str, tuple[str, ...]]
-"""A step that was said before: its action and its things."""
 
 
 class Asked(NamedTuple):
@@ -62,6 +53,11 @@ class Asked(NamedTuple):
     def fuzzy(self) -> bool:
         """Whether words were corrected or left out."""
         return self.meant.score < 1 or bool(self.left_out)
+
+    @property
+    def mentioned(self) -> Mentioned:
+        """The step as later pronouns need it."""
+        return Mentioned(self.meant.action.name, self.meant.names, self.instance)
 
 
 def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
@@ -90,7 +86,7 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
 @lru_cache(maxsize=65_536)
 def plain_step(known: Knowledge, words: str) -> tuple[Asked, ...]:
     """Return the step of a line that reads exactly, whatever was said before: without pronoun and double plural."""
-    if _OBSERVED.match(words) or _PRONOUN.search(words) or _double_plurals(known, words):
+    if _OBSERVED.match(words) or PRONOUN.search(words) or _double_plurals(known, words):
         return ()
     meant = understand_exactly(known, words).meant
     return (Asked(meant),) if meant else ()
@@ -116,7 +112,7 @@ def _double_plurals(known: Knowledge, words: str) -> list[tuple[str, str, str, s
 
 
 def _is_said(name: str, said: Sequence[Mentioned]) -> bool:
-    return any(name in names for _, names in said)
+    return any(name in each.names for each in said)
 
 
 def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked | str, ...]:
@@ -131,7 +127,7 @@ def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
     found: list[Asked | str] = []
     at = 0
     while at < len(clauses) <= _CLAUSES:
-        now = tuple((each.meant.action.name, each.meant.names) for each in reversed(found) if isinstance(each, Asked))
+        now = tuple(each.mentioned for each in reversed(found) if isinstance(each, Asked))
         read, size = _longest(known, clauses[at:], (*now, *said), fuzzy)
         found += read or (clauses[at],)
         at += size
@@ -157,25 +153,28 @@ def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
     """Return what a line as a whole is understood as, and the nearest steps as hints."""
     if _OBSERVED.match(words):
         return Understood(None, ())
-    return understand(known, next(_referred(known, words, said), words), fuzzy)
-
-
-def mentioned_by(steps: Sequence[Step]) -> Iterator[Mentioned]:
-    """Yield the actions and things of steps, as pronouns need them."""
-    return ((step.action, tuple(ref.name for ref in step.objects)) for step in steps)
+    return understand(known, next(referred(known, words, said), words), fuzzy)
 
 
 def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
     """The steps of clauses one after another; what shares a verb, as `grab a cup and a plate`, is read together."""
+    if fuzzy is not Fuzzy.OFF and len(clauses) > 1 and SUBORDINATE.match(clauses[0]):
+        spoken = (Mentioned("", (thing,)) for thing in things_in(known, clauses[0].lower()))
+        return _without_first(clauses[0], _joined(known, clauses[1:], (*spoken, *said), fuzzy))
     for size in range(1, len(clauses) + 1):
         read = _clause(known, clauses[0], said, fuzzy) if size == 1 else _listed(known, clauses[:size], said)
         if read and size == len(clauses):
             return read
         if read:
-            now = ((each.meant.action.name, each.meant.names) for each in reversed(read))
+            now = (each.mentioned for each in reversed(read))
             if rest := _joined(known, clauses[size:], (*now, *said), fuzzy):
                 return (*read, *rest)
     return ()
+
+
+def _without_first(clause: str, read: tuple[Asked, ...]) -> tuple[Asked, ...]:
+    """The steps of a line without the clause before them, which says when or how they are done."""
+    return (read[0]._replace(left_out=f"{clause} {read[0].left_out}".rstrip()), *read[1:]) if read else ()
 
 
 def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tuple[Asked, ...]:
@@ -227,7 +226,7 @@ def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzz
     if changes_act(words.lower()):
         return ()
     for shorter, out in ((words, ""), *without_adjective(known, words.lower())):
-        for clause in _referred(known, shorter, said):
+        for clause in referred(known, shorter, said):
             meant = understand(known, clause, Fuzzy.TYPOS).meant
             if meant and (clause == shorter or _affords(known, meant)):
                 return (Asked(meant, left_out=out),)
@@ -249,28 +248,36 @@ def _shortened(
 
 def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
     """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
-    words = _inside_of(words, said)
-    found = (understand_exactly(known, clause).meant for clause in _referred(known, words, said))
+    words = with_place(words, said)
+    if many := several(known, words, said):
+        meant = [(understand_exactly(known, clause).meant, number) for clause, number in many]
+        return tuple(Asked(each, number) for each, number in meant if each) if all(each for each, _ in meant) else ()
+    found = (understand_exactly(known, clause).meant for clause in referred(known, words, said))
     readings = [each for each in found if each and (len(each.names) < 2 or each.names[0] != each.names[1])]
-    if len(readings) == 1:
-        return (Asked(readings[0]),)
     if readings:
         afforded = (each for each in readings if _affords(known, each))
-        return (Asked(next(afforded, readings[0])),)
-    count = _COUNT.search(words)
+        best = readings[0] if len(readings) == 1 else next(afforded, readings[0])
+        return (Asked(best, _number(best, said) if PRONOUN.search(words) else 1),)
+    return _counted(known, words, said)
+
+
+def _number(meant: Candidate, said: Sequence[Mentioned]) -> int:
+    """Return the number of the last thing of a class that was spoken of."""
+    return next((each.instance for each in said if each.names[:1] == meant.names[:1]), 1)
+
+
+def _counted(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The steps of a clause that counts its things, as `two forks` and `another cup`."""
+    count = _COUNT.search(words) or _ANOTHER.search(words)
     if not count or not count.start() or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
         return ()
     meant = _of_one(known, words[: count.start()], words[count.end() :])
     if meant is None or not meant.names:
         return ()
-    return tuple(Asked(meant, number) for number in range(1, _COUNTS[count[1].lower()] + 1))
-
-
-def _inside_of(words: str, said: Sequence[Mentioned]) -> str:
-    """`Put it inside` with the thing that was opened last."""
-    put = _INSIDE.fullmatch(words)
-    opened = next((names[0] for action, names in said if action == "Open"), None) if put else None
-    return f"{put[1]} inside {opened.replace('_', ' ')}" if put and opened else words
+    if number := _COUNTS.get(count[1].lower()):
+        return tuple(Asked(meant, each) for each in range(1, number + 1))
+    before = [each.instance for each in said if each.names[:1] == meant.names[:1]]
+    return (Asked(meant, max(before, default=0) + 1),)
 
 
 def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:
@@ -283,27 +290,3 @@ def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:
 
 def _affords(known: Knowledge, meant: Candidate) -> bool:
     return all(known.affords(meant.action.name, place, name) for place, name in enumerate(meant.names))
-
-
-def _referred(known: Knowledge, words: str, said: Sequence[Mentioned]) -> Iterator[str]:
-    """The sentence with each thing that its pronoun may stand for, the likeliest first; itself where it has none."""
-    if not _PRONOUN.search(words):
-        yield words
-        return
-    of_things, of_people = _THINGS.search(words), _PEOPLE.search(words)
-    things = _spoken_of(said, is_closed=bool(_CLOSING.match(words))) if of_things or of_people else ()
-    if not things:
-        yield words
-    for thing in things:
-        name = thing.replace("_", " ")
-        if of_things:
-            yield _THINGS.sub(name, words)
-        elif known.has(thing, _PERSON):
-            yield _PEOPLE.sub(name, words)
-
-
-def _spoken_of(said: Sequence[Mentioned], *, is_closed: bool) -> tuple[str, ...]:
-    """The things of steps, the last first; what was opened, or holds another, comes first where something is closed."""
-    opened = [name for action, names in said if is_closed and action == "Open" for name in names]
-    places = [names[1] for _, names in said if is_closed and len(names) > 1]
-    return tuple(dict.fromkeys((*opened, *places, *(name for _, names in said for name in names))))

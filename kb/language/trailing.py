@@ -9,7 +9,9 @@ from hearth.kb.language.lexicon import is_verb, verb_lemmas
 from hearth.kb.language.things import thing_of
 
 ADVERBS = (
-    "again", "briefly", "calmly", "carefully", "completely", "easily", "first", "firmly", "fully", "gently",
+    "again", "aloud", "out loud", "finely", "neatly", "evenly", "tightly", "roughly", "halfway", "wide", "slightly",
+    "a little", "a little bit", "a bit", "straight away", "right away", "at once", "all the way", "together", "vigorously",
+    "cautiously", "promptly", "briefly", "calmly", "carefully", "completely", "easily", "first", "firmly", "fully", "gently",
     "immediately", "lightly", "now", "once again", "once more", "one more time", "patiently", "properly", "quickly",
     "quietly", "safely", "securely", "slowly", "softly", "thoroughly", "too", "twice", "well",
 )  # fmt: skip
@@ -27,13 +29,30 @@ _ENDINGS = tuple(
     re.compile(rf"\s+{ending}$")
     for ending in (
         rf"(?:{_MANNER})",
+        r"(?:under|with|in) (?:(?:some|the|cold|hot|warm|running|soapy|lukewarm) )*water",
         rf"(?:for )?(?:{_ABOUT} )?{_NUMBER} (?:more )?{_UNIT}",
         rf"at (?:about |around )?(?:{_HOUR}|noon|midnight|dawn|\d{{1,2}}(?:[:.]\d\d)?)"
         r"(?: ?(?:o['’]clock|[ap]m))?(?: in the (?:morning|afternoon|evening))?",
         r"for (?:breakfast|lunch|dinner|later|[a-z]+ing(?: .+)?)",
         r"so (?:that )?(?:you|i|we|it|he|she|they) .+",
+        r"in(?:to)? (?:[a-z]+ ){0,2}(?:slices|pieces|cubes|strips|halves|half|chunks|quarters|bits)",
+        r"behind (?:you|me|him|her|them|yourself)",
+        r"(?:because|since) (?:it|the|you|i|we|he|she|they|there) .+",
     )
 )
+_TIME = re.compile(r"\s+(?:while|whilst|when|once|as soon as|before|after|until|till) (?=\S+ ?).+$")
+"""When a step is done, or for how long."""
+
+_WITHOUT_DOING = re.compile(r"\s+without (?:[a-z]+ )?[a-z]+ing(?: .+)?$")
+SUBORDINATE = re.compile(
+    r"(?:while|whilst|when|once|after|before|as soon as|now that|because|since|upon|without|instead of|using|with)"
+    r"(?= \S)",
+    re.IGNORECASE,
+)
+"""The beginning of a clause that says when, why or how the next one is done, and not whether."""
+
+_STAYS = re.compile(r"(?:leave|leaves|left|leaving|keep|keeps|kept|keeping|let|lets|hold|holds|held|stay|stays)\b")
+"""What stays as it is for a time is no act."""
 _BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
 _WAITING = re.compile(r"((?:wait|pause)(?:s|ed|ing|d)?) (?:until|till|for) .+")
 """What one waits for may be left out, even where it is a condition."""
@@ -51,15 +70,38 @@ _ASLEEP = re.compile(r"((?:fall|falls|fell|falling) asleep|sleep|sleeps|slept|na
 _POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
 
 _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
-_ALL = re.compile(r"\ball (?:of )?(?=\S)")
+_ALL = re.compile(r"\b(?:all|each|every)(?: (?:single )?one)? (?:single )?(?:of )?(?=\S)")
 """A step is about one thing, so that its other instances are left out."""
 
 _PLACE = re.compile(r"\s+(?:inside of|inside|in|on top of|on|under|behind|next to|near|at)\s+(.+)$")
+_TOWARDS = re.compile(
+    r"(?:look|point|gaze|stare|glance|knock|sit|sit down|lie|lie down|type|write)(?:s|ing|ed)? (?:at|on|in) "
+)
+"""What is before the object of a step, and no place of it."""
+
+_CLEAN = re.compile(r"((?:wipe|scrub|wash|brush|rinse|dry|lick)(?:s|ed|ing|d)? .+) (clean|dry|spotless)")
 _TOOL = re.compile(r"\s+(?:with|using) (.+)$")
+_SWITCHED = re.compile(r"(?:turn|switch|power|shut|flick|start)(?:s|es|ed|ing)?\b")
+_CONTROLS = frozenset(("remote_control", "lightswitch", "button", "controller"))
+"""Things with which others are switched; with what has a switch of its own two things may be meant."""
+
+_USING = re.compile(r"(?:use|using|with) (.+?)(?: to|,) (?=[a-z]+ )(.+)")
+_CONTENT = re.compile(
+    r"((?:write|type|dial)(?:s|d|ing)?|wrote|written|writing|typing)(?: down)? (?!on |in |into )(.+?) (?:on|in|into) (.+)"
+)
+_WATCHED = re.compile(r"(watch(?:es|ed|ing)?) (.+?) on (.+)")
+"""What is written, typed, dialed or watched is no object of the step; that on which it is done is."""
+
+_DIRECTED = re.compile(r"((?:push|pull|move|slide|shift|draw|shove)(?:s|es|d|ed|ing)?) (.+)")
+_DIRECTION = re.compile(
+    r"(?:(in|out|up|down|back|aside|away|forward|forwards|backwards|apart|closer) (.+)"
+    r"|(.+) (in|out|up|down|back|aside|away|forward|forwards|backwards|apart|closer))"
+)
 _BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
 _WORKED = frozenset(
-    ("brush", "chop", "clean", "comb", "cut", "dry", "dust", "mix", "mop", "open", "polish", "rinse", "scrub", "shave",
-     "slice", "stir", "sweep", "wash", "water", "wipe")
+    ("break", "brush", "chop", "clean", "comb", "cut", "drink", "dry", "dust", "eat", "hoover", "mix", "mop", "open",
+     "polish", "rinse", "scrub", "sew", "shave", "spread", "slice", "smash", "stir", "sweep", "vacuum", "wash", "water", "wipe",
+     "write")
 )  # fmt: skip
 """Verbs after which a tool may be left out; with others, as `cover` or `fill`, it is part of the act."""
 
@@ -84,9 +126,21 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
         yield match[1], text[match.end(1) :].strip()
     if text.endswith(_INSTEAD):
         yield text.removesuffix(_INSTEAD), _INSTEAD.strip()
+    if match := _TIME.search(text):
+        if not _STAYS.match(text) and not changes_act(text[: match.start()]):
+            yield text[: match.start()], match[0].strip()
+    if match := _WITHOUT_DOING.search(text):
+        yield text[: match.start()], match[0].strip()
     if changes_act(text):
         return
-    for pattern in (_WITH_IT, _ASLEEP):
+    yield from _with_tool(known, text)
+    if (match := _CONTENT.fullmatch(text)) and thing_of(known, match[2]) is None:
+        yield f"{match[1]} on {match[3]}", match[2]
+    if (match := _WATCHED.fullmatch(text)) and thing_of(known, match[2]) is None:
+        yield f"{match[1]} {match[3]}", match[2]
+    if (match := _DIRECTED.fullmatch(text)) and (way := _DIRECTION.fullmatch(match[2])):
+        yield f"{match[1]} {way[2] or way[3]}", way[1] or way[4]
+    for pattern in (_WITH_IT, _ASLEEP, _CLEAN):
         if match := pattern.fullmatch(text):
             yield match[1], match[2]
     if match := _POINTED.fullmatch(text):
@@ -95,12 +149,23 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     for match in reversed(list(_PURPOSE.finditer(text))):
         if is_verb(match[1]) and thing_of(known, text[match.end() :]) is None:
             yield text[: match.start()], text[match.start() :].strip()
-    if (match := _TOOL.search(text)) and _WORKED.intersection(_verbs(text)) and _is_tool(known, match[1]):
-        yield text[: match.start()], match[0].strip()
     for match in reversed(list(_ALL.finditer(text))):
         yield text[: match.start()] + text[match.end() :], "all"
     yield from _without_place(known, text)
     yield from without_adjective(known, text)
+
+
+def _with_tool(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
+    """Yield a clause without the tool at its end, or before it: `use the knife to cut the bread`."""
+    if match := _USING.fullmatch(text):
+        act, tool = match[2], match[1]
+        if _is_tool(known, tool) and thing_of(known, tool) != thing_of(known, act.partition(" ")[2]):
+            yield f"{act} with {tool}", "use"
+            yield act, text[: match.start(2)].strip(" ,")
+    if not (match := _TOOL.search(text)) or not _is_tool(known, match[1]):
+        return
+    if _WORKED.intersection(_verbs(text)) or (_SWITCHED.match(text) and thing_of(known, match[1]) in _CONTROLS):
+        yield text[: match.start()], match[0].strip()
 
 
 def _without_place(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
@@ -111,7 +176,7 @@ def _without_place(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     for start in reversed([match.start() for match in re.finditer(r"\s+(?=\S)", text)]):
         match = _PLACE.match(text, start)
         place = thing_of(known, match[1]) if match else None
-        if match and place and (known.is_room(place) or not _PLACE.search(text[:start])):
+        if match and place and (known.is_room(place) or not _PLACE.search(_TOWARDS.sub("", text[:start]))):
             yield text[:start], match[0].strip()
 
 
@@ -130,4 +195,6 @@ def _verbs(text: str) -> tuple[str, ...]:
 
 
 def _is_tool(known: Knowledge, words: str) -> bool:
+    if " and " in words:
+        return all(thing_of(known, each) is not None for each in words.split(" and "))
     return bool(_BY_HAND.fullmatch(words)) or thing_of(known, words) is not None or words.endswith("cloth")

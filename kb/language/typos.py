@@ -7,6 +7,21 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_english
 
 _SHORTEST = 4
+_USUAL = {"second", "seconds", "minute", "minutes", "hour", "hours", "until", "with", "from", "into", "onto", "then"}
+"""Words around those of actions and objects."""
+
+_SMALL = {
+    "teh": "the",
+    "hte": "the",
+    "thw": "the",
+    "adn": "and",
+    "nad": "and",
+    "ot": "to",
+    "wiht": "with",
+    "fomr": "from",
+}
+"""Usual misspellings of the words that are too short to be corrected."""
+
 _LONG = 7
 _MOST = 32
 
@@ -38,6 +53,8 @@ def _choices(known: Knowledge, word: str) -> tuple[tuple[int, str], ...]:
     from rapidfuzz.distance import OSA
 
     words = _words(known)
+    if word in _SMALL:
+        return ((1, _SMALL[word]),)
     if len(word) < _SHORTEST or not word.isalpha() or is_english(word):
         return ((0, word),)
     allowed = 1 if len(word) < _LONG else 2
@@ -51,4 +68,4 @@ def _words(known: Knowledge) -> dict[str, str]:
     said = [words for action in known.actions.values() for words in (action.template, *action.words)]
     names = [name for thing in known.objects for name in known.same_class(thing)]
     words = {word for text in (*said, *names) for word in text.lower().replace("_", " ").split() if "{" not in word}
-    return {word: word for word in sorted(words | set(known.object_spellings))}
+    return {word: word for word in sorted(words | _USUAL | set(known.object_spellings))}

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
-from hearth.kb.language.idioms import is_idiom
+from hearth.kb.language.idioms import is_exchange, is_idiom
 from hearth.kb.language.lexicon import verb_lemmas
 from hearth.kb.language.openings import verb_phrase
 from hearth.kb.language.phrases import Parse, parses
@@ -34,6 +34,9 @@ _SHOWN = 3
 _GRAB = "Grab"
 _POINTED = re.compile(r"point(?:s|ing|ed)? (?!at |to ).+ (?:at|to|towards?) .+")
 """A thing is pointed at another; only the other is an object of the step."""
+
+_OTHERWISE = {"take": "sit", "have": "sit", "insert": "put"}
+"""Verbs that mean the act of another: a seat is taken to sit."""
 
 _ARTICLE = re.compile(r"\b(?:the|a|an|some|my|your|his|her|their)\b ")
 
@@ -99,7 +102,11 @@ def understand_exactly(knowledge: Knowledge, sentence: str) -> Understood:
     """Return the meaning of a sentence by templates, synonyms, inflections and usual phrasings; no near candidates."""
     cleaned = _cleaned(sentence)
     exact = _exact(knowledge, cleaned)
-    return Understood(exact[0], exact) if exact else _exact_otherwise(knowledge, cleaned)
+    if not exact or not _afforded(knowledge, (exact[0].action, exact[0].names)):
+        otherwise = _exact_otherwise(knowledge, cleaned)
+        if not exact or (otherwise.meant and _afforded(knowledge, (otherwise.meant.action, otherwise.meant.names))):
+            return otherwise
+    return Understood(exact[0], exact)
 
 
 def _exact_otherwise(knowledge: Knowledge, text: str) -> Understood:
@@ -113,11 +120,13 @@ def _exact_otherwise(knowledge: Knowledge, text: str) -> Understood:
 def _readings(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first.
 
-    Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings.
+    Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings, and
+    that of a verb which means no other act.
     """
     unlikely: tuple[Parse, ...] = ()
     first = text.partition(" ")[0]
-    verbs = (first, *verb_lemmas(first))
+    lemmas = (first, *verb_lemmas(first))
+    verbs = {*lemmas, *(_OTHERWISE[verb] for verb in lemmas if verb in _OTHERWISE)}
     for phrasing in (text, *phrasings(knowledge, text)):
         found = (_with_things(knowledge, parse) for parse in _acts(knowledge, phrasing))
         read = tuple(dict.fromkeys(parse for parse in found if parse))
@@ -137,12 +146,16 @@ def _without_typos(knowledge: Knowledge, text: str) -> Understood:
     """The readings of the sentence with the fewest letters corrected."""
     for sentences in corrected(knowledge, text):
         found: dict[tuple[str, tuple[str, ...]], Candidate] = {}
+        unlikely = dict(found)
         for sentence in sentences:
-            exact = _exact(knowledge, sentence)[:1] or _exact_otherwise(knowledge, sentence).candidates
-            for each in exact:
+            exact = _exact(knowledge, sentence)[:1]
+            for each in exact or _exact_otherwise(knowledge, sentence).candidates:
+                spelt = Candidate(min(_similar(text, sentence), 0.999), each.action, each.names)
                 if _afforded(knowledge, (each.action, each.names)):
-                    spelt = Candidate(min(_similar(text, sentence), 0.999), each.action, each.names)
                     found.setdefault((each.action.name, each.names), spelt)
+                elif exact:
+                    unlikely.setdefault((each.action.name, each.names), spelt)
+        found = found or unlikely
         if found:
             near = tuple(sorted(found.values(), key=lambda each: -each.score))
             return Understood(near[0] if len(near) == 1 else None, near[:_SHOWN], len(near) > 1)
@@ -179,7 +192,7 @@ def _exact(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
 
 def _acts(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """The steps that some words mean; what an idiom takes, as in `take a shower`, is not grabbed."""
-    if _POINTED.fullmatch(text):
+    if _POINTED.fullmatch(text) or is_exchange(text):
         return ()
     found = (parse for parse in parses(knowledge, text) if parse[0].name != _GRAB or not is_idiom(text))
     return tuple(found)
