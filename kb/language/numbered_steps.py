@@ -23,7 +23,7 @@ from hearth.kb.language.plan_lines import (
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import REMEMBERED, Mentioned
 from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
-from hearth.kb.language.understanding import Candidate
+from hearth.kb.language.understanding import Candidate, Understood
 from hearth.kb.language.unmarked_lines import is_order
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -215,7 +215,7 @@ class _StepParser:
         """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
         whole = nearest_steps(self.known, words, said, self.fuzzy)
         if not whole.meant or words.endswith(":"):
-            return [self._fault(whole.candidates, whole.ambiguous, raw, words, number)]
+            return [self._fault(whole, raw, words, number)]
         self._add(Asked(whole.meant), number)
         self.warnings.append(self._fuzzy(Asked(whole.meant), raw, words, number))
         return []
@@ -269,13 +269,10 @@ class _StepParser:
             message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
-    def _fault(self, near: tuple[Candidate, ...], ambiguous: bool, line: str, words: str, number: int) -> Diagnostic:
-        code = Code.AMBIGUOUS if ambiguous else Code.NOT_UNDERSTOOD
-        message = "words that may mean several things" if ambiguous else "could not read this line as a step"
-        near_phrases = " or ".join(f"`{phrase(each)}` ({each.score:.2f})" for each in near)
-        otherwise = "write one step a line, as in `Walk to kitchen`"
-        remedy = f"did you mean {near_phrases}?" if near_phrases else otherwise
-        return self._diagnostic(code, message, line, words, number, remedy)
+    def _fault(self, whole: Understood, line: str, words: str, number: int) -> Diagnostic:
+        code = Code.AMBIGUOUS if whole.ambiguous else Code.NOT_UNDERSTOOD
+        message = "words that may mean several things" if whole.ambiguous else "could not read this line as a step"
+        return self._diagnostic(code, message, line, words, number, _remedy(whole))
 
     def _diagnostic(self, code: Code, message: str, line: str, words: str, number: int, remedy: str = "") -> Diagnostic:
         at = line.find(words)
@@ -302,6 +299,17 @@ def _mentioned(step: Step) -> Mentioned:
 def _step(action: str, names: tuple[str, ...], instance: int) -> Step:
     """A step whose first thing is counted."""
     return Step(action, tuple(ObjectRef(name, 1 if place else instance) for place, name in enumerate(names)))
+
+
+def _remedy(whole: Understood) -> str:
+    """Return a remedy for a line that is not understood: the steps that may be meant, or where the known words are."""
+    if whole.candidates:
+        return f"did you mean {' or '.join(f'`{phrase(each)}`' for each in whole.candidates)}?"
+    if whole.unknown and whole.is_action:
+        return f"`{whole.unknown}` is not an action that Hearth knows; `hearth kb export table` lists them"
+    if whole.unknown:
+        return f"`{whole.unknown}` is not an object that Hearth knows; `hearth kb find` lists them"
+    return "write one step a line, as in `Walk to kitchen`"
 
 
 def phrase(candidate: Candidate) -> str:

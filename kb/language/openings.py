@@ -17,8 +17,10 @@ _OPENINGS = (
     rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?{_ORDER}(?: (?:{_DUTY}|{_TENSE})){{0,2}}{_ORDER}",
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
     r"go ahead and|make (?:sure|certain) to|be sure to|remember to|(?:don['’]t|do not|never) forget to|proceed to"
-    r"|(?:try|start|begin|continue|attempt) to|(?:i |we )need you to|(?:it is|it['’]s) time to|(?:the|your) next step is to"
-    r"|(?:er+m?|yeah|yep|yes|well|alright|right)(?= then\b|,)|(?:er+m?|yeah)(?= )|(?:start|begin|continue) (?:off )?by|your (?:next )?(?:job|task) is to",
+    r"|(?:try|start|begin|continue|attempt) to|(?:i |we )need you to"
+    r"|(?:it is|it['’]s) time to|(?:the|your) next step is to"
+    r"|(?:er+m?|yeah|yep|yes|well|alright|right)(?= then\b|,)|(?:er+m?|yeah)(?= )"
+    r"|(?:start|begin|continue) (?:off )?by|your (?:next )?(?:job|task) is to",
     r"(?:first|second|third|fourth|fifth|sixth|last|final)(?:ly)?(?: of all)?\s*[,:]",
     r"(?:firstly|secondly|thirdly|fourthly|fifthly|lastly|finally)",
     r"after (?:that|this|which)|once (?:that is )?done|from there|at last|in the end",
@@ -27,7 +29,8 @@ _OPENINGS = (
 )
 _OPENING = re.compile(rf"(?:{'|'.join(_OPENINGS)})(?:\b|(?<=[,:]))[\s,]*", re.IGNORECASE)
 _CLOSING = re.compile(
-    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|would you|will you|love|dear|mate|darling|honey|if you (?:can|please|would|like)|if possible|for me))+$",
+    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|would you|will you|love|dear|mate|darling|honey"
+    r"|if you (?:can|please|would|like)|if possible|for me))+$",
     re.IGNORECASE,
 )
 _FILLED = re.compile(r",\s+(?:you know|i mean|um+|uh+|like),\s+", re.IGNORECASE)

@@ -37,7 +37,8 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("exit", r"(.+)", "leave {0}"),
     ("head go make", r"(?:for|straight for) (.+)", "walk to {0}"),
     ("make", r"(?:your|my|his|her|their|its|our|the) way (?:over |back )?(?:to|into) (.+)", "walk to {0}"),
-    ("take get grab remove fetch pull pick lift retrieve collect", r"(?:up |out )?(.+? (?:out of|out from|off of|off|from) .+)",
+    ("take get grab remove fetch pull pick lift retrieve collect",
+     r"(?:up |out )?(.+? (?:out of|out from|off of|off|from) .+)",
      "grab {0}"),
     ("retrieve collect snatch obtain gather", r"(?:up )?(.+)", "grab {0}"),
     ("gather", r"(.+) up", "grab {0}"),
@@ -73,7 +74,8 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("wipe dry dust", r"(?:(?:down|off|up) (.+)|(.+) (?:down|off|up))", "wipe {0}"),
     ("rinse", r"(?:off|out) (.+)|(.+) (?:off|out)", "rinse {0}"),
     ("shake", r"(?:out (.+)|(.+) out)", "shake {0}"),
-    ("fold lift open sweep", r"(.+) up", "{verb} {0}"),
+    ("chop slice", r"(?:up (.+)|(.+) up)", "cut {0}"),
+    ("fold lift open sweep cut", r"(.+) up", "{verb} {0}"),
     ("eat drink sip", r"(?:a|an|the|your|my|some|another) (?:glass|cup|mug|bottle|bowl|plate|can) of (.+)",
      "{verb} {0}"),
     ("eat drink", r"(?:up (.+)|(.+) up)", "{verb} {0}"),
@@ -110,6 +112,9 @@ def _by_verb() -> dict[str, tuple[tuple[re.Pattern[str], str], ...]]:
 
 
 _PHRASINGS = _by_verb()
+PHRASED = frozenset(_PHRASINGS)
+"""Verbs of phrasings."""
+
 _ALIVE = ("animal", "person")
 _RISING = ("get", "stand", "rise")
 _INTO = re.compile(r"(?:back )?(?:in)?to (.+)")

@@ -16,7 +16,8 @@ _THINGS = re.compile(rf"\bit\b|{_MANY}|\b(?:that|this){_ALONE}", re.IGNORECASE)
 _PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
 _PUT = r"(?:put|place|drop|set|lay|store|throw|pop|stick|leave|add|insert)(?:s|ing|ped|ting)?"
 _PLACED = re.compile(
-    rf"({_PUT}(?: back)? .+?)(?: back)?(?P<in> inside| in| (?:in|into|inside) there)|({_PUT} .+?) (?:(?:on|onto) )?there",
+    rf"({_PUT}(?: back)? .+?)(?: back)?(?P<in> inside| in| (?:in|into|inside) there)"
+    rf"|({_PUT} .+?) (?:(?:on|onto) )?there",
     re.IGNORECASE,
 )
 _CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)

@@ -1,7 +1,7 @@
 """Sentences: the steps that one line asks for, which may join several clauses, count things and speak of `it`."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 

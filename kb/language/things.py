@@ -7,7 +7,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_noun, noun_lemmas
 
 _DETERMINERS = re.compile(
-    r"(?:(?:the|a few|a|an|one|some|any|several|my|your|his|her|our|their|its|this|that|these|those|one['’]s)\s+(?:of\s+)?)+"
+    r"(?:(?:the|a few|few|a|an|one|some|any|several|my|your|his|her|our|their|its|this|that|these|those"
+    r"|one['’]s)\s+(?:of\s+)?)+"
 )
 _PARTITIVE = re.compile(
     r"(?:\d+(?:[.,/]\d+)? ?(?:k?g|m?l|cl|dl|oz|lbs?|grams?|kilos?|lit(?:er|re)s?|ounces?|pounds?)\b"
@@ -18,8 +19,8 @@ _PARTITIVE = re.compile(
 """Amounts, parts and numbers of a thing that are the thing itself; a cup of tea is not, as a cup is a thing as well."""
 
 _OWNER = re.compile(
-    r"(?:the |my |your |his |her |our |their )?(?:mum|mom|mother|dad|father|wife|husband|partner|friend|brother|sister|son"
-    r"|daughter|roommate|flatmate|neighbou?r|guest|grandma|grandpa|granny|nan|man|woman|boy|girl|child|kid|baby"
+    r"(?:the |my |your |his |her |our |their )?(?:mum|mom|mother|dad|father|wife|husband|partner|friend|brother|sister"
+    r"|son|daughter|roommate|flatmate|neighbou?r|guest|grandma|grandpa|granny|nan|man|woman|boy|girl|child|kid|baby"
     r"|everyone|someone|somebody|user|person|owner)(?:['’]s|s['’])\s+"
 )
 """People to whom things belong; a dog's bed is no bed."""
@@ -62,6 +63,11 @@ def _named(known: Knowledge, words: str) -> str | None:
     part = _PARTS.fullmatch(bare)
     thing = known.object_class(part[1] or part[2]) if part else None
     return thing.name if thing and known.has(thing.name, _OPENED) else None
+
+
+def bare_words(words: str) -> str:
+    """Return a noun phrase without article, possessive and amount."""
+    return _bare(_without(_DETERMINERS, words.removeprefix("of ")))
 
 
 def _plural(words: str) -> str:

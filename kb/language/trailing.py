@@ -9,11 +9,11 @@ from hearth.kb.language.lexicon import is_verb, verb_lemmas
 from hearth.kb.language.things import thing_of
 
 ADVERBS = (
-    "again", "aloud", "out loud", "finely", "neatly", "evenly", "tightly", "roughly", "halfway", "wide", "slightly",
-    "a little", "a little bit", "a bit", "straight away", "right away", "at once", "all the way", "together", "vigorously",
-    "cautiously", "promptly", "briefly", "calmly", "carefully", "completely", "easily", "first", "firmly", "fully", "gently",
-    "immediately", "lightly", "now", "once again", "once more", "one more time", "patiently", "properly", "quickly",
-    "quietly", "safely", "securely", "slowly", "softly", "thoroughly", "too", "twice", "well",
+    "a bit", "a little", "a little bit", "again", "all the way", "aloud", "at once", "briefly", "calmly", "carefully",
+    "cautiously", "completely", "easily", "evenly", "finely", "first", "firmly", "fully", "gently", "halfway",
+    "immediately", "lightly", "neatly", "now", "once again", "once more", "one more time", "out loud", "patiently",
+    "promptly", "properly", "quickly", "quietly", "right away", "roughly", "safely", "securely", "slightly", "slowly",
+    "softly", "straight away", "thoroughly", "tightly", "together", "too", "twice", "vigorously", "well", "wide",
 )  # fmt: skip
 """Adverbs that say how a step is done, before the verb or at the end."""
 
@@ -87,7 +87,8 @@ _CONTROLS = frozenset(("remote_control", "lightswitch", "button", "controller"))
 
 _USING = re.compile(r"(?:use|using|with) (.+?)(?: to|,) (?=[a-z]+ )(.+)")
 _CONTENT = re.compile(
-    r"((?:write|type|dial)(?:s|d|ing)?|wrote|written|writing|typing)(?: down)? (?!on |in |into )(.+?) (?:on|in|into) (.+)"
+    r"((?:write|type|dial)(?:s|d|ing)?|wrote|written|writing|typing)(?: down)?"
+    r" (?!on |in |into )(.+?) (?:on|in|into) (.+)"
 )
 _WATCHED = re.compile(r"(watch(?:es|ed|ing)?) (.+?) on (.+)")
 """What is written, typed, dialed or watched is no object of the step; that on which it is done is."""
@@ -100,7 +101,8 @@ _DIRECTION = re.compile(
 _BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
 _WORKED = frozenset(
     ("break", "brush", "chop", "clean", "comb", "cut", "drink", "dry", "dust", "eat", "hoover", "mix", "mop", "open",
-     "polish", "rinse", "scrub", "sew", "shave", "spread", "slice", "smash", "stir", "sweep", "vacuum", "wash", "water", "wipe",
+     "polish", "rinse", "scrub", "sew", "shave", "slice", "smash", "spread", "stir", "sweep", "vacuum", "wash",
+     "water", "wipe",
      "write")
 )  # fmt: skip
 """Verbs after which a tool may be left out; with others, as `cover` or `fill`, it is part of the act."""
@@ -122,29 +124,11 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
         known: the grammar.
         text: a clause in small letters.
     """
-    if match := _WAITING.fullmatch(text):
-        yield match[1], text[match.end(1) :].strip()
-    if text.endswith(_INSTEAD):
-        yield text.removesuffix(_INSTEAD), _INSTEAD.strip()
-    if match := _TIME.search(text):
-        if not _STAYS.match(text) and not changes_act(text[: match.start()]):
-            yield text[: match.start()], match[0].strip()
-    if match := _WITHOUT_DOING.search(text):
-        yield text[: match.start()], match[0].strip()
+    yield from _without_time(text)
     if changes_act(text):
         return
     yield from _with_tool(known, text)
-    if (match := _CONTENT.fullmatch(text)) and thing_of(known, match[2]) is None:
-        yield f"{match[1]} on {match[3]}", match[2]
-    if (match := _WATCHED.fullmatch(text)) and thing_of(known, match[2]) is None:
-        yield f"{match[1]} {match[3]}", match[2]
-    if (match := _DIRECTED.fullmatch(text)) and (way := _DIRECTION.fullmatch(match[2])):
-        yield f"{match[1]} {way[2] or way[3]}", way[1] or way[4]
-    for pattern in (_WITH_IT, _ASLEEP, _CLEAN):
-        if match := pattern.fullmatch(text):
-            yield match[1], match[2]
-    if match := _POINTED.fullmatch(text):
-        yield f"point at {match[2]}", match[1]
+    yield from _without_content(known, text)
     yield from _without_manner(text)
     for match in reversed(list(_PURPOSE.finditer(text))):
         if is_verb(match[1]) and thing_of(known, text[match.end() :]) is None:
@@ -153,6 +137,32 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
         yield text[: match.start()] + text[match.end() :], "all"
     yield from _without_place(known, text)
     yield from without_adjective(known, text)
+
+
+def _without_time(text: str) -> Iterator[tuple[str, str]]:
+    """Yield a clause without what one waits for, and without the time until or at which it is done."""
+    if match := _WAITING.fullmatch(text):
+        yield match[1], text[match.end(1) :].strip()
+    if text.endswith(_INSTEAD):
+        yield text.removesuffix(_INSTEAD), _INSTEAD.strip()
+    is_act = not _STAYS.match(text)
+    for match in filter(None, (_TIME.search(text) if is_act else None, _WITHOUT_DOING.search(text))):
+        if not changes_act(text[: match.start()]):
+            yield text[: match.start()], match[0].strip()
+
+
+def _without_content(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
+    """Yield a clause without what is written, watched or pointed, and without the way in which a thing is pushed."""
+    for pattern, phrase in ((_CONTENT, "{0} on {2}"), (_WATCHED, "{0} {2}")):
+        if (match := pattern.fullmatch(text)) and thing_of(known, match[2]) is None:
+            yield phrase.format(*match.groups()), match[2]
+    if (match := _DIRECTED.fullmatch(text)) and (way := _DIRECTION.fullmatch(match[2])):
+        yield f"{match[1]} {way[2] or way[3]}", way[1] or way[4]
+    for pattern in (_WITH_IT, _ASLEEP, _CLEAN):
+        if match := pattern.fullmatch(text):
+            yield match[1], match[2]
+    if match := _POINTED.fullmatch(text):
+        yield f"point at {match[2]}", match[1]
 
 
 def _with_tool(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:

@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.hints import hints
 from hearth.kb.language.idioms import is_exchange, is_idiom
 from hearth.kb.language.lexicon import verb_lemmas
 from hearth.kb.language.openings import verb_phrase
-from hearth.kb.language.phrases import Parse, parses
+from hearth.kb.language.phrases import Parse, parses, say
 from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.things import thing_of
-from hearth.kb.language.typos import corrected, near_words
+from hearth.kb.language.typos import corrected
 from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
 from hearth.schemas.brief import brief
@@ -23,9 +24,6 @@ ACCEPTED = 0.75
 
 MARGIN = 0.03
 """The least difference between the best and the second similarity; below it a sentence is ambiguous."""
-
-HINTED = 0.7
-"""The similarity from which an instruction is a hint for a sentence that is not understood."""
 
 _WEAK = 0.5
 _HEADS = 8
@@ -57,13 +55,17 @@ class Understood(NamedTuple):
 
     Attributes:
         meant: the step; None where no reading is allowed or several are equally near.
-        candidates: the readings, or the nearest steps where there is none, best first.
+        candidates: the readings, or the steps that may be meant where there is none, best first.
         ambiguous: whether several readings are equally near.
+        unknown: a word of the sentence that is no action or object that is known; empty where there are candidates.
+        is_action: whether that word is a verb.
     """
 
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
     ambiguous: bool = False
+    unknown: str = ""
+    is_action: bool = False
 
     def __repr__(self) -> str:
         return brief(self)
@@ -75,7 +77,8 @@ def understand(knowledge: Knowledge, sentence: str, fuzzy: Fuzzy = Fuzzy.TYPOS) 
 
     Templates, synonyms, inflections and usual phrasings score 1. Then misspelled words are corrected, unless `fuzzy` is
     off; a word that is English is never taken for another. With `loose`, the valid instruction whose spelling is
-    nearest is accepted. What else is said means nothing, and the nearest instructions are its candidates.
+    nearest is accepted. What else is said means nothing; its candidates are steps with the same verb about things that
+    may be meant, as `hints` finds them.
 
     Examples:
         >>> meant = hearth.understand(known, "Then turn on the TV").meant
@@ -90,11 +93,13 @@ def understand(knowledge: Knowledge, sentence: str, fuzzy: Fuzzy = Fuzzy.TYPOS) 
         read = _without_typos(knowledge, cleaned)
     if read.candidates:
         return read
-    near = _nearest(knowledge, cleaned)
-    if fuzzy is Fuzzy.LOOSE and near and near[0].score >= ACCEPTED:
+    near = _nearest(knowledge, cleaned) if fuzzy is Fuzzy.LOOSE else ()
+    if near and near[0].score >= ACCEPTED:
         is_sure = len(near) < 2 or near[0].score - near[1].score >= MARGIN
         return Understood(near[0] if is_sure else None, near, not is_sure)
-    return Understood(None, tuple(each for each in near if each.score >= HINTED and _related(knowledge, cleaned, each)))
+    hint = hints(knowledge, cleaned)
+    steps = tuple(Candidate(_similar(cleaned, say(*step)), *step) for step in hint.steps)
+    return Understood(None, steps, False, hint.unknown, hint.is_action)
 
 
 @lru_cache(maxsize=65_536)
@@ -160,17 +165,6 @@ def _without_typos(knowledge: Knowledge, text: str) -> Understood:
             near = tuple(sorted(found.values(), key=lambda each: -each.score))
             return Understood(near[0] if len(near) == 1 else None, near[:_SHOWN], len(near) > 1)
     return Understood(None, ())
-
-
-def _related(knowledge: Knowledge, text: str, near: Candidate) -> bool:
-    """Return whether a sentence has the verb of a step or one of its things; a step with other words is not a hint."""
-    said = (near.action.template, *near.action.words)
-    verbs = {words.lower().partition(" ")[0] for words in said}
-    first = text.partition(" ")[0]
-    if not verbs.isdisjoint((first, *verb_lemmas(first))) or verbs.intersection(near_words(knowledge, first)):
-        return True
-    padded = f" {text} "
-    return any(f" {spelt.replace('_', ' ')}" in padded for name in near.names for spelt in knowledge.same_class(name))
 
 
 def _nearest(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
