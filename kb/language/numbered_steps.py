@@ -247,7 +247,7 @@ class _StepParser:
 
     def _add(self, asked: Asked, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        self._append(_step(action, names, asked.instance), asked.mentioned, number)
+        self._append(_step(action, names, asked.instance, asked.second), asked.mentioned, number)
         if asked.left_out.startswith("with it"):
             # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
             self._mentioned[-2:] = reversed(self._mentioned[-2:])
@@ -287,7 +287,7 @@ def _sure_step(known: Knowledge, text: str) -> tuple[Step, Mentioned] | None:
     if len(asked) != 1 or asked[0].fuzzy:
         return None
     meant = asked[0].meant
-    return _step(meant.action.name, meant.names, asked[0].instance), asked[0].mentioned
+    return _step(meant.action.name, meant.names, 1, 1), asked[0].mentioned
 
 
 def _mentioned(step: Step) -> Mentioned:
@@ -296,9 +296,9 @@ def _mentioned(step: Step) -> Mentioned:
 
 
 @lru_cache(maxsize=65_536)
-def _step(action: str, names: tuple[str, ...], instance: int) -> Step:
-    """A step whose first thing is counted."""
-    return Step(action, tuple(ObjectRef(name, 1 if place else instance) for place, name in enumerate(names)))
+def _step(action: str, names: tuple[str, ...], instance: int, second: int) -> Step:
+    """A step whose things are counted."""
+    return Step(action, tuple(map(ObjectRef, names, (instance, second))))
 
 
 def _remedy(whole: Understood) -> str:

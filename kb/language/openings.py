@@ -11,8 +11,9 @@ _TENSE = r"(?:am|is|are|was|were)(?= [a-z]+ing\b)|(?:has|have|had)(?! (?:a|an|th
 _ORDER = "(?: (?:then|now|also|next|first))?"
 _OPENINGS = (
     r"(?:(?:i|we) would|(?:i|we)['’]d) like (?:you )?to|(?:i |we )?want you to",
+    r"(?:yesterday|last|this) (?:evening|morning|afternoon|night)|after a (?:while|bit|moment|minute)",
     r"(?:yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening))(?=,? )",
-    r"(?:could|can|would|will) you(?: mind)?",
+    r"(?:could|can|would|will) you(?: mind| be so kind as to)?|if you (?:don['’]t|do not|wouldn['’]t) mind(?=,)",
     r"(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)\s*,|(?:um+|uh+|oh|you know)(?= |,)",
     rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?{_ORDER}(?: (?:{_DUTY}|{_TENSE})){{0,2}}{_ORDER}",
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
@@ -38,7 +39,7 @@ _MARKS = re.compile(r"[^\w\s)\]>'’\"”%?]+$")
 _FIRST = frozenset(
     [
         *("i", "you", "he", "she", "we", "they", "one", "the", "a", "our", "my", "your"),
-        *("yesterday", "today", "tonight", "this"),
+        *("yesterday", "today", "tonight", "this", "if"),
         *("hey", "hi", "hello", "robot", "bot", "alexa", "siri", "jarvis", "um", "umm", "uh", "uhh", "oh"),
         *("could", "can", "would", "will", "want", "let", "go", "make", "be", "remember", "start", "begin"),
         *("first", "second", "third", "fourth", "fifth", "sixth", "last", "final"),

@@ -35,12 +35,14 @@ class Mentioned(NamedTuple):
         names: the classes of its things.
         instance: the number of its first thing.
         line: the line of the file on which it was said; 0 on the line that is read.
+        second: the number of its second thing.
     """
 
     action: str
     names: tuple[str, ...]
     instance: int = 1
     line: int = 0
+    second: int = 1
 
 
 def with_place(words: str, said: Sequence[Mentioned]) -> str:

@@ -12,7 +12,8 @@ from hearth.kb.language.lexicon import is_verb, noun_lemmas
 from hearth.kb.language.openings import verb_phrase
 from hearth.kb.language.pronouns import PRONOUN, Mentioned, referred, several, with_place
 from hearth.kb.language.things import thing_of, things_in
-from hearth.kb.language.trailing import SUBORDINATE, changes_act, shortened
+from hearth.kb.language.trailing import changes_act, is_subordinate, shortened
+from hearth.kb.language.typos import corrected
 from hearth.kb.language.understanding import Candidate, Understood, understand, understand_exactly
 
 _JOINTS = re.compile(
@@ -30,10 +31,14 @@ _COUNTS = (
     {"both": 2, "a couple": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
 )
 _COUNT = re.compile(rf"\b({'|'.join(_COUNTS)})\s+(?:of\s+)?(?:the\s+|my\s+|your\s+)?(?=[a-z])", re.IGNORECASE)
-_ANOTHER = re.compile(r"\b(another|one more|the other|(?:a|the) second)\s+(?=[a-z])", re.IGNORECASE)
+_ANOTHER = re.compile(r"\b(another|one more|the other|a second)\s+(?=[a-z])", re.IGNORECASE)
+_ORDINALS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5}
+_ORDINAL = re.compile(rf"\bthe ({'|'.join(_ORDINALS)}|other)\s+(?=[a-z])", re.IGNORECASE)
 _BETWEEN = re.compile(r"\b(?:in|on|into|onto|with|to|at|inside)\b", re.IGNORECASE)
 _LEFT_OUT = 3
 _CLAUSES = 12
+_MISSPELLED = 0.9
+"""The similarity of a clause that has misspelled words and others that are left out."""
 
 
 class Asked(NamedTuple):
@@ -43,11 +48,13 @@ class Asked(NamedTuple):
         meant: the step.
         instance: the number of its first thing; two forks are fork 1 and fork 2.
         left_out: words of the sentence that are left out of the step.
+        second: the number of its second thing.
     """
 
     meant: Candidate
     instance: int = 1
     left_out: str = ""
+    second: int = 1
 
     @property
     def fuzzy(self) -> bool:
@@ -57,7 +64,7 @@ class Asked(NamedTuple):
     @property
     def mentioned(self) -> Mentioned:
         """The step as later pronouns need it."""
-        return Mentioned(self.meant.action.name, self.meant.names, self.instance)
+        return Mentioned(self.meant.action.name, self.meant.names, self.instance, 0, self.second)
 
 
 def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
@@ -158,7 +165,7 @@ def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
 
 def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
     """The steps of clauses one after another; what shares a verb, as `grab a cup and a plate`, is read together."""
-    if fuzzy is not Fuzzy.OFF and len(clauses) > 1 and SUBORDINATE.match(clauses[0]):
+    if fuzzy is not Fuzzy.OFF and len(clauses) > 1 and is_subordinate(known, clauses[0].lower()):
         spoken = (Mentioned("", (thing,)) for thing in things_in(known, clauses[0].lower()))
         return _without_first(clauses[0], _joined(known, clauses[1:], (*spoken, *said), fuzzy))
     for size in range(1, len(clauses) + 1):
@@ -230,7 +237,15 @@ def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzz
             meant = understand(known, clause, Fuzzy.TYPOS).meant
             if meant and (clause == shorter or _affords(known, meant)):
                 return (Asked(meant, left_out=out),)
-    return ()
+    return _corrected(known, words.lower(), said)
+
+
+def _corrected(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The step of a clause with misspelled words, of which others are left out; none where it may be several."""
+    sentences = next(iter(corrected(known, words)), ())
+    read = {found for each in sentences if each != words and (found := _shortened(known, each, said, ""))}
+    found = read.pop() if len(read) == 1 else ()
+    return tuple(each._replace(meant=each.meant._replace(score=_MISSPELLED)) for each in found)
 
 
 def _shortened(
@@ -258,7 +273,7 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
         afforded = (each for each in readings if _affords(known, each))
         best = readings[0] if len(readings) == 1 else next(afforded, readings[0])
         return (Asked(best, _number(best, said) if PRONOUN.search(words) else 1),)
-    return _counted(known, words, said)
+    return _ordered(known, words, said) or _counted(known, words, said)
 
 
 def _number(meant: Candidate, said: Sequence[Mentioned]) -> int:
@@ -277,7 +292,36 @@ def _counted(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[A
     if number := _COUNTS.get(count[1].lower()):
         return tuple(Asked(meant, each) for each in range(1, number + 1))
     before = [each.instance for each in said if each.names[:1] == meant.names[:1]]
+    if count[1].lower() == "the other":
+        return (Asked(meant, other),) if (other := _other(before)) else ()
     return (Asked(meant, max(before, default=0) + 1),)
+
+
+def _other(said: Sequence[int]) -> int:
+    """Return the number of the other one of two things, of which the last was said first; 0 where they are not two."""
+    others = {1, 2, *said} - {*said[:1]}
+    return others.pop() if said and len(others) == 1 else 0
+
+
+def _ordered(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The step of a clause with one of several things: `the second cup`, `the other cup`."""
+    found = _ORDINAL.search(words)
+    if not found or not found.start() or len(_ORDINAL.findall(words)) > 1:
+        return ()
+    meant = understand_exactly(known, f"{words[: found.start()]}the {words[found.end() :]}").meant
+    thing = next(iter(things_in(known, words[found.end() :].lower())), "")
+    if not meant or meant.names.count(thing) != 1:
+        return ()
+    before = [
+        number
+        for each in said
+        for name, number in zip(each.names, (each.instance, each.second), strict=False)
+        if name == thing
+    ]
+    number = _ORDINALS.get(found[1].lower()) or _other(before)
+    if not number:
+        return ()
+    return (Asked(meant, number) if meant.names[0] == thing else Asked(meant, second=number),)
 
 
 def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:

@@ -33,6 +33,7 @@ _ENDINGS = tuple(
         rf"(?:for )?(?:{_ABOUT} )?{_NUMBER} (?:more )?{_UNIT}",
         rf"at (?:about |around )?(?:{_HOUR}|noon|midnight|dawn|\d{{1,2}}(?:[:.]\d\d)?)"
         r"(?: ?(?:o['’]clock|[ap]m))?(?: in the (?:morning|afternoon|evening))?",
+        r"for (?:some )?(?:fresh air|light|warmth|fun)",
         r"for (?:breakfast|lunch|dinner|later|[a-z]+ing(?: .+)?)",
         r"so (?:that )?(?:you|i|we|it|he|she|they) .+",
         r"in(?:to)? (?:[a-z]+ ){0,2}(?:slices|pieces|cubes|strips|halves|half|chunks|quarters|bits)",
@@ -44,12 +45,18 @@ _TIME = re.compile(r"\s+(?:while|whilst|when|once|as soon as|before|after|until|
 """When a step is done, or for how long."""
 
 _WITHOUT_DOING = re.compile(r"\s+without (?:[a-z]+ )?[a-z]+ing(?: .+)?$")
-SUBORDINATE = re.compile(
+_SUBORDINATE = re.compile(
     r"(?:while|whilst|when|once|after|before|as soon as|now that|because|since|upon|without|instead of|using|with)"
-    r"(?= \S)",
-    re.IGNORECASE,
+    r" \S"
 )
-"""The beginning of a clause that says when, why or how the next one is done, and not whether."""
+_THERE = re.compile(r"(?:in|on|at|inside|near|by) (.+)")
+
+_CALLED = re.compile(
+    r"((?:call|phone|ring)(?:s|ed|ing)?|rang) (?:up )?((?:(?:a|the|your|my|his|her|our) )?(?:mum|mom|mother|dad|father"
+    r"|wife|husband|partner|friends?|brother|sister|boss|doctor|neighbou?r|colleague|family|parents|grandma|grandpa|someone"
+    r"|somebody|plumber|police))(?: on (?:the|your|my|his|her) (?:tele)?phone)?"
+)
+"""A call is made to somebody, who is no object of the step."""
 
 _STAYS = re.compile(r"(?:leave|leaves|left|leaving|keep|keeps|kept|keeping|let|lets|hold|holds|held|stay|stays)\b")
 """What stays as it is for a time is no act."""
@@ -117,6 +124,12 @@ def changes_act(text: str) -> bool:
     return bool(_CHANGES.search(text))
 
 
+def is_subordinate(known: Knowledge, clause: str) -> bool:
+    """Return whether a clause in small letters says when, where, why or how the next one is done, and not whether."""
+    place = _THERE.fullmatch(clause)
+    return _SUBORDINATE.match(clause) is not None or (place is not None and thing_of(known, place[1]) is not None)
+
+
 def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     """Yield what is left of a clause, and what is left out: an adverb, a duration, a purpose, a tool or an adjective.
 
@@ -161,6 +174,8 @@ def _without_content(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     for pattern in (_WITH_IT, _ASLEEP, _CLEAN):
         if match := pattern.fullmatch(text):
             yield match[1], match[2]
+    if match := _CALLED.fullmatch(text):
+        yield "call", match[2]
     if match := _POINTED.fullmatch(text):
         yield f"point at {match[2]}", match[1]
 

@@ -19,7 +19,8 @@ _LEAD = re.compile(
     rf"|first|then|next|now|finally|lastly|afterwards?|meanwhile|and|also|just|kindly|after (?:that|this)"
     rf"|(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)(?= ?,)|um+|uh+|oh"
     r"|yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening)"
-    rf"|at last|(?:could|would|can|will) you(?: mind)?|i['’]d like you to|let['’]s|do not forget to"
+    rf"|at last|(?:could|would|can|will) you(?: mind| be so kind as to)?|if you don['’]t mind(?= ?,)"
+    rf"|i['’]d like you to|let['’]s|do not forget to"
     rf"|{_SUBJECT}(?: (?:should|must|can|will|(?:need|have|has|needs)(?: to)?|['’]ll|then|now|first|also))*"
     rf"|(?!{_NO_MANNER})[a-z]{{3,}}ly)\b[\s,:]*)+",
     re.IGNORECASE,
