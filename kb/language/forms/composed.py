@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.form import written
 from hearth.kb.language.program_names import action_of, words_of
+from hearth.kb.loading.load import default
 
 
 def composed_step(name: str, objects: Sequence[str], relation: str = "") -> str:
@@ -17,4 +18,4 @@ def composed_step(name: str, objects: Sequence[str], relation: str = "") -> str:
     words = words_of(name)
     if not objects and " " in words:
         return words.lower()
-    return written(action_of(name, objects, relation) or name, objects)
+    return written(action_of(default(), name, objects, relation) or name, objects)
