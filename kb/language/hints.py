@@ -22,8 +22,9 @@ _SHORTEST = 4
 _LONG = 7
 _NAME = re.compile(r"[a-z][a-z'’-]*(?: [a-z][a-z'’-]*)*")
 _JOINED = frozenset((
-    "in", "on", "with", "to", "from", "of", "and", "or", "at", "by", "for", "into", "onto", "under", "over", "it",
-    "them", "is", "are", "not", "no", "up", "down", "off", "out", "then", "the", "a",
+    "a", "and", "are", "at", "by", "down", "everything", "for", "from", "in", "into", "is", "it", "no", "not", "of",
+    "off", "on", "onto", "or", "out", "over", "something", "that", "the", "them", "then", "this", "to", "under", "up",
+    "with",
 ))  # fmt: skip
 """Words that are in no name of a thing."""
 
@@ -59,7 +60,8 @@ def hints(known: Knowledge, text: str) -> Hints:
     nouns = (bare_words(name) for _, _, unknown in lacking for name in unknown)
     if noun := next(filter(_is_name, nouns), ""):
         return Hints(unknown=noun)
-    is_unknown_verb = not found and is_verb(words[0]) and not _is_known_verb(known, words[0])
+    is_act = not found and is_verb(words[0]) and thing_of(known, text) is None
+    is_unknown_verb = is_act and not _is_known_verb(known, words[0])
     return Hints(unknown=words[0], is_action=True) if is_unknown_verb else Hints()
 
 

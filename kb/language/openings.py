@@ -19,6 +19,7 @@ _OPENINGS = (
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
     r"go ahead and|make (?:sure|certain) to|be sure to|remember to|(?:don['’]t|do not|never) forget to|proceed to"
     r"|(?:try|start|begin|continue|attempt) to|(?:i |we )need you to"
+    r"|(?:start|begin|continue|keep|finish)(?= [a-z]+ing\b)|go (?:and )?(?=(?:get|grab|fetch|take|find|pick|bring)\b)"
     r"|(?:it is|it['’]s) time to|(?:the|your) next step is to"
     r"|(?:er+m?|yeah|yep|yes|well|alright|right)(?= then\b|,)|(?:er+m?|yeah)(?= )"
     r"|(?:start|begin|continue) (?:off )?by|your (?:next )?(?:job|task) is to",
@@ -62,6 +63,7 @@ _FIRST = frozenset(
             "well",
         ),
         *("alright", "right"),
+        *("keep", "finish"),
         *("after", "once", "from", "at", "in", "as", "then", "next", "now", "please", "kindly", "just", "simply"),
         *("and", "afterwards", "also", "ok", "okay", "so"),
     ]

@@ -20,7 +20,7 @@ _ITS_PLACE = (
     r"(?:in|into|to|at|on)? ?"
     r"(?:(?:its|their|the) (?:(?:usual|original|right|proper|own) )?(?:place|spot)|where (?:it|they) belongs?)"
 )
-_TAKEN_OUT = r"(?:out (.+)|(.+) out)"
+_TAKEN_OUT = r"(?:out (?!of )(.+)|(.+) out)"
 """A thing is taken out of where it is; a dog is taken for a walk."""
 
 _USUAL: tuple[tuple[str, str, str], ...] = (
@@ -47,9 +47,10 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("pick choose", r"out (.+)", "grab {0}"),
     ("get", r"(?:a )?hold of (.+)", "grab {0}"),
     ("grab get fetch take", rf"{_SELF} (.+)", "grab {0}"),
+    ("grab get fetch", r"(?:me|us|him|her|them) (.+)", "grab {0}"),
     ("take get pull bring", _TAKEN_OUT, "grab {0}"),
     ("turn switch shut flick flip click power", r"(?:back )?(on|off) (.+)", "switch {0} {1}"),
-    ("turn switch shut flick flip click power", r"(.+) (?:back )?(on|off)", "switch {1} {0}"),
+    ("turn switch shut flick flip click power", r"(.+?) (?:back )?(on|off)", "switch {1} {0}"),
     ("activate start", r"(?:up )?(.+)", "switch on {0}"),
     ("boot power start", r"(?:up (.+)|(.+) up)", "switch on {0}"),
     ("deactivate", r"(.+)", "switch off {0}"),
@@ -67,6 +68,7 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     (f"{_PUTTING} insert store pack return", r"(.+?) (?:back |away )?in (.+)", "put {0} in {1}"),
     (_PUTTING, r"(.+) (?:onto|on top of|upon) (.+)", "put {0} on {1}"),
     (_PUTTING, r"(.+?) (?:down |back |away )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
+    ("put lay place", r"(.+) over (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:in|into|inside) (.+)", "put {0} in {1}"),
     ("drop insert slip", r"(.+) (?:into|inside|in) (.+)", "put {0} in {1}"),
@@ -98,7 +100,8 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("take have", r"(?:a )(?:quick |short |long )?nap", "sleep"),
     ("get", r"some sleep", "sleep"),
     ("pull push slide draw slam swing", r"(.+) (?:shut|closed)", "close {0}"),
-    ("pull push slide draw swing", r"(.+) open", "open {0}"),
+    ("pull push slide draw swing", r"(?:(.+) open|open (.+))", "open {0}"),
+    ("pull push slide draw swing", r"(?:shut|closed) (.+)", "close {0}"),
 )  # fmt: skip
 """The first words of a phrasing, what follows, and the step; a phrasing is tried where its verb stands."""
 
@@ -117,11 +120,13 @@ PHRASED = frozenset(_PHRASINGS)
 
 _ALIVE = ("animal", "person")
 _RISING = ("get", "stand", "rise")
+_RISEN = re.compile(r"(?:back )?up (?:from|off|out of) (.+)")
 _INTO = re.compile(r"(?:back )?(?:in)?to (.+)")
 """What has wheels goes so."""
 
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
-_SURFACE, _SWITCH, _SEAT = "SURFACES", "HAS_SWITCH", "SITTABLE"
+_SURFACE, _SWITCH, _SEAT, _BED = "SURFACES", "HAS_SWITCH", "SITTABLE", "LIEABLE"
+_LEFT = re.compile(r"(off|out of) (.+)")
 _PUT_ON = ("put", "pop", "stick")
 _SWITCHED = re.compile(r"(.+) (on|off)")
 """A thing and how it is to be, as notes have it: `lights off`."""
@@ -169,9 +174,8 @@ def _by_property(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
         yield _DRAWN.sub(r"pull \1\2", rest)
     if verb in _PUT_ON and (match := _ON.fullmatch(rest)) and (thing := thing_of(known, match[1] or match[2])):
         yield from [f"switch on {thing.replace('_', ' ')}"] if known.has(thing, _SWITCH) else []
-    seat = rest.removeprefix("off ")
-    if verb == "get" and seat != rest and (thing := thing_of(known, seat)) and known.has(thing, _SEAT):
-        yield "stand up"
+    if verb == "get" and (match := _LEFT.fullmatch(rest)) and (thing := thing_of(known, match[2])):
+        yield from ["stand up"] if known.has(thing, _SEAT) and (match[1] == "off" or not known.has(thing, _BED)) else []
 
 
 def _placed(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
@@ -181,7 +185,7 @@ def _placed(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
         yield f"walk to {rest}"
     if verb == "roll" and (match := _INTO.fullmatch(rest)) and (thing := thing_of(known, match[1])):
         yield from [f"walk to {match[1]}"] if known.is_room(thing) else []
-    if verb in _RISING and rest.startswith("up from ") and thing_of(known, rest.removeprefix("up from ")):
+    if verb in _RISING and (match := _RISEN.fullmatch(rest)) and thing_of(known, match[1]):
         yield "stand up"
     if verb in _CARRYING.split() and (match := _BROUGHT.fullmatch(rest)) and (place := thing_of(known, match[2])):
         yield f"put {match[1]} {'on' if known.has(place, _SURFACE) else 'in'} {match[2]}"

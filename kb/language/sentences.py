@@ -35,6 +35,9 @@ _ANOTHER = re.compile(r"\b(another|one more|the other|a second)\s+(?=[a-z])", re
 _ORDINALS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5}
 _ORDINAL = re.compile(rf"\bthe ({'|'.join(_ORDINALS)}|other)\s+(?=[a-z])", re.IGNORECASE)
 _BETWEEN = re.compile(r"\b(?:in|on|into|onto|with|to|at|inside)\b", re.IGNORECASE)
+_TWO_TOOLS = re.compile(r" (?:with|using) (?:[a-z]+ ){1,3}and [a-z]+(?: [a-z]+)?$", re.IGNORECASE)
+"""Two tools of one act, `with soap and water`."""
+
 _LEFT_OUT = 3
 _CLAUSES = 12
 _MISSPELLED = 0.9
@@ -87,7 +90,8 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
     clauses = _clauses(words)
     if 1 < len(clauses) <= _CLAUSES and (joined := _joined(known, clauses, said, fuzzy)):
         return joined
-    return _clause(known, words, said, fuzzy) if len(clauses) == 1 and fuzzy is not Fuzzy.OFF else ()
+    is_one = len(clauses) == 1 or _TWO_TOOLS.search(words) is not None
+    return _clause(known, words, said, fuzzy) if is_one and fuzzy is not Fuzzy.OFF else ()
 
 
 @lru_cache(maxsize=65_536)

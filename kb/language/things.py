@@ -13,6 +13,7 @@ _DETERMINERS = re.compile(
 _PARTITIVE = re.compile(
     r"(?:\d+(?:[.,/]\d+)? ?(?:k?g|m?l|cl|dl|oz|lbs?|grams?|kilos?|lit(?:er|re)s?|ounces?|pounds?)\b"
     r"(?: of)?\s+"
+    r"|(?:rest|half|remainder|edge|side) of\s+"
     r"|(?:pair|slice|piece|bit|loaf|bunch|handful|sheet|bar|stick|drop|spoonful|scoop|pinch|lot|carton|can"
     r"|tin|packet|pack|roll|tube|tub|stack|pile|load|set|bottle(?! of (?:the )?water))s? of\s+)"
 )

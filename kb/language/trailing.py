@@ -80,7 +80,10 @@ _PURPOSE = re.compile(r"\s+(?:in order to|so as to|to) (?=([a-z]+)(?: |$))")
 _ALL = re.compile(r"\b(?:all|each|every)(?: (?:single )?one)? (?:single )?(?:of )?(?=\S)")
 """A step is about one thing, so that its other instances are left out."""
 
-_PLACE = re.compile(r"\s+(?:inside of|inside|in|on top of|on|under|behind|next to|near|at)\s+(.+)$")
+_PLACE = re.compile(
+    r"\s+(?:(?:that|which) (?:is|are|was|were) |lying |standing |sitting )?"
+    r"(?:inside of|inside|in|on top of|on|under|behind|next to|near|at)\s+(.+)$"
+)
 _TOWARDS = re.compile(
     r"(?:look|point|gaze|stare|glance|knock|sit|sit down|lie|lie down|type|write)(?:s|ing|ed)? (?:at|on|in) "
 )
@@ -105,7 +108,7 @@ _DIRECTION = re.compile(
     r"(?:(in|out|up|down|back|aside|away|forward|forwards|backwards|apart|closer) (.+)"
     r"|(.+) (in|out|up|down|back|aside|away|forward|forwards|backwards|apart|closer))"
 )
-_BY_HAND = re.compile(r"(?:both |your |my |his |her |one )?(?:hands?|care)")
+_BY_HAND = re.compile(r"(?:both |your |my |his |her |one |the |left |right )*(?:hands?|care)")
 _WORKED = frozenset(
     ("break", "brush", "chop", "clean", "comb", "cut", "drink", "dry", "dust", "eat", "hoover", "mix", "mop", "open",
      "polish", "rinse", "scrub", "sew", "shave", "slice", "smash", "spread", "stir", "sweep", "vacuum", "wash",
@@ -185,11 +188,15 @@ def _with_tool(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
     if match := _USING.fullmatch(text):
         act, tool = match[2], match[1]
         if _is_tool(known, tool) and thing_of(known, tool) != thing_of(known, act.partition(" ")[2]):
-            yield f"{act} with {tool}", "use"
             yield act, text[: match.start(2)].strip(" ,")
+            yield f"{act} with {tool}", "use"
     if not (match := _TOOL.search(text)) or not _is_tool(known, match[1]):
         return
-    if _WORKED.intersection(_verbs(text)) or (_SWITCHED.match(text) and thing_of(known, match[1]) in _CONTROLS):
+    if (
+        _BY_HAND.fullmatch(match[1])
+        or _WORKED.intersection(_verbs(text))
+        or (_SWITCHED.match(text) and thing_of(known, match[1]) in _CONTROLS)
+    ):
         yield text[: match.start()], match[0].strip()
 
 

@@ -16,8 +16,9 @@ from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
-_ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source",
-                          "calls"})
+_ACTION_KEYS = frozenset(
+    {"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source", "calls"}
+)
 _ACTION_SHAPES = {"needs": LIST, "before": LIST, "effects": LIST, "roles": NAMES, "words": NAMES, "aliases": NAMES,
                   "calls": NAMES, "groups": NAMES, "say": TEXT, "source": TEXT}  # fmt: skip
 _INHERITED = ("groups", "calls")
