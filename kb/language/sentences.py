@@ -302,9 +302,8 @@ def _counted(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[A
 
 
 def _other(said: Sequence[int]) -> int:
-    """Return the number of the other one of two things, of which the last was said first; 0 where they are not two."""
-    others = {1, 2, *said} - {*said[:1]}
-    return others.pop() if said and len(others) == 1 else 0
+    """Return the number of the other one of two things where the first was said last; 0 where it may be either."""
+    return 2 if said[:1] == [1] and max(said) <= 2 else 0
 
 
 def _ordered(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
