@@ -7,7 +7,7 @@ The counts of two versions of Hearth on the same sources show what a change of t
     python benchmarks/reading_counts.py --readings data_raw/written/readings.csv
 
 counts the verdicts of readers of our corpus. A note of 2026 said "195 of 200 read faithful": an author of the corpus
-had reread 200 of its programs, and repaired five. It is no figure of this reader.
+had reread 200 of its programs, and repaired five. It is not a figure of this reader.
 """
 
 from __future__ import annotations

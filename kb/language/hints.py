@@ -37,7 +37,7 @@ class Hints(NamedTuple):
 
     Attributes:
         steps: steps with the same verb, about things that may be meant; at most three.
-        unknown: a word of the sentence that is no object or action that is known.
+        unknown: a word of the sentence that names neither a known object nor a known action.
         is_action: whether that is a verb.
     """
 

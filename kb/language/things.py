@@ -24,7 +24,7 @@ _OWNER = re.compile(
     r"|son|daughter|roommate|flatmate|neighbou?r|guest|grandma|grandpa|granny|nan|man|woman|boy|girl|child|kid|baby"
     r"|everyone|someone|somebody|user|person|owner)(?:['’]s|s['’])\s+"
 )
-"""People to whom things belong; a dog's bed is no bed."""
+"""People to whom things belong; a dog's bed is not a person's."""
 
 _POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
 _SOURCE = re.compile(r"\s+(?:out of|out from|off of|off|from|from inside|from under|from behind)\s+")

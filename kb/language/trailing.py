@@ -56,10 +56,10 @@ _CALLED = re.compile(
     r"|wife|husband|partner|friends?|brother|sister|boss|doctor|neighbou?r|colleague|family|parents|grandma|grandpa|someone"
     r"|somebody|plumber|police))(?: on (?:the|your|my|his|her) (?:tele)?phone)?"
 )
-"""A call is made to somebody, who is no object of the step."""
+"""A call is made to somebody, who is not an object of the step."""
 
 _STAYS = re.compile(r"(?:leave|leaves|left|leaving|keep|keeps|kept|keeping|let|lets|hold|holds|held|stay|stays)\b")
-"""What stays as it is for a time is no act."""
+"""A thing that stays as it is for a time is not acted on."""
 _BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
 _WAITING = re.compile(r"((?:wait|pause)(?:s|ed|ing|d)?) (?:until|till|for) .+")
 """What one waits for may be left out, even where it is a condition."""
@@ -101,7 +101,7 @@ _CONTENT = re.compile(
     r" (?!on |in |into )(.+?) (?:on|in|into) (.+)"
 )
 _WATCHED = re.compile(r"(watch(?:es|ed|ing)?) (.+?) on (.+)")
-"""What is written, typed, dialed or watched is no object of the step; that on which it is done is."""
+"""The object of the step is what one writes, types, dials or watches on, not what one writes or watches."""
 
 _DIRECTED = re.compile(r"((?:push|pull|move|slide|shift|draw|shove)(?:s|es|d|ed|ing)?) (.+)")
 _DIRECTION = re.compile(

@@ -57,7 +57,7 @@ class Understood(NamedTuple):
         meant: the step; None where no reading is allowed or several are equally near.
         candidates: the readings, or the steps that may be meant where there is none, best first.
         ambiguous: whether several readings are equally near.
-        unknown: a word of the sentence that is no action or object that is known; empty where there are candidates.
+        unknown: a word of the sentence that names neither a known action nor a known object; empty where there are candidates.
         is_action: whether that word is a verb.
     """
 

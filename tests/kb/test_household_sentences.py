@@ -90,7 +90,7 @@ REFUSED = [
     "Sit in front of the TV", "Turn down the radio", "Hang up the coat", "Take the lid off the pot",
     # Two things may be meant.
     "Turn on the TV with the stereo", "Grab either the milk or the juice", "Bring the cup to the child",
-    # A dog's bed is no bed.
+    # A dog's bed is not a person's.
     "Wash the dog's bed", "Grab the other cup",
 ]  # fmt: skip
 
