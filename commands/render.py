@@ -42,12 +42,12 @@ def program(
 
     \b
     Examples:
-      python cli.py render-program watch_tv.txt --home maple --out pictures
-      python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
-      python cli.py render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
+      hearth render-program watch_tv.txt --home maple --out pictures
+      hearth render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
+      hearth render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
     """
     from hearth.kb.loading.load import default
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.home_geometry import with_geometry
 
     _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
     known = default()
@@ -69,8 +69,8 @@ def program(
         note = place.note(home)
         print(note, end="\n" if note else "")
         print(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
-        if made.get("visible") is not None:
-            print(f"Steps with all objects visible: {made['visible']:.1%}")
+        if "shows" in made:
+            print(_shown(made["shows"]))
         for page in made.get("pages", ()):
             print(f"Open {page} in a browser.")
         if failure:
@@ -88,7 +88,7 @@ def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) 
 
 
 def _check(mode: str, width: int, given: Mapping[str, bool]) -> None:
-    """Refuse options that would have no effect; `given` says of some whether they differ from what they are anyway."""
+    """Refuse options without effect; `given` has for some options whether they differ from their defaults."""
     import typer
 
     for name in ("--cameras", "--fps", "--vary"):
@@ -107,7 +107,7 @@ def _height(width: int, mode: str) -> int:
 
 
 class Shooting(NamedTuple):
-    """What is pictured, in which folder, and how: width and height, seed, hour, title of the sheet, whether to vary."""
+    """A job of pictures: execution, folder, width and height, seed, hour, title of the sheet, whether to vary."""
 
     execution: Execution
     graph: EnvironmentGraph
@@ -125,7 +125,7 @@ def _split(names: str) -> list[str]:
 
 
 def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[str, Any]:
-    from hearth.rendering.film.contact import caption
+    from hearth.rendering.film.contact_sheet import caption
     from hearth.rendering.film.snapshots import TOP, snapshots
 
     frames, files, seen = [], [], []
@@ -134,23 +134,40 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
         files += _write(shooting.out, shot, modalities)
         if shot.camera.name != TOP:
             frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
-            seen.append(shot.seen)
-    visible = [share for share in seen if share is not None]
+            seen.append(shot)
+    visible = [shot.seen for shot in seen if shot.seen is not None]
     found = round(sum(share == 1 for share in visible) / len(visible), 4) if visible else None
-    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(shooting, frames)}
+    shows = {
+        "pictures": len(seen),
+        "with_person": sum(shot.person for shot in seen),
+        "steps_with_objects": len(visible),
+        "with_all_objects": sum(share == 1 for share in visible),
+    }
+    sheet = _sheet(shooting, frames)
+    return {"pictures": len(files), "files": files, "visible": found, "shows": shows, "sheet": sheet}
+
+
+def _shown(shows: Mapping[str, int]) -> str:
+    """Return the line that counts what the pictures of the contact sheet show."""
+    line = f"The contact sheet shows the person in {shows['with_person']} of {shows['pictures']} pictures"
+    if not shows["steps_with_objects"]:
+        return f"{line}."
+    return (
+        f"{line}, and all objects of {shows['with_all_objects']} of the {shows['steps_with_objects']} steps with any."
+    )
 
 
 def videos(
     shooting: Shooting, names: list[str], fps: float, quality: str = "draft", modalities: Sequence[str] = ("rgb",)
 ) -> dict[str, Any]:
-    """Film what is to be pictured by some cameras; files, pages and steps."""
+    """Film an execution by some cameras, and return files, pages and steps."""
     import orjson
 
-    from hearth.rendering.film.contact import caption
+    from hearth.rendering.film.contact_sheet import caption
     from hearth.rendering.film.player import page
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
-    from hearth.rendering.scene.variation import drawn
+    from hearth.rendering.scene.film_variation import drawn
     from hearth.storage.names import inside
 
     variation = drawn(shooting.seed, shooting.title) if shooting.vary else None
@@ -174,7 +191,7 @@ def videos(
 
 
 def _sheet(shooting: Shooting, frames: list[Any]) -> str:
-    from hearth.rendering.film.contact import contact_sheet
+    from hearth.rendering.film.contact_sheet import contact_sheet
     from hearth.rendering.film.png import encode
 
     path = shooting.out / "sheet.png"
@@ -187,11 +204,11 @@ def sheet(out: Path, fine: bool = False, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py render-sheet --out models.png
+      hearth render-sheet --out models.png
     """
     from hearth.rendering.film.png import encode
-    from hearth.rendering.models.sheet import entries
-    from hearth.rendering.models.sheet import sheet as draw
+    from hearth.rendering.models.model_sheet import entries
+    from hearth.rendering.models.model_sheet import sheet as draw
 
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(encode(draw(quality="fine" if fine else "draft")))
@@ -212,13 +229,13 @@ def gallery(
 
     \b
     Example:
-      python cli.py render-gallery --fine --width 224 --out docs/pictures/steps.png
+      hearth render-gallery --fine --width 224 --out docs/pictures/steps.png
     """
     from hearth.analysis.coverage import Script, scripts
     from hearth.analysis.step_gallery import gallery as pictured
     from hearth.commands.progress_line import bar, watched
     from hearth.kb.loading.load import default
-    from hearth.rendering.film.contact import contact_sheet
+    from hearth.rendering.film.contact_sheet import contact_sheet
     from hearth.rendering.film.png import encode
     from hearth.schemas.syntax import print_step
 
@@ -251,7 +268,7 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
     \b
     Example:
-      python cli.py render-visible --count 30 --seed 7
+      hearth render-visible --count 30 --seed 7
     """
     from hearth.commands.progress_line import bar, watched
     from hearth.rendering.cameras.visibility import shares
@@ -287,7 +304,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
     """Executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
     from itertools import islice
 
-    from hearth.analysis.filmed_pairs import pairs
+    from hearth.analysis.program_home_pairs import pairs
     from hearth.rendering.cameras.visibility import tick_visibilities
     from hearth.rendering.film.snapshots import trajectory_of
 
@@ -297,7 +314,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
 
 
 def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
-    from hearth.grounding.trial import attempt
+    from hearth.grounding.grounded_run import attempt
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Failure
     from hearth.simulation.world.home import Home

@@ -16,10 +16,10 @@ from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
 from hearth.datasets.stored_homes import StoredHome
-from hearth.schemas.brief import cut
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.published_rows import StoredRunRow
+from hearth.schemas.short_repr import cut
 from hearth.schemas.tables import TABLES
 from hearth.storage.manifest import NAME
 
@@ -65,7 +65,7 @@ class Dataset:
             path: of the folder.
             failures: whether runs, exports and scores have the executions in which the program fails, too. Queries
                 always have them.
-            remembers: whether what queries learn of the files stays in memory, 0.1 MB a file: the next are faster.
+            remembers: whether facts about files stay in memory, 0.1 MB a file: the next queries are faster.
 
         Raises:
             HearthError: the path is not a dataset, or a newer version wrote it, or it is incomplete.
@@ -97,13 +97,15 @@ class Dataset:
 
     @property
     def connection(self) -> Any:
-        """A DuckDB connection with the views and macros, which reaches this folder only; `sql` refuses what changes it.
+        """Return a DuckDB connection with the views and macros.
+
+        The connection reaches this folder only; `sql` refuses statements that change it.
 
         After a build has replaced the dataset, a new connection to the current one is made.
 
         Raises:
             HearthError: MISSING_FILE, if a table is missing; DAMAGED_FILE, if one cannot be read; errors of
-                `published_manifest`, if what replaced the dataset is none.
+                `published_manifest`, if the replacement is not a dataset.
         """
         now = version(self.folder)
         if now is not None and now != self._version:
@@ -220,7 +222,10 @@ class Dataset:
 
         Raises:
             KeyError: the id is unknown; it names those that are like it.
+            TypeError: the key is not a text: programs have ids instead of places.
         """
+        if not isinstance(program_id, str):
+            raise TypeError(self._no_id(program_id))
         return steady(self.folder, lambda: self._entry(program_id))
 
     def _entry(self, program_id: str) -> Entry:
@@ -238,6 +243,15 @@ class Dataset:
             wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
             runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         return Entry(found[0], tuple(map(self.run_of, runs)), tuple(repairs), tuple(sketches))
+
+    def _no_id(self, key: object) -> str:
+        """Return the message for a key that is not an id: which keys there are."""
+        first = next(iter(self), None)
+        example = f"dataset[{first!r}]" if first else "there is none here"
+        return (
+            f"a program is found by its id, a text, not by {cut(repr(key), 40)}: {example}; "
+            "list(dataset) has all ids, dataset.programs all programs as a table"
+        )
 
     def _unknown(self, program_id: str) -> str:
         """Return the message for an id that no program has: ids like it, or where ids are found."""

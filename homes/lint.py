@@ -4,11 +4,11 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from functools import cached_property
 
-from hearth.homes.forms import form
-from hearth.homes.from_graph.measured import has_geometry, measured
-from hearth.homes.left_out import CATEGORIES
-from hearth.homes.plans.checks import joined
+from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
+from hearth.homes.node_defaults import CATEGORIES
+from hearth.homes.object_shapes import form
 from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.plan_checks import joined
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -24,7 +24,7 @@ SITTING_ON_EDGES = "SITTING"
 
 
 class View:
-    """A graph with what the checks look up.
+    """A graph with the indexes that the checks use.
 
     Attributes:
         graph: the graph.
@@ -79,11 +79,11 @@ class View:
         return f"{node.class_name} ({node_id})" if node else f"node {node_id}"
 
     def is_room(self, node_id: int) -> bool:
-        """Whether it is a room."""
+        """Return whether it is a room."""
         return self.nodes[node_id].category == ROOM_CATEGORY
 
     def parents(self, node_id: int) -> list[int]:
-        """What it is INSIDE."""
+        """Return the node's container."""
         return self.targets["INSIDE"].get(node_id, [])
 
 
@@ -196,6 +196,27 @@ def _containers(view: View) -> Iterator[Diagnostic]:
             yield _fault(Code.BAD_GRAPH, f"{view.label(node_id)} is a room INSIDE something", (node_id,), "remove it")
 
 
+def _seats(view: View) -> Iterator[Diagnostic]:
+    """Furniture on or in a seat: simulators that compare boxes say so of a table before a corner couch."""
+    for relation in ("ON", "INSIDE"):
+        for node_id, holders in view.targets[relation].items():
+            node = view.nodes[node_id]
+            if node.category != FURNITURE or "GRABBABLE" in node.properties:
+                continue
+            for seat in (holder for holder in holders if _is_seat(view.nodes[holder])):
+                message = f"{view.label(node_id)} is {relation} {view.label(seat)}: whoever sits there sits in it"
+                yield _fault(Code.CONFLICT, message, (node_id, seat), "remove the edge")
+
+
+def _is_seat(node: Node) -> bool:
+    """Return whether a node is furniture to sit on; mats are to sit on, too, and carry furniture."""
+    return node.category == FURNITURE and "SITTABLE" in node.properties
+
+
+FURNITURE = "Furniture"
+"""The category of things that stand on the floor."""
+
+
 def _circles(view: View) -> Iterator[Diagnostic]:
     """Circles of INSIDE, or of ON, each named once."""
     for relation in ("INSIDE", "ON"):
@@ -268,7 +289,7 @@ def _close(view: View) -> Iterator[Diagnostic]:
 
 
 def _on_foot(view: View) -> Iterator[Diagnostic]:
-    """What stands on the floor, and who, where the largest free region of it does not come near."""
+    """Return the things and characters on the floor that the largest free region of it does not come near."""
     if not has_geometry(view.graph):
         return
     layout = measured(view.graph, "", view.knowledge)
@@ -320,6 +341,7 @@ CHECKS: dict[str, Callable[[View], Iterator[Diagnostic]]] = {
     "states": _states,
     "rooms": _rooms,
     "containers": _containers,
+    "seats": _seats,
     "circles": _circles,
     "doors": _doors,
     "hands": _hands,

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ _META = b"hearth"
 
 @dataclass(slots=True)
 class Counts:
-    """What became of records. `records_in = through + rejected` always, and every reject has its code counted.
+    """Counts of records by outcome. `records_in = through + rejected` always, and every reject has its code counted.
 
     Attributes:
         records_in: records read.
@@ -80,7 +81,7 @@ class Counts:
 
 
 def part_path(folder: Path, table: str, number: int) -> Path:
-    """Where partition `number` of a table stands; a stage with one table has its parts in its own folder.
+    """Return where partition `number` of a table stands; a stage with one table has its parts in its own folder.
 
     A table in several files has one for each share: that of `programs.test` is `programs/part-00000.test.parquet`.
     """
@@ -89,7 +90,7 @@ def part_path(folder: Path, table: str, number: int) -> Path:
 
 
 def rejects_path(folder: Path, number: int) -> Path:
-    """Where the rejects of a partition wait until the stage is complete."""
+    """Return where the rejects of a partition wait until the stage is complete."""
     return folder / f".rejects-{number:05d}.parquet"
 
 
@@ -190,10 +191,18 @@ def write_batches(path: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatc
 
     Until the file is finished its footer is in memory, a kilobyte or so for each group and column.
     """
+    with table_writer(path, schema) as write:
+        for batch in batches:
+            write(batch)
+
+
+@contextmanager
+def table_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.RecordBatch], None]]:
+    """Give a function that adds a batch to a table; the file is seen when the block ends, and never after an error."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     file = _File(path, schema)
     try:
-        for batch in batches:
-            file.write(batch)
+        yield file.write
     except BaseException:
         file.abandon()
         raise

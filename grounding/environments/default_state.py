@@ -7,7 +7,7 @@ from functools import cache, cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
-from hearth.grounding.environments.thinning import superfluous, without
+from hearth.grounding.environments.home_thinning import superfluous, without
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -22,9 +22,12 @@ from hearth.simulation.world.world import World
 WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
 """Categories without placements."""
 
+DRINK, DRINKWARE = "drink", "drinkware"
+"""Kinds: a drink is a carton or a bottle, or what was poured from it into drinkware."""
+
 
 class Spots(NamedTuple):
-    """Where things of a class belong in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
+    """Usual places of a class in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
 
     choices: tuple[tuple[str, int, str], ...]
     weights: tuple[int, ...]
@@ -91,7 +94,7 @@ class Base:
         return tuple(indices(self.home.instances(name)))
 
     def _kind(self, name: str) -> Kind:
-        """What a new node of a class is like."""
+        """Properties and states of a new node of a class."""
         thing = self.knowledge.object_class(name)
         properties = tuple(sorted(thing.properties)) if thing else ()
         category = thing.category if thing else "placable_objects"
@@ -113,8 +116,22 @@ class Base:
         return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
     def _spots(self, name: str) -> Spots:
-        """Where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
-        return _weighted(self._places(name))
+        """Return where a thing of a class belongs in this home, by the knowledge's placements and their weights.
+
+        A drink in its carton or bottle stands in no glass, where its placements have the drink that was poured.
+        """
+        places = self._places(name)
+        if DRINK in self.knowledge.ancestors(name):
+            places = (place for place in places if not self._towers_over(name, place[0]))
+        return _weighted(places)
+
+    def _towers_over(self, name: str, spot: tuple[str, int, str]) -> bool:
+        """Return whether a spot is inside drinkware that is smaller than a thing of a class."""
+        holder = self.home.classes[spot[1]]
+        thing, vessel = map(self.knowledge.object_class, (name, holder))
+        if thing is None or vessel is None or DRINKWARE not in self.knowledge.ancestors(holder):
+            return False
+        return max(thing.size) > max(vessel.size)
 
     @cached_property
     def fillers(self) -> Spots:

@@ -1,4 +1,4 @@
-"""Phrasings: usual ways of asking for a step, beside the synonyms of actions, and the words that actions know."""
+"""Phrasings: usual ways of asking for a step, in addition to the synonyms of actions, and the words of actions."""
 
 import re
 from collections.abc import Iterator
@@ -122,7 +122,7 @@ _ALIVE = ("animal", "person")
 _RISING = ("get", "stand", "rise")
 _RISEN = re.compile(r"(?:back )?up (?:from|off|out of) (.+)")
 _INTO = re.compile(r"(?:back )?(?:in)?to (.+)")
-"""What has wheels goes so."""
+"""Objects on wheels move in this way."""
 
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE, _SWITCH, _SEAT, _BED = "SURFACES", "HAS_SWITCH", "SITTABLE", "LIEABLE"

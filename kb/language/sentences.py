@@ -24,7 +24,7 @@ _PLURAL = re.compile(r"\b[a-z]+es\b")
 _OBSERVED = re.compile(
     r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|notice|notices)\b", re.IGNORECASE
 )
-"""A sentence about what somebody sees asks for nothing."""
+"""A sentence about a person's observation asks for nothing."""
 
 _NUMBERS = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 _COUNTS = (
@@ -61,7 +61,7 @@ class Asked(NamedTuple):
 
     @property
     def fuzzy(self) -> bool:
-        """Whether words were corrected or left out."""
+        """Return whether words were corrected or left out."""
         return self.meant.score < 1 or bool(self.left_out)
 
     @property
@@ -217,7 +217,7 @@ def _are_of_a_kind(known: Knowledge, one: str, other: str) -> bool:
 
 
 def _is_bare(known: Knowledge, words: str) -> bool:
-    """Whether words are a thing without the place where it is."""
+    """Return whether words are a thing without the place where it is."""
     return thing_of(known, _uncounted(words.split())) is not None and not _BETWEEN.search(words)
 
 

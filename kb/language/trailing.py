@@ -62,7 +62,7 @@ _STAYS = re.compile(r"(?:leave|leaves|left|leaving|keep|keeps|kept|keeping|let|l
 """A thing that stays as it is for a time is not acted on."""
 _BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
 _WAITING = re.compile(r"((?:wait|pause)(?:s|ed|ing|d)?) (?:until|till|for) .+")
-"""What one waits for may be left out, even where it is a condition."""
+"""The object of waiting may be left out, even where it is a condition."""
 
 _INSTEAD = " instead"
 """At the end of a step it says only that another one was thought of; `instead of` names the other."""
@@ -71,7 +71,7 @@ _WITH_IT = re.compile(
     r"((?:walk|go|run|move|head|return|come|take|bring|grab|carry|leave)(?:s|ing|ed)? .+?)"
     r"\s+(?:along )?(with (?:it|them|you|me))"
 )
-"""What is in the hands goes along, and what is taken is with one."""
+"""Held objects go along, and taken objects are with the character."""
 
 _ASLEEP = re.compile(r"((?:fall|falls|fell|falling) asleep|sleep|sleeps|slept|nap|naps) ((?:on|in|at) .+)")
 _POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
@@ -134,7 +134,7 @@ def is_subordinate(known: Knowledge, clause: str) -> bool:
 
 
 def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
-    """Yield what is left of a clause, and what is left out: an adverb, a duration, a purpose, a tool or an adjective.
+    """Yield the rest of a clause, and the part left out: an adverb, a duration, a purpose, a tool or an adjective.
 
     Args:
         known: the grammar.

@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge_records import Action
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.hints import hints
 from hearth.kb.language.idioms import is_exchange, is_idiom
@@ -15,9 +16,8 @@ from hearth.kb.language.phrases import Parse, parses, say
 from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.things import thing_of
 from hearth.kb.language.typos import corrected
-from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 
 ACCEPTED = 0.75
 """The similarity from which the nearest valid instruction is accepted as the meaning where `fuzzy` is loose."""
@@ -57,7 +57,7 @@ class Understood(NamedTuple):
         meant: the step; None where no reading is allowed or several are equally near.
         candidates: the readings, or the steps that may be meant where there is none, best first.
         ambiguous: whether several readings are equally near.
-        unknown: a word of the sentence that names neither a known action nor a known object; empty where there are candidates.
+        unknown: a word that names neither a known action nor a known object; empty where there are candidates.
         is_action: whether that word is a verb.
     """
 
