@@ -33,7 +33,7 @@ _OF_TWO_KINDS = frozenset(("dish",))
 
 
 class Hints(NamedTuple):
-    """What helps with a sentence that is not understood.
+    """Help with a sentence that is not understood.
 
     Attributes:
         steps: steps with the same verb, about things that may be meant; at most three.

@@ -169,7 +169,7 @@ def _is_drawn(known: Knowledge, verb: str, rest: str) -> bool:
 
 
 def _by_property(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
-    """Yield the phrasings that depend on what a thing is for: what has a switch is not worn, a seat is not taken."""
+    """Yield the phrasings that depend on the use of a thing: a device is not worn, a seat is not taken."""
     if _is_drawn(known, verb, rest):
         yield _DRAWN.sub(r"pull \1\2", rest)
     if verb in _PUT_ON and (match := _ON.fullmatch(rest)) and (thing := thing_of(known, match[1] or match[2])):

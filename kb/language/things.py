@@ -72,7 +72,7 @@ def bare_words(words: str) -> str:
 
 
 def _plural(words: str) -> str:
-    """One of what is known in the plural alone: a shoe."""
+    """Return the plural of a name, as some classes are named in the plural alone: a shoe."""
     return f"{words}s" if is_noun(words.rpartition(" ")[2]) else ""
 
 

@@ -42,7 +42,7 @@ _ENDINGS = tuple(
     )
 )
 _TIME = re.compile(r"\s+(?:while|whilst|when|once|as soon as|before|after|until|till) (?=\S+ ?).+$")
-"""When a step is done, or for how long."""
+"""Time of a step, or its duration."""
 
 _WITHOUT_DOING = re.compile(r"\s+without (?:[a-z]+ )?[a-z]+ing(?: .+)?$")
 _SUBORDINATE = re.compile(
@@ -87,13 +87,13 @@ _PLACE = re.compile(
 _TOWARDS = re.compile(
     r"(?:look|point|gaze|stare|glance|knock|sit|sit down|lie|lie down|type|write)(?:s|ing|ed)? (?:at|on|in) "
 )
-"""What is before the object of a step, and no place of it."""
+"""Words before the object of a step; the object is not the place of the step."""
 
 _CLEAN = re.compile(r"((?:wipe|scrub|wash|brush|rinse|dry|lick)(?:s|ed|ing|d)? .+) (clean|dry|spotless)")
 _TOOL = re.compile(r"\s+(?:with|using) (.+)$")
 _SWITCHED = re.compile(r"(?:turn|switch|power|shut|flick|start)(?:s|es|ed|ing)?\b")
 _CONTROLS = frozenset(("remote_control", "lightswitch", "button", "controller"))
-"""Things with which others are switched; with what has a switch of its own two things may be meant."""
+"""Controls of other devices; a device with a switch of its own may be meant itself."""
 
 _USING = re.compile(r"(?:use|using|with) (.+?)(?: to|,) (?=[a-z]+ )(.+)")
 _CONTENT = re.compile(
