@@ -28,7 +28,7 @@ def action_of(known: Knowledge, name: str, objects: Sequence[str], relation: str
 
 
 def _is_in(known: Knowledge, place: str, relation: str) -> bool:
-    """Return whether a thing is put in a place, not on it: in a hollow place without a top, unless the name says `on`."""
+    """Return whether a thing is put in a place: in a hollow one without a top, unless the name says `on`."""
     if relation in (*_ON, *_IN):
         return relation in _IN
     name = place.replace("_", " ")
