@@ -69,7 +69,9 @@ _ASIDE = re.compile(
 
 _SYMBOLS = re.compile(r"(?:[^\w\s\[\]<>(){}|*+•'\"’“‘…–-])+\s*")
 _KEYCAP = str.maketrans({"\ufe0f": "", "\u20e3": "."})
-_BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
+BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
+"""The beginning of a step in the syntax of programs."""
+
 LOOSE = re.compile(r"\s*\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s+([A-Za-z][\w .'-]*?)\s*")
 """A step that lacks the marks of its object, `[grab] milk`."""
 
@@ -178,7 +180,7 @@ class PlanLine(NamedTuple):
     @property
     def bracketed(self) -> bool:
         """Return whether it is a step in the syntax of programs, `[Walk] <kitchen> (1)`."""
-        return self.number is not None and _BRACKETED.match(self.text) is not None
+        return self.number is not None and BRACKETED.match(self.text) is not None
 
 
 def plan_line(raw: str) -> PlanLine:
@@ -240,11 +242,11 @@ def _line(raw: str) -> PlanLine:
     if inline:
         first = text[inline.start() :]
         return PlanLine(first[2:].lstrip(), int(first[0]), indent, numbered=True)
-    if not marked and not _BRACKETED.match(text) and CHAIN.search(text):
+    if not marked and not BRACKETED.match(text) and CHAIN.search(text):
         return PlanLine(TITLE.sub("", text, count=1), 0, indent)
     is_bold = _BOLD.fullmatch(line) is not None and _ASIDE.fullmatch(text) is None and not is_sentence(text)
     heading = marked is not None or TITLE.match(text) is not None or is_bold
-    return PlanLine(text, 0 if _BRACKETED.match(text) else None, indent, heading)
+    return PlanLine(text, 0 if BRACKETED.match(text) else None, indent, heading)
 
 
 def _unquoted(words: str) -> str:
@@ -299,7 +301,12 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     """
     is_ordered = ordered(lines)
     first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
-    found = [line for line in lines[:first] if line.text]
+    found = tuple(line for line in lines[:first] if line.text)
+    return _short_header(found) if sum(len(line.text) for line in found) <= _SHORT else _header(found)
+
+
+def _header(found: tuple[PlanLine, ...]) -> Header:
+    """Return title and description in the lines above the steps."""
     ranks = [
         (TITLE.match(line.text) is None, not line.heading, bool(META.match(line.text)), is_sentence(line.text), number)
         for number, line in enumerate(found)
@@ -317,6 +324,9 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
     title = title if named else asked_title(_ROLE.sub("", title, count=1))
     return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
+
+
+_short_header = lru_cache(maxsize=16_384)(_header)
 
 
 def asked_title(line: str) -> str:
@@ -379,7 +389,7 @@ def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
     found = list(map(plan_line, lines))
     pairs = zip(found, lines, strict=True)
-    written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and _BRACKETED.match(raw.strip())]
+    written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and BRACKETED.match(raw.strip())]
     if written:
         return all(map(LOOSE.fullmatch, written)) or any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
     steps = sum(line.number is not None for line in found)

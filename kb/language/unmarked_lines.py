@@ -24,8 +24,9 @@ _LEAD = re.compile(
     rf"|(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)(?= ?,)|um+|uh+|oh"
     r"|yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening)"
     rf"|(?:(?:over|back|down|up|out) )?(?:in|on|at|from) (?:the|my|your|our) [a-z]+(?: [a-z]+)?(?=,)"
-    rf"|er+m?|yeah|yep|well|right|alright|okay|ok|so|great|good|you know|would you be so kind as to"
-    rf"|at last|(?:could|would|can|will) you(?: mind)?|i['’]d like you to|let['’]s|do not forget to"
+    rf"|er+m?|yeah|yep|well|right|alright|okay|ok|so|great|good|you know"
+    rf"|at last|(?:could|would|can|will) you(?: mind| be so kind as to)?|if you don['’]t mind(?= ?,)"
+    rf"|i['’]d like you to|let['’]s|do not forget to"
     rf"|{_SUBJECT}(?: (?:should|must|can|will|(?:need|have|has|needs)(?: to)?|['’]ll|then|now|first|also))*"
     rf"|(?!{_NO_MANNER})[a-z]{{3,}}ly)\b[\s,:]*)+",
     re.IGNORECASE,

@@ -114,7 +114,7 @@ def _step(action: str, names: Sequence[str], relation: str = "") -> str:
     *verb, last = re.split(r"[\s_-]+", action.strip())
     if len(names) == 2 and verb and last.lower() in _BETWEEN:
         return composed(" ".join(verb), " ", names[0], f" {last} ", names[1])
-    meant = action_of(action, names, relation) if names and are_names else ""
+    meant = action_of(default(), action, names, relation) if names and are_names else ""
     if meant:
         return _written(meant, [(class_of(name), "1") for name in names])
     if len(names) == 2 and relation in _BETWEEN:
@@ -138,7 +138,7 @@ def _plain(action: str) -> str:
 
 def is_known(action: str, objects: Sequence[str] = ()) -> bool:
     """Return whether a word is the name of an action, or one that programs use for it with these objects."""
-    return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(action, objects))
+    return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(default(), action, objects))
 
 
 def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:
@@ -186,7 +186,7 @@ def steps_of_mapping(value: dict[str, Any], source: str = "") -> list[str]:
                 known = nodes.setdefault(objects[-1][0], [])
                 known += [] if name in known else [str(name)]
                 objects[-1] = (objects[-1][0], f"{known.index(name) + 1}.{name}")
-        meant = "" if _takes(action, len(objects)) else action_of(action, [name for name, _ in objects])
+        meant = "" if _takes(action, len(objects)) else action_of(default(), action, [name for name, _ in objects])
         found.append(_written(meant or action, objects))
     return found
 

@@ -4,6 +4,7 @@ import pytest
 
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.program_names import action_of, words_of
+from hearth.kb.loading.load import default
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.validate import checked
@@ -178,7 +179,7 @@ def test_it_goes_into_what_was_opened_and_along_to_where_one_walks(write, knowle
     ],
 )
 def test_names_of_programs(name, objects, relation, action):
-    assert action_of(name, objects, relation) == action
+    assert action_of(default(), name, objects, relation) == action
 
 
 def test_names_of_programs_in_words():

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 
 from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commands import COMMANDS
@@ -23,7 +24,7 @@ from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.tuples import TUPLES
 from hearth.kb.language.forms.yaml_lists import YAML
 
-__all__ = ["FORMS", "YAML", "form_of"]
+__all__ = ["FORMS", "YAML", "form_of", "form_of_line"]
 
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
@@ -63,3 +64,16 @@ def form_of(lines: Sequence[str]) -> Form | None:
     if not any(map(_HINT, lines)):
         return None
     return next((form for form in FORMS.values() if form.fits(lines)), None)
+
+
+def form_of_line(line: str) -> Form | None:
+    """Return the form that a text of one line is written in; titles of plans are asked again and again."""
+    return _form_of_short(line) if len(line) <= _SHORT else form_of([line])
+
+
+_SHORT = 200
+
+
+@lru_cache(maxsize=16_384)
+def _form_of_short(line: str) -> Form | None:
+    return form_of([line])
