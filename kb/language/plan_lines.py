@@ -76,7 +76,7 @@ LOOSE = re.compile(r"\s*\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s+([A-Za-z][\w .'-]*?)
 """A step that lacks the marks of its object, `[grab] milk`."""
 
 _DIGITS = re.compile(r"\d+")
-_CHECKBOX = re.compile(r"\[[ xX]\]\s+(?:@[\w-]+:?\s+)?")
+_CHECKBOX = re.compile(r"\[[ xX]\]\s+(?:\d{4}-\d\d-\d\d\s+){0,2}(?:@[\w-]+:?\s+)?")
 
 _LAYOUT = re.compile(
     r"\s*(?:`{3}|~{3}|(?:[-*_=]\s*){3,}$|//|<!--.*-->\s*$|@(?:start|end)uml\b|<\|im_start\|>\w*\s*$|(?:BEGIN|START)\s*$)"
@@ -99,8 +99,8 @@ _INLINE = re.compile(r"(?:^|(?<=\s))(?:0[.)]\s+\S.*?\s1|1[.)]\s+\S.*?\s2)[.)]\s+
 CHAIN = re.compile(r"\s*(?:-{1,3}>|={1,2}>|[→⟶➔➡⇒⟹➜➝])\s*")
 """Separators of the steps of a line: `walk to kitchen -> open fridge`."""
 
-_TAGGED = re.compile(r"(?:\s+[+@#][a-z][\w-]*)+$", re.IGNORECASE)
-"""Projects, people and topics behind an item of a list, `+home`."""
+TAGS = re.compile(r"(?:\s+(?:[+@#][a-z][\w-]*|[a-z]{1,10}:\d[\w-]*|pri:[a-z]))+$", re.IGNORECASE)
+"""Projects, people, topics and days behind an item of a list, `+home due:2026-11-05`."""
 
 _LABELLED = re.compile(
     r"^(?!task|title|goal|plan|step)[A-Za-z]{1,12}(?: [A-Za-z]{1,12})?:\s+(?=[01][.)]\s+\S)", re.IGNORECASE
@@ -224,7 +224,7 @@ def _line(raw: str) -> PlanLine:
     if marker and not step:
         return PlanLine(_CHECKBOX.sub("", text, count=1), 0, indent)
     if step:
-        words = _unquoted(_TAGGED.sub("", _CHECKBOX.sub("", text[step.end() :], count=1)))
+        words = _unquoted(TAGS.sub("", _CHECKBOX.sub("", text[step.end() :], count=1)))
         digits = _DIGITS.search(step["number"] or "")
         number = (
             int(digits[0])

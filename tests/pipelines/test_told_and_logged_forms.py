@@ -48,6 +48,16 @@ TEXTS = {
     ),
     "to a robot": ("a.txt", "hey robot, walk to the desk\nhey robot, find the lamp\nhey robot, switch on the lamp\n"),
     "Org mode": ("a.org", "* Light\n** TODO walk to desk\n** DONE find lamp\n** TODO switch on the lamp\n"),
+    "todo.txt": (
+        "todo.txt",
+        "x 2023-02-03 2023-02-01 walk to desk +light\n(A) 2023-02-01 find lamp @home due:2023-02-04\n"
+        "switch on the lamp pri:B\n",
+    ),
+    "tasks that are done": ("a.txt", "Light\n\nx walk to desk\nx find lamp\nx (B) switch on the lamp\n"),
+    "checked boxes with days": (
+        "a.md",
+        "- [x] 2023-02-03 walk to desk +light\n- [ ] 2023-02-03 find lamp\n- [ ] switch on the lamp due:2023-02-04\n",
+    ),
     "a game": ("a.log", ">go to desk\nYou are at the desk.\n>find lamp\nYou see a lamp.\n>switch on lamp\n"),
     "times": ("a.md", "9:00–9:10 – Walk to the desk\n9:10–9:20 – Find the lamp\n1pm: Switch on the lamp\n"),
     "pairs with colons": ("a.txt", "WALK: desk\nFIND: lamp\nTURN_ON: lamp\n"),
@@ -163,6 +173,19 @@ def test_it_goes_into_what_was_opened_and_along_to_where_one_walks(write, knowle
     text = "1. Grab the cup\n2. Walk to the sink with it\n3. Rinse it\n4. Open the cupboard and put it inside\n"
     ((_, steps, _, _),) = programs(write, knowledge, text, "a.txt")
     assert steps[2:] == ["[Rinse] <cup> (1)", "[Open] <cupboard> (1)", "[PutIn] <cup> (1) <cupboard> (1)"]
+
+
+def test_a_task_that_is_not_understood_is_a_fault(write, knowledge):
+    text = "x 2023-02-03 walk to desk\nx 2023-02-03 juggle lamp\nfrobnicate lamp\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "todo.txt")
+    assert (steps, faults) == (["[Walk] <desk> (1)"], [2, 3])
+
+
+def test_steps_of_two_agents_on_a_line_keep_their_agents(write, knowledge):
+    text = "<char0> [walk] <kitchen> (1) | <char1> [walk] <bathroom> (1)\n<char0> [open] <fridge> (1)\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "a.txt")
+    assert faults == []
+    assert "<char1> [Walk] <bathroom> (1)" in " ".join(steps)
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
 from hearth.kb.language.forms.speakers import SPEAKERS
 from hearth.kb.language.forms.tables import TABLES
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
+from hearth.kb.language.forms.todo_lists import TODO_LISTS
 from hearth.kb.language.forms.tuples import TUPLES
 from hearth.kb.language.forms.yaml_lists import YAML
 
@@ -37,6 +38,7 @@ FORMS: dict[str, Form] = {
     "PDDL": PDDL,
     "code": CODE,
     "Org mode": ORG_MODE,
+    "todo.txt": TODO_LISTS,
     "orders": ORDERS,
     "speakers": SPEAKERS,
     "outlines": OUTLINES,
@@ -50,7 +52,7 @@ FORMS: dict[str, Form] = {
 
 _HINT = re.compile(
     r".*(?:->|→|@)|\s*[A-Z][a-z]+[A-Z]|\s*(?:- )?(?:steps|plan|actions|program):|\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s"
-    r"|\s*[\[(]?\d\d?\d?\d?[-./:].{8,40}:|\s*\[?(?:INFO|DEBUG|\d{9})|[a-z]{3}\s+\d+ \d+:\d\d"
+    r"|\s*x\s|\s*[\[(]?\d\d?\d?\d?[-./:].{8,40}:|\s*\[?(?:INFO|DEBUG|\d{9})|[a-z]{3}\s+\d+ \d+:\d\d"
     r"|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|.*[│┃║&\t]|.*\S {3,}\S|[\w ]*\[|\s*<[A-Za-z]|[\w.]+\s*[{<]"
     r"|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|\s{2,}[a-z]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
