@@ -135,17 +135,19 @@ _DRAWN = re.compile(r"(?:out|up) (.+)|(.+) (?:out|up)")
 _ON = re.compile(r"on (.+)|(.+?) on")
 
 
-def phrasings(known: Knowledge, text: str) -> Iterator[str]:
+def phrasings(known: Knowledge, text: str, *, is_inflected: bool = True) -> Iterator[str]:
     """Yield other words for a clause: its verb without inflection, and the usual phrasings as Hearth says them.
 
     Args:
         known: the grammar.
         text: a clause in small letters.
+        is_inflected: whether its verb may be a form; one that reads exactly is none, and needs no lexicon.
     """
     if (match := _SWITCHED.fullmatch(text)) and (thing := thing_of(known, match[1])) and known.has(thing, _SWITCH):
         yield f"switch {match[2]} {thing.replace('_', ' ')}"
     first, _, rest = text.partition(" ")
-    for verb in (first, *(lemma for lemma in verb_lemmas(first) if lemma != first)):
+    lemmas = verb_lemmas(first) if is_inflected else ()
+    for verb in (first, *(lemma for lemma in lemmas if lemma != first)):
         if verb != first:
             yield f"{verb} {rest}".rstrip()
         for pattern, phrase in _PHRASINGS.get(verb, ()):

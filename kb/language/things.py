@@ -1,6 +1,7 @@
 """Things in words: the class that a noun phrase is, as `both plates`, `the fridge door`, `the milk in the fridge`."""
 
 import re
+from collections.abc import Iterator
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
@@ -53,17 +54,24 @@ def thing_of(known: Knowledge, words: str) -> str | None:
 
 
 def _named(known: Knowledge, words: str) -> str | None:
-    plain = _without(_DETERMINERS, words.removeprefix("of "))
-    bare = _bare(plain)
-    single = plain.replace("'s ", " ").replace("’s ", " ")
-    owned = _without(_OWNER, plain)
-    names = (words, bare, *_singular(bare), single, _bare(owned) if owned != plain else "", _plural(bare))
-    for name in names:
+    for name in _names(words):
         if name and (thing := known.object_class(name)):
             return thing.name
-    part = _PARTS.fullmatch(bare)
+    part = _PARTS.fullmatch(bare_words(words))
     thing = known.object_class(part[1] or part[2]) if part else None
     return thing.name if thing and known.has(thing.name, _OPENED) else None
+
+
+def _names(words: str) -> Iterator[str]:
+    """Yield the names that some words may be, the likeliest first; only the later ones need the lexicon."""
+    plain = _without(_DETERMINERS, words.removeprefix("of "))
+    bare = _bare(plain)
+    yield from (words, bare)
+    yield from _singular(bare)
+    yield plain.replace("'s ", " ").replace("’s ", " ")
+    owned = _without(_OWNER, plain)
+    yield _bare(owned) if owned != plain else ""
+    yield _plural(bare)
 
 
 def bare_words(words: str) -> str:

@@ -108,21 +108,22 @@ def understand_exactly(knowledge: Knowledge, sentence: str) -> Understood:
     cleaned = _cleaned(sentence)
     exact = _exact(knowledge, cleaned)
     if not exact or not _afforded(knowledge, (exact[0].action, exact[0].names)):
-        otherwise = _exact_otherwise(knowledge, cleaned)
+        otherwise = _exact_otherwise(knowledge, cleaned, is_inflected=not exact)
         if not exact or (otherwise.meant and _afforded(knowledge, (otherwise.meant.action, otherwise.meant.names))):
             return otherwise
     return Understood(exact[0], exact)
 
 
-def _exact_otherwise(knowledge: Knowledge, text: str) -> Understood:
+def _exact_otherwise(knowledge: Knowledge, text: str, *, is_inflected: bool = True) -> Understood:
     """The reading of a sentence by its inflections and usual phrasings; several where its places may be either's."""
-    sure = [parse for parse in _readings(knowledge, text) if _afforded(knowledge, parse)]
-    found = tuple(Candidate(1.0, *parse) for parse in sure or _readings(knowledge, text))[:_SHOWN]
+    read = _readings(knowledge, text, is_inflected=is_inflected)
+    sure = [parse for parse in read if _afforded(knowledge, parse)]
+    found = tuple(Candidate(1.0, *parse) for parse in sure or read)[:_SHOWN]
     is_sure = len({each.action.arity for each in found}) < 2 and len({each.names for each in found}) < 2
     return Understood(found[0] if found and is_sure else None, found, bool(found) and not is_sure)
 
 
-def _readings(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
+def _readings(knowledge: Knowledge, text: str, *, is_inflected: bool = True) -> tuple[Parse, ...]:
     """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first.
 
     Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings, and
@@ -130,15 +131,20 @@ def _readings(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """
     unlikely: tuple[Parse, ...] = ()
     first = text.partition(" ")[0]
-    lemmas = (first, *verb_lemmas(first))
-    verbs = {*lemmas, *(_OTHERWISE[verb] for verb in lemmas if verb in _OTHERWISE)}
-    for phrasing in (text, *phrasings(knowledge, text)):
+    for phrasing in (text, *phrasings(knowledge, text, is_inflected=is_inflected)):
         found = (_with_things(knowledge, parse) for parse in _acts(knowledge, phrasing))
         read = tuple(dict.fromkeys(parse for parse in found if parse))
         if any(_afforded(knowledge, parse) for parse in read):
             return read
-        unlikely = unlikely or (read if phrasing.partition(" ")[0] in verbs else ())
+        if read and not unlikely and _is_same_verb(first, phrasing.partition(" ")[0]):
+            unlikely = read
     return unlikely[:1]
+
+
+def _is_same_verb(said: str, verb: str) -> bool:
+    """Return whether a verb is the one that was said, or one that means no other act; forms need the lexicon."""
+    lemmas = (said,) if verb in (said, _OTHERWISE.get(said)) else (said, *verb_lemmas(said))
+    return verb in lemmas or verb in map(_OTHERWISE.get, lemmas)
 
 
 def _with_things(knowledge: Knowledge, parse: Parse) -> Parse | None:

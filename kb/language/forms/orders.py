@@ -69,7 +69,7 @@ def _who(lines: Sequence[str], is_step: Callable[[str], bool]) -> str:
     if sum(":" in line or ">" in line for line in texts) < _SHARE * len(texts):
         return ""
     said = [each for each in map(said_of, texts) if each and each.who]
-    if len(said) < _SHARE * len(texts):
+    if len(said) < max(_FEWEST, _SHARE * len(texts)):
         return ""
     lines_of, orders = (
         Counter(each.who for each in said),
