@@ -27,11 +27,11 @@ _OPENINGS = (
     r"(?:firstly|secondly|thirdly|fourthly|fifthly|lastly|finally)",
     r"after (?:that|this|which)|once (?:that is )?done|from there|at last|in the end",
     r"as a (?:first|next|last|final) step",
-    r"then|next|first|now|please|kindly|just|simply|and|afterwards|also|ok|okay|so",
+    r"then|next|first|now|please|kindly|just|simply|maybe|perhaps|and|afterwards|also|ok|okay|so",
 )
 _OPENING = re.compile(rf"(?:{'|'.join(_OPENINGS)})(?:\b|(?<=[,:]))[\s,]*", re.IGNORECASE)
 _CLOSING = re.compile(
-    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|would you|will you|love|dear|mate|darling|honey"
+    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|already|right away|at once|would you|will you|love|dear|mate|darling|honey"
     r"|if you (?:can|please|would|like)|if possible|for me))+$",
     re.IGNORECASE,
 )
@@ -40,7 +40,7 @@ _MARKS = re.compile(r"[^\w\s)\]>'’\"”%?]+$")
 _FIRST = frozenset(
     [
         *("i", "you", "he", "she", "we", "they", "one", "the", "a", "our", "my", "your"),
-        *("yesterday", "today", "tonight", "this", "if"),
+        *("yesterday", "today", "tonight", "this", "if", "maybe", "perhaps"),
         *("hey", "hi", "hello", "robot", "bot", "alexa", "siri", "jarvis", "um", "umm", "uh", "uhh", "oh"),
         *("could", "can", "would", "will", "want", "let", "go", "make", "be", "remember", "start", "begin"),
         *("first", "second", "third", "fourth", "fifth", "sixth", "last", "final"),

@@ -108,6 +108,9 @@ _LABELLED = re.compile(
 """Who answers, or what, before the first step of a list: `Robot: 1. walk to desk`."""
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
+COMMENT = re.compile(r"\s+(?://|#)\s+\S.*$")
+"""A remark behind a step, after `//` or `#`."""
+
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
 _EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
 _ANSWER = re.compile(
@@ -224,7 +227,7 @@ def _line(raw: str) -> PlanLine:
     if marker and not step:
         return PlanLine(_CHECKBOX.sub("", text, count=1), 0, indent)
     if step:
-        words = _unquoted(TAGS.sub("", _CHECKBOX.sub("", text[step.end() :], count=1)))
+        words = _unquoted(TAGS.sub("", COMMENT.sub("", _CHECKBOX.sub("", text[step.end() :], count=1))))
         digits = _DIGITS.search(step["number"] or "")
         number = (
             int(digits[0])
