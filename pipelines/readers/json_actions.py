@@ -35,9 +35,15 @@ def is_action(value: Any) -> bool:
 
 
 def is_tool_use(value: Any) -> bool:
-    """Return whether a value is a call of a tool as parts of messages hold it, with a name and an input."""
-    is_call = isinstance(value, dict) and value.get("type") in _TOOL_USES
-    return is_call and isinstance(value.get("name"), str) and any(key in value for key in _INPUTS)
+    """Return whether a value is a call of a tool as parts of messages hold it, with a name and an input.
+
+    Without a `type` it has no other key than these and an `id`, and its input is an object.
+    """
+    if not isinstance(value, dict) or not isinstance(value.get("name"), str):
+        return False
+    given = [value[key] for key in _INPUTS if key in value]
+    is_bare = len(given) == 1 and isinstance(given[0], dict) and value.keys() <= {"name", "id", *_INPUTS}
+    return bool(given) and (value.get("type") in _TOOL_USES or is_bare)
 
 
 _TOOL_USES = ("tool_use", "tool_call", "function_call")
