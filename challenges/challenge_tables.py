@@ -25,7 +25,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tables import comment_of, struct
-from hearth.storage.databases import limited, open_database, pattern_of, quoted
+from hearth.storage.databases import limited, open_database, quoted, without_patterns
 from hearth.storage.files import read_json, value_digest, write_bytes
 from hearth.storage.manifest import NAME, describe
 from hearth.storage.names import inside
@@ -138,7 +138,7 @@ class ChallengeData(Dataset):
                 raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(path), suggestion=remedy)
         with reading(self.folder):
             connection = open_database()
-            connection.execute(_sql(f"{pattern_of(self.folder.resolve())}/"))
+            connection.execute(_sql(f"{without_patterns(self.folder)}/"))
             return limited(connection, root)
 
     @cached_property

@@ -9,7 +9,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import absent_tables, earlier, reading
 from hearth.datasets.format.ids import OURS
 from hearth.schemas.tables import KEYS, TABLES
-from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted
+from hearth.storage.databases import identifier, limited, open_database, quoted, without_patterns
 
 MORE = {"repairs": ("parent_id", "home", "perturbations")}
 """Further key columns in format 1, where repairs that led to no program have no environment."""
@@ -79,7 +79,7 @@ def _table(connection: Any, table: str, both: tuple[Dataset, Dataset], limit: in
     for name, dataset in zip("ab", both, strict=True):
         there = any((dataset.folder / table).glob("*.parquet"))  # else it is of a version without the table
         format = dataset.manifest["format"]
-        files = reading(table, format, f"{pattern_of(dataset.folder.resolve())}/")
+        files = reading(table, format, f"{without_patterns(dataset.folder)}/")
         there = there or "query" in earlier(format).get(table, {})
         rows = connection.sql(f"FROM {files}") if there else connection.from_arrow(TABLES[table].empty_table())
         rows.project(", ".join(map(_current, rows.columns))).create_view(name)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import glob
 import os
 from collections.abc import Mapping
+from functools import lru_cache
 from itertools import count
 from pathlib import Path
 from types import MappingProxyType
@@ -64,13 +65,15 @@ def _settings() -> dict[str, Any]:
 
 
 def _spill_folder() -> str:
-    """Return the path of a folder that no other database has; DuckDB makes it when it spills, and removes it.
+    """Return the path of a folder that no other database has; DuckDB makes it when it spills, and removes it."""
+    return str(_aside("sql"))
 
-    It lies in the temporary folder of this process and its workers, which others cannot read and which goes at exit.
-    """
+
+def _aside(name: str) -> Path:
+    """Return a new path in the temporary folder of this process, which others cannot read and which goes at exit."""
     from multiprocessing.util import get_temp_dir
 
-    return str(Path(get_temp_dir()).resolve() / f"sql-{os.getpid()}-{next(_numbers)}")
+    return Path(get_temp_dir()).resolve() / f"{name}-{os.getpid()}-{next(_numbers)}"
 
 
 def memory_limit() -> int:
@@ -98,6 +101,21 @@ def quoted(text: str) -> str:
 def identifier(name: str) -> str:
     """Return a name as SQL has it."""
     return '"' + name.replace('"', '""') + '"'
+
+
+@lru_cache(maxsize=1024)
+def without_patterns(folder: Path) -> str:
+    """Return a path of the folder that has no pattern in it: its own, or that of a link of ours to it.
+
+    A connection that is `limited` to the folder takes both. A pattern for the folder would let `glob` follow links
+    that lead out of it.
+    """
+    whole = str(folder.resolve())
+    if pattern_of(whole) == whole:
+        return whole
+    link = _aside("folder")
+    link.symlink_to(whole)
+    return str(link)
 
 
 def pattern_of(path: Path | str) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_extent import packaged
-from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted
+from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted, without_patterns
 from hearth.storage.files import replacing, write_bytes
 from hearth.storage.manifest import FORMAT
 
@@ -134,7 +134,7 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remem
     connection = open_database()
     connection.execute(f"SET parquet_metadata_cache = {remembers}")
     connection.execute("SET enable_external_file_cache = false")  # the system keeps files in memory, once for all
-    define(connection, folder, absent, format)
+    define(connection, Path(without_patterns(folder)), absent, format)
     return limited(connection, f"{folder.resolve()}/")
 
 
@@ -150,7 +150,7 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
     """
     from hearth.schemas.tables import TABLES
 
-    text = statements(f"{pattern_of(folder.resolve())}/")
+    text = statements(f"{pattern_of(folder)}/")
     for table in TABLES:
         here = reading(table, format)
         if table in absent and here == _reading(table):
@@ -188,7 +188,7 @@ def define_as(connection: Any, name: str, folder: Path, absent: Sequence[str] = 
     connection.execute(f"ATTACH ':memory:' AS {identifier(name)}")
     try:
         connection.execute(f"USE {identifier(name)}")
-        define(connection, folder, absent, format, name)
+        define(connection, folder.resolve(), absent, format, name)
     except duckdb.Error:
         connection.execute(f"USE {'.'.join(map(identifier, used))}")
         connection.execute(f"DETACH {identifier(name)}")
