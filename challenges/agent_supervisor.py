@@ -1,8 +1,8 @@
 """A process between Hearth and an agent of others: what the agent starts ends with it, wherever it went.
 
 It is run as a script: `python -I -S agent_supervisor.py DESCRIPTOR COMMAND...`. Linux gives it every process of the
-agent whose parent has ended (`PR_SET_CHILD_SUBREAPER`), those with a session of their own too. DESCRIPTOR is a pipe that
-gets the number of the error where the command cannot be started. Its exit status is that of the agent.
+agent whose parent has ended (`PR_SET_CHILD_SUBREAPER`), those with a session of their own too. DESCRIPTOR is a pipe
+that gets the number of the error where the command cannot be started. Its exit status is that of the agent.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class _Asked(BaseException):
 def adopts_orphans() -> bool:
     """Return whether this system gives orphans of descendants to this process, from now on."""
     try:
-        return ctypes.CDLL(None, use_errno=True).prctl(_SUBREAPER, 1, 0, 0, 0) == 0
+        return bool(ctypes.CDLL(None, use_errno=True).prctl(_SUBREAPER, 1, 0, 0, 0) == 0)
     except (OSError, AttributeError, TypeError):
         return False
 
@@ -64,7 +64,9 @@ def end_all(patience: float = PATIENCE) -> None:
 def _started(words: list[str], faults: int) -> int:
     """Start the agent, and leave its pipes to it alone; return its process."""
     try:
-        process = os.posix_spawnp(words[0], words, os.environ, setsigdef=[signal.SIGTERM, signal.SIGINT, signal.SIGPIPE])
+        process = os.posix_spawnp(
+            words[0], words, os.environ, setsigdef=[signal.SIGTERM, signal.SIGINT, signal.SIGPIPE]
+        )
     except (OSError, ValueError) as error:
         os.write(faults, str(getattr(error, "errno", None) or 22).encode())
         os._exit(127)

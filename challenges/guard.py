@@ -126,7 +126,7 @@ def _fault_of(error: BaseException) -> Diagnostic:
 
 def _name_of(error: BaseException) -> str:
     try:
-        return str(type.__dict__["__name__"].__get__(type(error)))[:300]  # type: ignore[attr-defined]
+        return str(type.__dict__["__name__"].__get__(type(error)))[:300]
     except _FAULTS:
         return "an exception without a name"
 

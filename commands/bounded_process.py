@@ -14,6 +14,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from multiprocessing.util import get_temp_dir
+from pathlib import Path
 
 GRACE = 3.0
 """Seconds that a command has to end by itself, after its time is up or a signal came."""
@@ -27,7 +28,7 @@ def bound_memory(most: int) -> None:
     try:
         import resource
 
-        with open("/proc/self/status", encoding="ascii") as lines:
+        with Path("/proc/self/status").open(encoding="ascii") as lines:
             taken = next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmData:"))
     except (ImportError, OSError, StopIteration):  # no Linux
         return

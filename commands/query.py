@@ -11,6 +11,7 @@ import typer
 
 from hearth.commands import output
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.terminal import shown_json
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
@@ -73,7 +74,7 @@ def _document(dataset: Dataset, text: str) -> None:
     begun = False
     try:
         for piece in document(dataset, text):
-            sys.stdout.write(piece)
+            sys.stdout.write(shown_json(piece))
             begun = True
     except HearthError as error:
         if not begun:
@@ -88,7 +89,7 @@ def _table(dataset: Dataset, text: str, rows: int) -> None:
     more = bool(rows) and len(found) > rows
     output.table(columns, ([_cell(cell) for cell in row] for row in (found[:rows] if more else found)))
     if more:
-        print(f"... more than {rows:,} rows; --rows 0 prints all")
+        output.line(f"... more than {rows:,} rows; --rows 0 prints all")
 
 
 def _write(dataset: Dataset, text: str, files: Sequence[Path | None], separator: str) -> bool:

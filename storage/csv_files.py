@@ -9,6 +9,7 @@ from typing import IO
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.terminal import BIDIRECTIONAL
 from hearth.storage.input_files import LARGEST, read_input
 
 LONGEST = 131_072
@@ -23,7 +24,9 @@ def delimiter_of(line: str) -> str:
 
 
 _RUNS = ("=", "+", "-", "@", "\t", "\r")
-_UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\t\n\r"}
+_UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\t\n\r"} | {
+    code: f"\\u{code:04x}" for code in BIDIRECTIONAL
+}
 
 
 def safe_cell(text: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import time
@@ -28,9 +27,9 @@ if os.fork() == 0:
         time.sleep(99)
     os._exit(0)
 os.wait()""",
-    "deaf": f"""
+    "deaf": """
 p = subprocess.Popen([sys.executable, '-c', 'import signal, time; signal.signal(15, signal.SIG_IGN); time.sleep(99)'],
-                     start_new_session=True, env={{}})
+                     start_new_session=True, env={})
 print(p.pid, flush=True)""",
     "stopped": f"p = subprocess.Popen({SLEEP}, start_new_session=True); p.send_signal(19); print(p.pid, flush=True)",
     "with no pipe": f"""
@@ -109,7 +108,7 @@ def test_keys_tokens_and_salts_stay_here(monkeypatch):
 
 @pytest.mark.parametrize("argv", [["no-such-agent"], [""], ["/"], ["a\0b"], [str(Path(__file__))]])
 def test_what_cannot_be_started_is_said(argv):
-    before = len(os.listdir("/proc/self/fd")) if sys.platform == "linux" else 0
+    before = len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
     with pytest.raises(HearthError, match="can't be started"):
         ProcessChannel(argv)
-    assert sys.platform != "linux" or len(os.listdir("/proc/self/fd")) == before
+    assert sys.platform != "linux" or len(list(Path("/proc/self/fd").iterdir())) == before

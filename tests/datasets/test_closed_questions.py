@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import signal
 import subprocess
@@ -45,7 +44,8 @@ def ground(made, tmp_path, monkeypatch):
 
 
 PLACES = (
-    ".tmp/secret.csv", "tmp/secret.csv", "temp/secret.csv", "catalog.duckdb.tmp/secret.csv", "./.tmp/../.tmp/secret.csv",
+    ".tmp/secret.csv", "tmp/secret.csv", "temp/secret.csv", "catalog.duckdb.tmp/secret.csv",
+    "./.tmp/../.tmp/secret.csv",
     "../guard/secret.csv", "{root}/here/.tmp/secret.csv", "{root}/asked/.tmp/secret.csv", "{root}/asked/link.csv",
     "{root}/asked/catalog.duckdb.tmp/secret.csv", "{root}/asked/../guard/secret.csv", "{root}/guard/secret.csv",
     "{root}/asked//..//guard//secret.csv", "{root}/asked/programs/part-9.parquet", "~/.duckdb/secret.csv",
@@ -70,7 +70,7 @@ def test_no_path_leads_out(ground, reader):
 
 STATEMENTS = (
     "COPY (SELECT 1) TO '{root}/guard/x.csv'", "ATTACH '{root}/guard/x.duckdb' AS x", "INSTALL httpfs", "LOAD httpfs",
-    "FORCE INSTALL httpfs FROM community", "PRAGMA temp_directory='{root}/guard'", "SET temp_directory = '{root}/guard'",
+    "FORCE INSTALL httpfs FROM community", "PRAGMA temp_directory='{root}'", "SET temp_directory = '{root}/guard'",
     "SET GLOBAL allowed_directories = ['/']", "RESET lock_configuration", "SET secret_directory = '{root}/guard'",
     "SET VARIABLE x = 1", "PREPARE x AS SELECT 1", "EXECUTE x", "CREATE MACRO m() AS TABLE FROM read_text('.tmp/*')",
     "CREATE SECRET s (TYPE s3)", "EXPORT DATABASE '{root}/guard'", "IMPORT DATABASE '{root}/guard'",
@@ -109,7 +109,7 @@ def test_no_setting_names_a_folder_of_the_person_who_asks(ground):
 def test_spilled_rows_lie_in_a_folder_of_ours_that_goes(tmp_path):
     with open_database(settings={"memory_limit": "100MB", "threads": 1}) as connection:
         (aside,) = connection.execute("SELECT current_setting('temp_directory')").fetchone()
-        assert os.stat(Path(aside).parent).st_mode & 0o77 == 0
+        assert Path(aside).parent.stat().st_mode & 0o77 == 0
         query = "SELECT count(*) FROM (SELECT range, random() AS r FROM range(8000000) ORDER BY r)"
         assert connection.execute(query).fetchone() == (8_000_000,)
     assert not Path(aside).exists()
