@@ -39,7 +39,7 @@ def emit(value: Any) -> None:
 
 
 def write(file: Path, value: Any) -> None:
-    """Write what `emit` prints into a file."""
+    """Write the output of `emit` into a file."""
     from hearth.storage.files import write_bytes
 
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -78,7 +78,7 @@ def say(text: str, document: Any, as_json: bool) -> None:
 
 
 def note(text: str) -> None:
-    """Print information about the work itself, beside its result."""
+    """Print information about the work itself, apart from its result."""
     line(text, file=sys.stderr)
 
 
@@ -180,7 +180,7 @@ def _one_line(message: str) -> str:
 
 
 def _window(source: str, column: int) -> tuple[str, int]:
-    """The part of a long line around `column` (from 1), and the column within it."""
+    """Return the part of a long line around `column` (from 1), and the column within it."""
     shown = "".join(char if char.isprintable() else " " for char in source)
     start = column - 1 - _AROUND if column - 1 > _SHOWN - _AROUND else 0
     start = max(0, start)

@@ -16,7 +16,7 @@ from hearth.web.security import HEADERS
 
 
 class _Protocol(H11Protocol):
-    """Answers what is not HTTP with the headers of every other answer."""
+    """A protocol that answers requests that are not HTTP with the headers of every other answer."""
 
     def send_400_response(self, msg: str) -> None:
         headers = [(name.encode(), value.encode()) for name, value in HEADERS.items()]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from hearth.challenges import agent_process
-from hearth.challenges.channels import ProcessChannel
+from hearth.challenges.agent_channels import ProcessChannel
 from hearth.schemas.diagnostics import HearthError
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux gives orphans to a process of ours")
@@ -78,7 +78,7 @@ def test_what_is_left_of_an_agent_that_ended_ends_without_being_asked():
 def test_agents_end_with_hearth():
     code = f"""
 import time, sys
-from hearth.challenges.channels import ProcessChannel
+from hearth.challenges.agent_channels import ProcessChannel
 c = ProcessChannel([sys.executable, '-c', '''import os, subprocess, sys, time
 {STARTS["in a session"]}
 time.sleep(99)'''])

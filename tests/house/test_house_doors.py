@@ -40,7 +40,7 @@ PRINTED = {
     ("cli.py", "typer.echo"): "our version",
     ("storage/csv_files.py", "csv.writer"): "the one guarded writer, `rows_writer`",
     ("pipelines/engine/progress.py", "self._console.print"): "through `shown`, as commands are out of its reach",
-    ("commands/model_shown.py", "console.print"): "two columns in color, through `shown`",
+    ("commands/model_output.py", "console.print"): "two columns in color, through `shown`",
 }
 """Calls that put text out without `output.line` or `rows_writer`, by file, with the reason."""
 
