@@ -24,7 +24,7 @@ SPARE = 2**30
 
 
 def bound_memory(most: int) -> None:
-    """Let this process take no more than so many bytes beyond what it has, where the system can hold it to that."""
+    """Bound the bytes that this process may take beyond what it has, where the system can hold it to that."""
     try:
         import resource
 
