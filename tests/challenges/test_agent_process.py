@@ -26,7 +26,8 @@ if os.fork() == 0:
         print(os.getpid(), flush=True)
         time.sleep(99)
     os._exit(0)
-os.wait()""",
+os.wait()
+time.sleep(1)  # the other one has said its number by then""",
     "deaf": """
 p = subprocess.Popen([sys.executable, '-c', 'import signal, time; signal.signal(15, signal.SIG_IGN); time.sleep(99)'],
                      start_new_session=True, env={})
