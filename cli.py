@@ -170,7 +170,7 @@ class Commands(TyperGroup):
         except KeyboardInterrupt as stop:
             kept = ctx.invoked_subcommand in COMMANDS["Make a dataset"]
             after = " Complete parts are kept: the same command continues from there." if kept else ""
-            print(f"Stopped.{after}", file=sys.stderr)
+            sys.stderr.write(f"Stopped.{after}\n")
             raise typer.Exit(TERMINATED if isinstance(stop, Terminated) else STOPPED) from None
         except Exception as error:
             if ctx.params.get("debug") or _is_of_typer(error):
@@ -204,9 +204,7 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
         faults = (_of_the_machine(error),)
     else:
         what = f"{type(error).__name__}: {error}"
-        print(
-            f"An error in Hearth, not in your input: {what}\n`--debug` before the command shows where.", file=sys.stderr
-        )
+        output.note(f"An error in Hearth, not in your input: {what}\n`--debug` before the command shows where.")
         raise typer.Exit(output.BAD_INPUT) from error
     if as_json:
         output.emit({"errors": faults})

@@ -67,14 +67,14 @@ def program(
         output.emit({**facts, **made})
     else:
         note = place.note(home)
-        print(note, end="\n" if note else "")
-        print(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
+        output.line(note, end="\n" if note else "")
+        output.line(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
         if "shows" in made:
-            print(_shown(made["shows"]))
+            output.line(_shown(made["shows"]))
         for page in made.get("pages", ()):
-            print(f"Open {page} in a browser.")
+            output.line(f"Open {page} in a browser.")
         if failure:
-            print(f"Stopped: {failure}")
+            output.line(f"Stopped: {failure}")
     output.status(failure is not None, strict=True)
 
 
@@ -288,15 +288,15 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
     if as_json:
         output.emit({"programs": programs, **share._asdict(), "unseen": missed})
         return
-    print(
+    output.line(
         f"{share.shown:.1%} of the steps of {programs} programs are shown: one recognises the person and the objects,"
     )
-    print("which cover at least 1.5 % and 0.1 % of the chosen picture and are less than half hidden.")
-    print(f"{share.steps} steps name objects. All of these are visible to the chosen camera in")
-    print(
+    output.line("which cover at least 1.5 % and 0.1 % of the chosen picture and are less than half hidden.")
+    output.line(f"{share.steps} steps name objects. All of these are visible to the chosen camera in")
+    output.line(
         f"{share.chosen:.1%} of the steps, to it or from above in {share.either:.1%}; and in {share.open_:.1%} of the"
     )
-    print("steps without an object in a closed container.")
+    output.line("steps without an object in a closed container.")
     output.table(("program", "tick", "not visible"), missed)
 
 

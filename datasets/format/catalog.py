@@ -13,6 +13,7 @@ from typing import Any
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_extent import packaged
+from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted, without_patterns
 from hearth.storage.files import replacing, write_bytes
 from hearth.storage.manifest import FORMAT
 
@@ -69,11 +70,6 @@ def describe(connection: Any) -> None:
             connection.execute(statement)
 
 
-def quoted(text: str) -> str:
-    """A text as SQL has it."""
-    return "'" + text.replace("'", "''") + "'"
-
-
 def _reading(table: str, root: str = "") -> str:
     folder = quoted(root) if root else "dataset_folder()"
     return f"read_parquet({folder} || '{table}/*.parquet')"
@@ -122,22 +118,12 @@ def make_catalog(path: Path, folder: Path, sql: str) -> None:
         link = Path(aside) / "dataset"
         link.symlink_to(folder.resolve())
         try:
-            with duckdb.connect(str(path)) as connection:
+            with open_database(path) as connection:
                 connection.execute(f"SET file_search_path = '{link}'")
                 connection.execute(sql)
                 connection.execute("CHECKPOINT")  # closing does the same, but says nothing of a full disk
         except (duckdb.IOException, duckdb.FatalException) as error:
             raise OSError(errno.EIO, str(error).split("\n", 1)[0], str(path)) from error
-
-
-_CLOSED = (
-    "autoinstall_known_extensions = false",
-    "autoload_known_extensions = false",
-    "python_enable_replacements = false",
-    "enable_external_access = false",
-    "lock_configuration = true",
-)
-"""Settings that keep queries from other files, the network and Python's variables; the last one locks them."""
 
 
 def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remembers: bool = True) -> Any:
@@ -151,12 +137,10 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remem
         format: of the dataset.
         remembers: whether footers of files stay in memory.
     """
-    import duckdb
-
-    connection = duckdb.connect()
+    connection = open_database()
     connection.execute(f"SET parquet_metadata_cache = {remembers}")
     connection.execute("SET enable_external_file_cache = false")  # the system keeps files in memory, once for all
-    define(connection, folder, absent, format)
+    define(connection, Path(without_patterns(folder)), absent, format)
     return limited(connection, f"{folder.resolve()}/")
 
 
@@ -172,7 +156,7 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
     """
     from hearth.schemas.tables import TABLES
 
-    text = statements(f"{folder.resolve()}/")
+    text = statements(f"{pattern_of(folder)}/")
     for table in TABLES:
         here = reading(table, format)
         if table in absent and here == _reading(table):
@@ -210,25 +194,12 @@ def define_as(connection: Any, name: str, folder: Path, absent: Sequence[str] = 
     connection.execute(f"ATTACH ':memory:' AS {identifier(name)}")
     try:
         connection.execute(f"USE {identifier(name)}")
-        define(connection, folder, absent, format, name)
+        define(connection, folder.resolve(), absent, format, name)
     except duckdb.Error:
         connection.execute(f"USE {'.'.join(map(identifier, used))}")
         connection.execute(f"DETACH {identifier(name)}")
         raise
     connection.execute(f"USE {'.'.join(map(identifier, used))}")
-
-
-def identifier(name: str) -> str:
-    """A name as SQL has it."""
-    return '"' + name.replace('"', '""') + '"'
-
-
-def limited(connection: Any, *roots: str) -> Any:
-    """The connection, which reaches these folders only from now on."""
-    connection.execute(f"SET allowed_directories = [{', '.join(map(quoted, roots))}]")
-    for setting in _CLOSED:
-        connection.execute(f"SET {setting}")
-    return connection
 
 
 def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
