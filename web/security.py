@@ -62,10 +62,17 @@ class Security:
             return WebError(Code.NOT_ALLOWED, "Host", "this server's name", host[:100])
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
-        scheme = "http" if _name(f"//{host}") in OWN else "https"
-        if changes and origin is not None and origin != f"{scheme}://{host}":
+        if changes and origin is not None and origin != f"{scheme_of(host)}://{host}":
             return WebError(Code.NOT_ALLOWED, "Origin", "a page of this server", origin[:100])
+        site = headers.get("sec-fetch-site", "none")
+        if changes and site not in ("same-origin", "none"):
+            return WebError(Code.NOT_ALLOWED, "Sec-Fetch-Site", "a page of this server", site[:100])
         return None
+
+
+def scheme_of(host: str) -> str:
+    """The scheme by which people ask for a host: https where it is not this machine's own name."""
+    return "http" if _name(f"//{host}") in OWN else "https"
 
 
 def _name(address: str) -> str:

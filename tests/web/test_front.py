@@ -66,7 +66,8 @@ def test_a_session_begins_returns_by_its_link_and_is_deleted(server):
     link = f"/come/{person.cookies['hearth']}"
     assert link in person.get("/mine").text
     other = server.client()
-    assert other.get(link).status_code == 303 and other.get("/mine").status_code == 200
+    assert other.get(link).headers["location"] == "/come" and other.get("/mine").status_code == 401
+    assert other.post("/come").status_code == 303 and other.get("/mine").status_code == 200
     assert other.post("/mine/delete").status_code == 303
     assert person.get("/mine").status_code == 401 and server.client().get(link).status_code == 401
 

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import contextlib
 import math
-import threading
 import time
 from collections import OrderedDict
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from hearth.challenges.channels import Listener
+from hearth.challenges.channels import SocketChannel
 from hearth.challenges.guard import AgentError
 from hearth.challenges.wire import WireAgent
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.web.deadlines import BoundedLock
 from hearth.web.play import game_store
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
+from hearth.web.play.program_door import ProgramDoor, program_door
 from hearth.web.play.presence import AWAITED, HERE, presence, signs
 from hearth.web.play.trials import PROGRAM
 from hearth.web.store import Store
@@ -45,23 +46,25 @@ class LiveGame:
         game: as far as this process knows it.
         lock: held by whoever works with `game`.
         port: where the helper's program is waited for; 0 if it is not.
+        seen: when a page of it was open last, by `time.monotonic`.
     """
 
     def __init__(self, store: Store, stored: Stored, knowledge: Knowledge) -> None:
         self.store, self.stored = store, stored
         self.game = Game(stored.trial, knowledge)
-        self.lock = threading.RLock()
+        self.lock = BoundedLock("this game")
         self.waiting_since = 0.0
         self.decided: tuple[int, ...] = ()
         self.signs: dict[int, float] = {}
         self._drawn: dict[int, DrawnGame] = {}
-        self._listener: Listener | None = None
+        self.seen = time.monotonic()
+        self._door: ProgramDoor | None = None
         self._program: WireAgent | None = None
 
     @property
     def port(self) -> int:
         """Where the helper's program is waited for; 0 if it is not."""
-        return self._listener.port if self._listener is not None else 0
+        return self._door.port if self._door is not None and not self._door.closed else 0
 
     @property
     def characters(self) -> int:
@@ -177,32 +180,41 @@ class LiveGame:
                 self.store.write(lambda connection: game_store.decide(connection, turn, late))
             self._after()
 
-    def listen(self) -> int:
-        """Wait for the helper's program on a port of this machine (docs/examples/agents.md); the port."""
+    def listen(self) -> tuple[int, str]:
+        """Wait for the helper's program on a port of this machine (docs/examples/agents.md); the port, and its token.
+
+        Port 0 where the game has no program, is over, or too many games of this process have ports.
+        """
         with self.lock:
             if self.game.trial.helper != PROGRAM or self.game.over:
-                return 0
-            if self._listener is None:
-                self._listener = Listener()
-                threading.Thread(target=self._accept, args=(self._listener,), daemon=True).start()
-            return self._listener.port
+                return 0, ""
+            if self._door is None or self._door.closed:
+                self._door = program_door(self)
+            return (self._door.port, self._door.token) if self._door else (0, "")
 
-    def _accept(self, listener: Listener) -> None:
-        """Take the programs that connect, one after the other; the last that came is the helper."""
-        while self._listener is listener:
-            with contextlib.suppress(HearthError, OSError):
-                channel = listener.accept(1.0)
-                with self.lock:
-                    self._let_go()
-                    self._program = WireAgent(channel, PROGRAM_WITHIN, limit=self.game.playing.limit)
-                    self.sync().use(self._program)
+    def wants_program(self) -> bool:
+        """Whether the game goes on, so that its port stays open."""
+        try:
+            with self.lock:
+                return not self.sync().over
+        except WebError:  # it was deleted
+            return False
+        except HearthError:  # the store is busy
+            return True
+
+    def take_program(self, channel: SocketChannel) -> None:
+        """Let a program that has shown the token be the helper; the last that came is."""
+        with self.lock:
+            self._let_go()
+            self._program = WireAgent(channel, PROGRAM_WITHIN, limit=self.game.playing.limit)
+            self.sync().use(self._program)
 
     def close(self) -> None:
-        """Let go of the helper's program."""
+        """Let go of the helper's program, and close its port."""
         with self.lock:
-            listener, self._listener = self._listener, None
-            if listener is not None:
-                listener.close()
+            door, self._door = self._door, None
+            if door is not None:
+                door.close()
             self._let_go()
 
     def _let_go(self) -> None:
@@ -218,7 +230,7 @@ class Games:
     def __init__(self, store: Store, knowledge: Knowledge) -> None:
         self._store, self._knowledge = store, knowledge
         self._kept: OrderedDict[str, LiveGame] = OrderedDict()
-        self._lock = threading.Lock()
+        self._lock = BoundedLock("the room")
 
     def find(self, game: str, session: str) -> tuple[LiveGame, int]:
         """A game of a session, and the character that it plays.

@@ -8,17 +8,16 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from starlette.concurrency import run_in_threadpool as in_thread
-
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.web import sessions
+from hearth.web import deadlines, sessions
 from hearth.web.link import Link
 from hearth.web.messages import int_field, text_field
 from hearth.web.play.game_messages import Telling
 from hearth.web.play.live_games import LiveGame, games
 from hearth.web.play.presence import SIGN_EVERY, give_sign
 from hearth.web.play.trials import PERSON, PROGRAM, SIZE
+from hearth.web.threads import in_thread
 from hearth.web.web_errors import WebError
 
 if TYPE_CHECKING:
@@ -85,12 +84,13 @@ class Page:
         with self.live.lock:
             self._signed()
             self.telling.game = self.live.sync()
-            port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
+            port, token = self.live.listen() if self.live.game.trial.helper == PROGRAM else (0, "")
             self._told = self._state()
             begun = {**self.telling.begin(), **self._unnamed()}
             return {
                 **begun,
                 "port": port,
+                "token": token,
                 "code": self._code(),
                 "left": self.live.seconds_left(),
                 **self._waiting(),
@@ -150,6 +150,7 @@ class Page:
 
     def _news(self) -> dict[str, Any] | None:
         """What others did, if anything."""
+        self.live.seen = time.monotonic()
         with self.live.lock:
             if self._told:
                 self._signed()
@@ -176,8 +177,11 @@ class Page:
         """Tell what others decided, until cancelled."""
         while True:
             await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
+            deadlines.begin()
             try:
                 await self.tell(self._news)
+            except HearthError:  # the store is busy: the next look tells it
+                continue
             except WebError as fault:  # the game was deleted, as its other person asked
                 await self.link.refuse(fault)
                 with contextlib.suppress(RuntimeError):
@@ -199,10 +203,15 @@ async def live(link: Link) -> None:
         await link.refuse(fault)
         await link.socket.close(4404)
         return
+    except HearthError as error:
+        await link.refuse(refusal(error))
+        await link.socket.close(1013)
+        return
     page = Page(link, game, number)
     watching = asyncio.create_task(page.watch())
     try:
         while (message := await link.receive()) is not None:
+            deadlines.begin()
             try:
                 await page.take(message)
             except WebError as fault:
