@@ -14,8 +14,8 @@ from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.known_descriptions import Described
 from hearth.pipelines.crowd.repeated import Repeated
 from hearth.pipelines.engine.context import knowledge
-from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.salt_record import salt_changed
+from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import (

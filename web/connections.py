@@ -6,7 +6,7 @@ import asyncio
 import re
 import socket
 import struct
-from typing import Any
+from typing import Any, ClassVar
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -37,10 +37,10 @@ class Connection(H11Protocol):
         quiet_since: when the wait for the next request began, by the loop's clock.
     """
 
-    open: set[Connection] = set()
+    open: ClassVar[set[Connection]] = set()
     """Every connection of this process, sockets too."""
 
-    most: int = MOST_CONNECTIONS
+    most: ClassVar[int] = MOST_CONNECTIONS
     """Connections that may be open at once."""
 
     quiet_since: float

@@ -70,7 +70,6 @@ def test_a_wide_first_cell_of_a_table_is_read_whatever_was_read_before(tmp_path,
         list(items(labelled([str(path)])))
 
 
-
 @pytest.fixture
 def salted(tmp_path):
     """Build `ingest` with a salt, or none; the ids of workers and the manifest as text."""

@@ -12,7 +12,6 @@ import sqlalchemy as sql
 from web.people import DESK, Server
 
 import hearth
-from hearth.web.annotate.collected_files import collected
 from hearth.web.annotate.descriptions import SCENES, lacks
 from hearth.web.web_tables import SESSIONS
 

@@ -1,4 +1,4 @@
-"""What a stranger with free sessions can't do: take a session's or a study's place, judge own text, undo others' work."""
+"""What a stranger with free sessions can't do: take others' places, judge own text, undo others' work."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ def test_a_link_asks_before_it_replaces_a_session(server, person):
     assert led.status_code == 303 and led.headers["location"] == "/come", "the token leaves the address bar"
     assert person.cookies["hearth"] == mine, "nothing is replaced by an address alone"
     page = person.get("/come", headers=HTML)
-    assert 'method="post" action="/come"' in page.text and "replace" in page.text and link.split("/")[2] not in page.text
+    assert (
+        'method="post" action="/come"' in page.text and "replace" in page.text and link.split("/")[2] not in page.text
+    )
     assert person.cookies["hearth"] == mine
     assert person.post("/come", headers={"origin": "http://evil.example"}).status_code == 403
     assert person.cookies["hearth"] == mine
@@ -87,9 +89,12 @@ def test_an_invitation_is_for_one_session_and_is_not_stored(server):
     assert second.post(address).json()["error"]["code"] == "UNKNOWN_ID"
     assert first.post("/annotate/reviewer/x").json()["error"]["code"] == "UNKNOWN_ID"
     assert first.post("/desk/annotate/invite").status_code == 403
-    assert address.rpartition("/")[2] not in server.store.engine.raw_connection().execute(
-        "SELECT group_concat(id) FROM annotate_reviewers"
-    ).fetchone()[0]
+    assert (
+        address.rpartition("/")[2]
+        not in server.store.engine.raw_connection()
+        .execute("SELECT group_concat(id) FROM annotate_reviewers")
+        .fetchone()[0]
+    )
 
 
 def built_on(server):
@@ -106,7 +111,7 @@ def rows(server, table):
 
 
 def test_withdrawal_keeps_what_others_built_without_the_person(server):
-    first, second, third, text = built_on(server)
+    first, second, _, text = built_on(server)
     who = session_of(server, first)
     files = collected(server.store)
     other_text = described(first)
@@ -226,7 +231,8 @@ def test_a_program_needs_the_token_of_its_game(server, person):
         with socket.create_connection(("127.0.0.1", port)) as mine:
             mine.sendall(json.dumps({"token": token}).encode() + b"\n")
             time.sleep(0.5)
-            player.socket.send_text(json.dumps({"type": "act", "tick": player.state["tick"], "act": None, "n": player.n + 1}))
+            act = {"type": "act", "tick": player.state["tick"], "act": None, "n": player.n + 1}
+            player.socket.send_text(json.dumps(act))
             mine.settimeout(10)
             assert b"begin" in mine.recv(100)
 
@@ -327,7 +333,7 @@ def test_a_reader_delays_the_erasure_and_does_not_stop_it(server, person):
 
 
 def test_what_the_desk_deletes_is_erased_from_the_files(server):
-    first, _, _, text = built_on(server)
+    *_, text = built_on(server)
     words = server.store.scalar(sql.select(TEXTS.c.description))
     server.researcher().post("/desk/annotate/erase", data={"id": text})
     assert in_files(server.out, words) == []

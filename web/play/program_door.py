@@ -7,7 +7,7 @@ import hmac
 import secrets
 import threading
 import time
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import orjson
 
@@ -51,7 +51,7 @@ class ProgramDoor:
         game: that waits.
     """
 
-    open: set[ProgramDoor] = set()
+    open: ClassVar[set[ProgramDoor]] = set()
 
     def __init__(self, game: Waiting) -> None:
         self._listener, self._game = Listener(), game
