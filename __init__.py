@@ -9,6 +9,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from hearth.old_names import install
 from hearth.schemas.explained import explained
 from hearth.version import VERSION
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
 
 __version__ = VERSION
+install()
 
 
 @lru_cache(maxsize=1)

@@ -25,9 +25,9 @@ from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Known, start_of
 from hearth.challenges.play import Played, Player, play
 from hearth.challenges.practice import Practice, low_rewards, practised
-from hearth.challenges.rewards import HIERARCHICAL
 from hearth.challenges.task_files import suite
 from hearth.challenges.tasks import Task
+from hearth.envs.rewards import HIERARCHICAL
 from hearth.models.helping.policies import TrainedPolicy, untrained
 from hearth.models.helping.policy_inputs import Batch, Trace, Words, packed
 from hearth.models.interface import Training

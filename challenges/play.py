@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from hearth.agents.protocol import Agent, Choice, Resigned
 from hearth.challenges.guard import AgentError
+from hearth.envs.session import MOST_TICKS
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import derive
@@ -16,9 +17,6 @@ from hearth.simulation.goals import Progress
 from hearth.simulation.observation.views import View
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
-
-MOST_TICKS = 250
-"""Ticks after which an episode ends (thesis 6.5)."""
 
 
 @dataclass(frozen=True, slots=True)

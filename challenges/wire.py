@@ -14,10 +14,10 @@ from typing import Any
 import orjson
 
 from hearth.agents.protocol import Choice
-from hearth.challenges.answers import Fault, Keep, by_number, by_words, keep_nothing, row
 from hearth.challenges.channels import Channel
-from hearth.challenges.observations import instruction_text, observation
-from hearth.challenges.text_protocol import description
+from hearth.envs.answers import Fault, Keep, by_number, by_words, keep_nothing, row
+from hearth.envs.observations import instruction_text, observation
+from hearth.envs.text_protocol import description
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

@@ -121,8 +121,8 @@ def _seats(given: list[str]) -> list[_Seat]:
 
 
 def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
-    from hearth.challenges.text_protocol import TextAgent
     from hearth.challenges.wire import WireAgent
+    from hearth.envs.text_protocol import TextAgent
 
     if seat.spec == TEXT:
         return TextAgent(_asked_at_terminal(how.as_json), how.keep, how.messages)
@@ -179,7 +179,7 @@ def _asked_at_terminal(as_json: bool) -> Callable[[str], str]:
 
 
 def _transcript(path: Path | None, stack: ExitStack) -> Callable[[Mapping[str, Any]], None]:
-    from hearth.challenges.answers import keep_nothing
+    from hearth.envs.answers import keep_nothing
 
     if path is None:
         return keep_nothing

@@ -16,7 +16,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
-    "pipelines", "models", "agents", "challenges", "analysis", "studies", "web",
+    "pipelines", "models", "agents", "envs", "challenges", "interop", "analysis", "studies", "web",
 )  # fmt: skip
 
 ENTRY_POINTS = {
@@ -31,7 +31,7 @@ ENTRY_POINTS = {
     "Programs in a home": ("hearth:parse_program", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit"),
     "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
     "Environments of learning libraries": (
-        "hearth.challenges.single:HomeEnv", "hearth.challenges.parallel:ParallelHome",
+        "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
     "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth:read_goal", "hearth.simulation.explain:checks"),
     "Environments and variants": (

@@ -17,7 +17,7 @@ ROOMS = (
     "rendering", "datasets", "scoring", "analysis", "tests/rendering", "tests/datasets", "tests/scoring",
     "tests/analysis", "benchmarks", "tests/augment", "tests/oracles", "tests/golden", "pipelines", "docs", "README.md",
     "CONTRIBUTING.md", "cli.py", "__init__.py", "version.py", "tests/pipelines", "tests/commands", "commands",
-    "tests/house", "models", "tests/models", "web", "tests/web",
+    "tests/house", "tests/trust", "models", "tests/models", "web", "tests/web",
 )  # fmt: skip
 """The folders and files that are checked; this file names the phrases."""
 

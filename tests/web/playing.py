@@ -8,8 +8,8 @@ import orjson
 
 from hearth.challenges.episodes import Job, played
 from hearth.challenges.lineup import Lineup
-from hearth.challenges.observations import instruction_text
 from hearth.challenges.play import Playing
+from hearth.envs.observations import instruction_text
 from hearth.kb.loading.load import default
 from hearth.web.play import start_trial
 from hearth.web.play.games import Game

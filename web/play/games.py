@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from hearth.agents.agent_registry import HELPERS
 from hearth.agents.online_registry import ONLINE
 from hearth.agents.protocol import Agent
-from hearth.challenges.answers import by_text
 from hearth.challenges.episodes import Record, measured, read_instruction, start_of, written
 from hearth.challenges.guard import AgentError, Guarded
 from hearth.challenges.lineup import partial_of
 from hearth.challenges.play import Playing
+from hearth.envs.answers import by_text
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hearth.challenges.observations import SeenLiteral, seen_goal
+from hearth.envs.observations import SeenLiteral, seen_goal
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT
 from hearth.simulation.env import Tick

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.challenges.action_codes import str_step
-from hearth.challenges.session import Session
+from hearth.envs.action_codes import str_step
+from hearth.envs.session import Session
 from hearth.homes import drawing
 from hearth.homes.from_graph.measured import measured
 from hearth.homes.geometry import Rect

@@ -1,7 +1,8 @@
 """Readers of what strangers give to challenges, models, studies and pages: targets of `guided_fuzz.py`.
 
 Each takes a file's bytes, or a message's, and may raise only HearthError or the server's refusal. Those of what is
-beside corpora, datasets and stores are in `fuzzed_files.py`, of knowledge, tables and goals in `fuzzed_tables.py`.
+beside corpora, datasets and stores are in `fuzz_file_targets.py`, of knowledge, tables and goals in
+`fuzz_table_targets.py`.
 """
 
 from __future__ import annotations
@@ -13,12 +14,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-try:
-    from benchmarks.fuzzed_files import FILES, One, Room, _by_file, _signed_results
-    from benchmarks.fuzzed_tables import TABLES
-except ImportError:
-    from fuzzed_files import FILES, One, Room, _by_file, _signed_results
-    from fuzzed_tables import TABLES
+from fuzz_file_targets import FILES, One, Room, _by_file, _signed_results
+from fuzz_table_targets import TABLES
 
 SMALL = "goal-inference"
 """The checkpoint whose description is changed."""
@@ -160,12 +157,12 @@ def _kind(kind: str) -> Room:
     """The description of a checkpoint of a kind, with a digest that fits; the model is asked what its kind is asked."""
 
     def example() -> bytes:
-        from asked_models import folder_of
+        from small_checkpoints import folder_of
 
         return (folder_of(kind) / "model.json").read_bytes()
 
     def reader(scratch: Path) -> One:
-        from asked_models import ask, folder_of
+        from small_checkpoints import ask, folder_of
 
         folder = Path(shutil.copytree(folder_of(kind), scratch / "checkpoint"))
 
@@ -182,8 +179,8 @@ def _place(kind: str) -> Room:
     """The same of kinds with long descriptions: two bytes say in which place the value is that follows them."""
 
     def reader(scratch: Path) -> One:
-        from asked_models import ask, folder_of
         from attacks_on_models import _document_of, _places, _put
+        from small_checkpoints import ask, folder_of
 
         document = _document_of(kind)
         places = [place for part in ("settings", "content") for place in _places(document, part, 6)]
@@ -205,8 +202,8 @@ def _place(kind: str) -> Room:
 
 
 def _array() -> bytes:
-    from asked_models import film
     from attacks_on_films import _array
+    from small_checkpoints import film
 
     return _array(film()[:9, ::3, ::3])
 
@@ -269,8 +266,8 @@ def _continued(scratch: Path) -> One:
 
 def _answers(scratch: Path) -> One:
     """A line of an agent, and the text in it, in the middle of nothing."""
-    from hearth.challenges.answers import by_number, by_text
     from hearth.challenges.wire import read_answer
+    from hearth.envs.answers import by_number, by_text
     from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.simulation.actions.legal import legal
@@ -307,7 +304,7 @@ def _messages(scratch: Path) -> One:
 
 
 def _study() -> bytes:
-    return Path(__file__).resolve().parents[1].joinpath("studies", "people-alone.yaml").read_bytes()
+    return Path(__file__).resolve().parents[2].joinpath("studies", "people-alone.yaml").read_bytes()
 
 
 _FILM = (

@@ -1,6 +1,6 @@
 """Attacks by strangers' data, and by those who ask: none may write, read or run anything outside, fail badly or hang.
 
-`python benchmarks/attacks.py` prints a table of them and ends with 1 if one works; `--only GROUP` runs some. Each runs
+`python tests/trust/attacks.py` prints a table of them and ends with 1 if one works; `--only GROUP` runs some. Each runs
 in a folder of its own, beside a guard folder that must stay as it is. A new attack is a row of the functions below.
 """
 
@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Path(__file__).resolve().parents[1]]
+sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Path(__file__).resolve().parents[2]]
 
 from attack import Attack, Ground  # noqa: E402
 from attacks_on_beliefs import belief_results  # noqa: E402
@@ -36,12 +36,12 @@ from attacks_on_tables import tables  # noqa: E402
 from attacks_on_trainings import trainings  # noqa: E402
 from attacks_on_ways import ways  # noqa: E402
 from attacks_on_web import web  # noqa: E402
-from hostile import rename, replace_texts  # noqa: E402
+from hostile_datasets import rename, replace_texts  # noqa: E402
 
 from hearth.datasets.dataset import Dataset  # noqa: E402
 from hearth.schemas.diagnostics import HearthError  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 INPUT = ROOT / "tests/golden/pipelines/input"
 SECRET = "the-secret-of-the-guard"
 SLOWEST = 20.0

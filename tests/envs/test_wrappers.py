@@ -17,12 +17,12 @@ import gymnasium
 from gymnasium.utils.env_checker import check_env, data_equivalence
 from pettingzoo.test import api_test, max_cycles_test, parallel_api_test, parallel_seed_test, seed_test
 
-from hearth.challenges import parallel
-from hearth.challenges.action_codes import fixed_list, str_step
-from hearth.challenges.parallel import ParallelHome
-from hearth.challenges.rewards import HIERARCHICAL, Rewards, metres_left
-from hearth.challenges.session import Setting, opening
-from hearth.challenges.single import HomeEnv
+from hearth.envs import pettingzoo_env
+from hearth.envs.action_codes import fixed_list, str_step
+from hearth.envs.gymnasium_env import HomeEnv
+from hearth.envs.pettingzoo_env import ParallelHome
+from hearth.envs.rewards import HIERARCHICAL, Rewards, metres_left
+from hearth.envs.session import Setting, opening
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.episode import Episode
@@ -62,14 +62,14 @@ def test_pettingzoo_accepts_it(two, code):
 
 def test_pettingzoo_accepts_it_in_turns(two):
     class Module:
-        parallel_env = staticmethod(lambda max_cycles: parallel.parallel_env(two, max_cycles))
-        env = staticmethod(lambda max_cycles: parallel.env(two, max_cycles))
+        parallel_env = staticmethod(lambda max_cycles: pettingzoo_env.parallel_env(two, max_cycles))
+        env = staticmethod(lambda max_cycles: pettingzoo_env.env(two, max_cycles))
 
     max_cycles_test(Module)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Observation (is not|space for)")  # it is a dict of arrays
-        api_test(parallel.env(two), num_cycles=20)
-        seed_test(lambda: parallel.env(two), num_cycles=10)
+        api_test(pettingzoo_env.env(two), num_cycles=20)
+        seed_test(lambda: pettingzoo_env.env(two), num_cycles=10)
 
 
 @pytest.mark.parametrize("code", CODES)
@@ -303,8 +303,8 @@ def observation_allows(env, number: int) -> bool:
 
 SCRIPT = """
 import hashlib, hearth
-from hearth.challenges.parallel import ParallelHome
-from hearth.challenges.session import Setting, opening
+from hearth.envs.pettingzoo_env import ParallelHome
+from hearth.envs.session import Setting, opening
 env = ParallelHome(Setting(opening(hearth.home("maple"), "HOLDS(agent, milk)")))
 digest = hashlib.sha256()
 observations, _ = env.reset(seed=3)

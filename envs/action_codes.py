@@ -6,7 +6,7 @@
   number below the list's length can be done; what a number means differs from tick to tick.
 - `Fixed`: the number of an instruction in a list that never changes; for small worlds (see `fixed_list`).
 
-Number 0 is to wait, in all three. Objects are numbered by their slots in the arrays (see `slots.Slots`).
+Number 0 is to wait, in all three. Objects are numbered by their slots in the arrays (see `node_slots.Slots`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.challenges.slots import Slots
+from hearth.envs.node_slots import Slots
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from asked_models import KINDS, ask, folder_of
 from attack import DEEP, Attack, Ground
+from small_checkpoints import KINDS, ask, folder_of
 
 from hearth.models.checkpoint import NAME, WEIGHTS
 from hearth.schemas.diagnostics import HearthError

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from hearth.challenges.lerobot_export import lerobot
-from hearth.challenges.minari_export import minari
 from hearth.challenges.result_files import Results
+from hearth.interop.lerobot_export import lerobot
+from hearth.interop.minari_export import minari
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

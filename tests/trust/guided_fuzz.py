@@ -1,8 +1,8 @@
 """Coverage-guided fuzzing of all readers and of the commands that read files, by Atheris.
 
     pip install atheris
-    python benchmarks/guided_fuzz.py [--seconds 3600] [--jobs 2] [--seed 0] [--only NAME ...] [--out DIR]
-    python benchmarks/guided_fuzz.py --replay NAME FILE
+    python tests/trust/guided_fuzz.py [--seconds 3600] [--jobs 2] [--seed 0] [--only NAME ...] [--out DIR]
+    python tests/trust/guided_fuzz.py --replay NAME FILE
 
 Each target is a process: Atheris mutates its examples and keeps what reaches new branches of Hearth. A finding is an
 exception other than ours ("a fault of Hearth's" is one), a hang of over 20 seconds, more than 2 GB of memory, or a
@@ -25,15 +25,12 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-try:
-    from benchmarks.fuzzed_rooms import ROOMS
-except ImportError:
-    from fuzzed_rooms import ROOMS
+from fuzz_room_targets import ROOMS
 
 if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 LIMITS = ("-timeout=20", "-report_slow_units=20", "-rss_limit_mb=2048", "-max_len=20000")
 
 _TEXT = b"Sleep\nGo to bed.\n\n\n[Walk] <bedroom> (1)\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n[Sleep]\n"
@@ -295,7 +292,7 @@ def _worker(name: str, words: Sequence[str]) -> None:
 
 def main() -> int:
     """Fuzz, or run one file."""
-    for place in (ROOT / "tests", ROOT / "benchmarks"):
+    for place in (ROOT / "tests", ROOT / "tests/trust"):
         sys.path.insert(0, str(place))
     if sys.argv[1:2] == ["--target"]:
         _worker(sys.argv[2], sys.argv[3:])

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scrambled import scrambled
 
-from hearth.challenges.answers import by_text
-from hearth.challenges.observations import observation
-from hearth.challenges.text_protocol import description, menu, plain
+from hearth.envs.answers import by_text
+from hearth.envs.observations import observation
+from hearth.envs.text_protocol import description, menu, plain
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

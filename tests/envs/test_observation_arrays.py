@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hearth.challenges.action_codes import Listed, Triples, fixed_list, played, str_step
-from hearth.challenges.goal_rows import GOAL_COLUMNS, JOINS, class_number
-from hearth.challenges.seen_arrays import AGENT_COLUMNS, Encoder, Sizes
-from hearth.challenges.session import opening
-from hearth.challenges.slots import Slots
+from hearth.envs.action_codes import Listed, Triples, fixed_list, played, str_step
+from hearth.envs.goal_arrays import GOAL_COLUMNS, JOINS, class_number
+from hearth.envs.node_slots import Slots
+from hearth.envs.observation_arrays import AGENT_COLUMNS, Encoder, Sizes
+from hearth.envs.session import opening
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 
 from hearth.agents.protocol import Choice, Resigned
-from hearth.challenges.answers import SAYING, WAIT, Fault, Keep, by_number, by_words, keep_nothing, row
-from hearth.challenges.observations import seen_failure, seen_goal
+from hearth.envs.answers import SAYING, WAIT, Fault, Keep, by_number, by_words, keep_nothing, row
+from hearth.envs.observations import seen_failure, seen_goal
 from hearth.schemas.agent_messages import ASK
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

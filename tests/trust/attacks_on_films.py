@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from asked_models import colours, film, folder_of
 from attack import Attack, Ground
 from attacks_on_videos import changed, video, videos
+from small_checkpoints import colours, film, folder_of
 
 from hearth.datasets.dataset import Dataset
 from hearth.models.demonstrations.demonstration_data import Demonstrations, read_pictures

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from hearth.challenges.episode_arrays import EpisodeArrays, episodes_of
 from hearth.challenges.result_files import Results
-from hearth.challenges.seen_arrays import Arrays
+from hearth.envs.observation_arrays import Arrays
 from hearth.kb.knowledge import Knowledge
 from hearth.storage.names import inside
 

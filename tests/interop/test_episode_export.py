@@ -10,10 +10,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from hearth.challenges.episode_arrays import episodes_of
-from hearth.challenges.episode_export import FORMATS, export
 from hearth.challenges.lineup import Lineup
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
+from hearth.interop.episode_export import FORMATS, export
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
 from hearth.agents.protocol import Choice
-from hearth.challenges.observations import instruction_text, seen_instances
+from hearth.envs.observations import instruction_text, seen_instances
 from hearth.kb.grammar import check
 from hearth.schemas.agent_messages import ASK, TELL, Message
 from hearth.schemas.agent_messages import read as read_message

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hearth.challenges.action_codes import Number
-from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
-from hearth.challenges.play import MOST_TICKS
-from hearth.challenges.seen_arrays import Arrays
-from hearth.challenges.session import MOST_SEED, Opening, Session, Setting
+from hearth.envs.action_codes import Number
+from hearth.envs.observation_arrays import Arrays
+from hearth.envs.render_modes import MODES, PLAN, Pictures
+from hearth.envs.session import MOST_SEED, MOST_TICKS, Opening, Session, Setting
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
@@ -30,21 +29,21 @@ else:
 class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
     """Agents `agent_0`, `agent_1`, ... in a home, with one goal. An episode ends for all of them at once.
 
-    Observations are dicts of arrays (see `seen_arrays.Encoder.spaces`) with masks of legal actions (see
+    Observations are dicts of arrays (see `observation_arrays.Encoder.spaces`) with masks of legal actions (see
     `action_codes`); rewards are those of `rewards.Rewards`. An agent that `step` gives no action waits. Why something
     could not be done is in `infos[agent]["failure"]`; nothing of it is done.
 
     Args:
         setting: how episodes are played.
         render_mode: `rgb_array`, `ansi`, or None.
-        camera: of `rgb_array` (see `plan_pictures.Pictures`).
+        camera: of `rgb_array` (see `render_modes.Pictures`).
 
     Attributes:
         session: the episode: its `env`, `progress` and `failures`.
 
     Examples:
-        >>> from hearth.challenges.parallel import ParallelHome
-        >>> from hearth.challenges.session import Setting, opening
+        >>> from hearth.envs.pettingzoo_env import ParallelHome
+        >>> from hearth.envs.session import Setting, opening
         >>> env = ParallelHome(Setting(opening(home, "HOLDS(agent, milk)")))
         >>> observations, infos = env.reset(seed=1)
         >>> sorted(infos), observations["agent_0"]["seen"].shape

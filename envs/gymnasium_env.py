@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from hearth.agents.protocol import Agent
-from hearth.challenges.action_codes import Number
-from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
-from hearth.challenges.seen_arrays import Arrays
-from hearth.challenges.session import MOST_SEED, Session, Setting
+from hearth.envs.action_codes import Number
+from hearth.envs.observation_arrays import Arrays
+from hearth.envs.render_modes import MODES, PLAN, Pictures
+from hearth.envs.session import MOST_SEED, Session, Setting
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
@@ -24,14 +24,14 @@ else:
 
 
 class HomeEnv(Env[Arrays, Number]):
-    """A home with one learner. Observations, actions, rewards and infos are those of `parallel.ParallelHome`.
+    """A home with one learner. Observations, actions, rewards and infos are those of `pettingzoo_env.ParallelHome`.
 
     Args:
         setting: how episodes are played.
         partners: the other agents, in the order of their numbers; one fewer than the opening has agents.
         learner: number of the agent that learns.
         render_mode: `rgb_array`, `ansi`, or None.
-        camera: of `rgb_array` (see `plan_pictures.Pictures`).
+        camera: of `rgb_array` (see `render_modes.Pictures`).
 
     Attributes:
         session: the episode: its `env`, `progress` and `failures`.
@@ -40,8 +40,8 @@ class HomeEnv(Env[Arrays, Number]):
         HearthError: BAD_ARGUMENT, where the numbers do not agree.
 
     Examples:
-        >>> from hearth.challenges.session import Setting, opening
-        >>> from hearth.challenges.single import HomeEnv
+        >>> from hearth.envs.session import Setting, opening
+        >>> from hearth.envs.gymnasium_env import HomeEnv
         >>> env = HomeEnv(Setting(opening(home, "HOLDS(agent, milk)", agents=1)))
         >>> observation, info = env.reset(seed=1)
         >>> env.step(0)[1:4]

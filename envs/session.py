@@ -1,6 +1,6 @@
 """An episode for learners: starts from seeds, numbers as actions, arrays as observations, rewards.
 
-`parallel` and `single` give it the forms that libraries of reinforcement learning expect.
+`pettingzoo_env` and `gymnasium_env` give it the interfaces that libraries of reinforcement learning expect.
 """
 
 from __future__ import annotations
@@ -9,11 +9,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from hearth.challenges.action_codes import ActionCode, Listed, Number, Triples, played, str_step
-from hearth.challenges.goal_rows import check
-from hearth.challenges.play import MOST_TICKS
-from hearth.challenges.rewards import Rewards
-from hearth.challenges.seen_arrays import Arrays, Encoder, Rows, Sizes
+from hearth.envs.action_codes import ActionCode, Listed, Number, Triples, played, str_step
+from hearth.envs.goal_arrays import check
+from hearth.envs.observation_arrays import Arrays, Encoder, Rows, Sizes
+from hearth.envs.rewards import Rewards
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal
@@ -36,6 +35,9 @@ if TYPE_CHECKING:
 
 Opening = Callable[[int], tuple[World, Goal]]
 """The world in which an episode begins and the goal, from a seed; equal for equal seeds."""
+
+MOST_TICKS = 250
+"""Ticks after which an episode ends (thesis 6.5)."""
 
 CODES = ("triples", "listed")
 """Codes of actions by name; any other is given as an `ActionCode`."""

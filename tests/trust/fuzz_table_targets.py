@@ -9,10 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-try:
-    from benchmarks.fuzzed_files import One, Room, _by_file
-except ImportError:
-    from fuzzed_files import One, Room, _by_file
+from fuzz_file_targets import One, Room, _by_file
 
 FAST = ("entries", "tensors", "release", "code", "pddl", "jsonl", "figures", "mine", "score")
 """What is asked of tables with another value: what takes less than a second."""
@@ -117,7 +114,7 @@ def _goals(scratch: Path) -> One:
 
 def _sayings(scratch: Path) -> One:
     """What a language model, or an agent that may talk, answers."""
-    from hearth.challenges.text_protocol import understood
+    from hearth.envs.text_protocol import understood
     from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.simulation.actions.legal import legal

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from hearth.agents.protocol import Resigned
-from hearth.challenges.answers import by_text
-from hearth.challenges.observations import observation, seen_goal
 from hearth.challenges.play import Player, play
-from hearth.challenges.text_protocol import MOST_LISTED, TextAgent, description, menu, plain, understood
+from hearth.envs.answers import by_text
+from hearth.envs.observations import observation, seen_goal
+from hearth.envs.text_protocol import MOST_LISTED, TextAgent, description, menu, plain, understood
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.actions.legal import legal

@@ -1,4 +1,4 @@
-"""What an agent sees, as padded arrays; one row for each slot (see `slots`), zeros where nothing is seen.
+"""What an agent sees, as padded arrays; one row for each slot (see `node_slots`), zeros where nothing is seen.
 
 Of a partial view only what it shows is in the arrays: scrambling the rest of the world changes no byte of them.
 """
@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.challenges.edges import Edges, seen_edges, start_edges
-from hearth.challenges.goal_rows import GOAL_COLUMNS, class_number, goal_array
-from hearth.challenges.slots import Slots
+from hearth.envs.edge_arrays import Edges, seen_edges, start_edges
+from hearth.envs.goal_arrays import GOAL_COLUMNS, class_number, goal_array
+from hearth.envs.node_slots import Slots
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -55,7 +55,7 @@ class Sizes:
         nodes: slots; the largest of our homes has 674 nodes.
         edges: in the order of the ids of source, relation and target; what is seen beyond them is left out.
         agents: characters; the first row is the agent itself, the others follow by number.
-        literals: rows of a goal (see `goal_rows`).
+        literals: rows of a goal (see `goal_arrays`).
         legal: instructions of the padded list (`action_codes.Listed`).
     """
 
