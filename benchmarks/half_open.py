@@ -12,6 +12,8 @@ import argparse
 import asyncio
 import contextlib
 import os
+import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -34,55 +36,51 @@ WITHIN_MS = 100.0
 
 
 class Strangers:
-    """Half-open connections to a server, each opened again once it was ended."""
+    """Half-open connections to a server, each opened again once it was ended; in a process of their own."""
 
-    def __init__(self, port: int, number: int) -> None:
+    def __init__(self, port: int) -> None:
         self._port = port
-        self.open, self.lasted = 0, list[float]()
-        self._tasks = [asyncio.create_task(self._hold(each)) for each in range(number)]
+        self.open, self.longest = 0, 0.0
 
-    async def _hold(self, number: int) -> None:
+    async def hold(self, number: int) -> None:
+        """Hold one connection after another."""
         await asyncio.sleep(number / 400)  # not all at one moment
         while True:
             with contextlib.suppress(OSError):
                 reader, writer = await asyncio.open_connection("127.0.0.1", self._port)
                 since = time.monotonic()
                 self.open += 1
-                try:
-                    writer.write(HALVES[number % len(HALVES)])
+                writer.write(HALVES[number % len(HALVES)])
+                with contextlib.suppress(OSError):
                     while await reader.read(4096):
                         pass
-                finally:
-                    self.open -= 1
-                    self.lasted.append(time.monotonic() - since)
-                    writer.close()
+                self.open -= 1
+                self.longest = max(self.longest, time.monotonic() - since)
+                writer.close()
             await asyncio.sleep(0.05)
 
-    async def leave(self) -> None:
-        """Close all."""
-        for each in self._tasks:
-            each.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
-
-
-async def besieged(address: str, games: list[tuple[str, str]], connections: int, seconds: float) -> list[float]:
-    """Return the round trips while strangers hold connections; print what became of these."""
-    strangers = Strangers(urlsplit(address).port or 0, connections)
-    await asyncio.sleep(connections / 400 + 1)
-    counts: list[int] = []
-
-    async def count() -> None:
-        while True:
-            counts.append(strangers.open)
+    async def run(self, number: int) -> None:
+        """Hold so many, and print every second how many are open, and how long the longest lasted."""
+        held = [asyncio.create_task(self.hold(each)) for each in range(number)]
+        while held:
             await asyncio.sleep(1)
+            print(self.open, round(self.longest, 1), flush=True)
 
-    counting = asyncio.create_task(count())
-    found = await measure(address, games, 1.0, seconds)
-    counting.cancel()
-    lasted = sorted(strangers.lasted)
-    await strangers.leave()
-    longest = f"{lasted[-1]:.1f} s" if lasted else "to the end"
-    print(f"half-open connections at once: {min(counts):,} to {max(counts):,}; the longest lasted {longest}")
+
+def besieged(address: str, games: list[tuple[str, str]], connections: int, seconds: float) -> list[float]:
+    """Return the round trips while strangers hold connections; print what became of these."""
+    command = [sys.executable, __file__, "--port", str(urlsplit(address).port), "--connections", str(connections)]
+    with tempfile.TemporaryFile("w+") as said:
+        strangers = subprocess.Popen(command, stdout=said)
+        time.sleep(connections / 400 + 3)
+        found = asyncio.run(measure(address, games, 1.0, seconds))
+        strangers.kill()
+        strangers.wait()
+        said.seek(0)
+        lines = [line.split() for line in said][3:]
+    counts = sorted(int(count) for count, _ in lines)
+    print(f"half-open at once: median {counts[len(counts) // 2]:,}, at most {counts[-1]:,}", end="; ")
+    print(f"the longest lasted {lines[-1][1]} s")
     return found
 
 
@@ -98,7 +96,11 @@ def main() -> None:
     parser.add_argument("--connections", type=int, default=1_000)
     parser.add_argument("--sessions", type=int, default=50)
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--port", type=int, default=0, help=argparse.SUPPRESS)
     asked = parser.parse_args()
+    if asked.port:
+        asyncio.run(Strangers(asked.port).run(asked.connections))
+        return
     with tempfile.TemporaryDirectory() as folder:
         store = Store(default_url(Path(folder)))
         process, address = serve(Path(folder))
@@ -106,7 +108,7 @@ def main() -> None:
             games = [begin(store, number, "none") for number in range(asked.sessions)]
             asyncio.run(measure(address, games, 1.0, 3.0))  # homes are read
             calm = asyncio.run(measure(address, games, 1.0, min(10.0, asked.seconds)))
-            found = asyncio.run(besieged(address, games, asked.connections, asked.seconds))
+            found = besieged(address, games, asked.connections, asked.seconds)
         finally:
             process.kill()
             process.wait()

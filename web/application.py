@@ -16,7 +16,7 @@ import jinja2
 from sqlalchemy.exc import DBAPIError, OperationalError
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
-from starlette.requests import HTTPConnection, Request
+from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
@@ -187,13 +187,15 @@ async def _body(request: Request, most: int) -> bytes:
                 if size > most:
                     raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
                 parts.append(part)
+    except ClientDisconnect:
+        raise WebError(Code.DISCONNECTED, "body", "the whole of it", "a part") from None
     except TimeoutError:
         raise WebError(Code.TIMED_OUT, "body", f"the whole of it within {QUIET_SECONDS:g} s", "a part") from None
     return b"".join(parts)
 
 
 async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
-    deadlines.begin()
+    deadlines.begin(deadlines.OPENS)
     try:
         session = await in_thread(sessions.find, web.store, token_of(socket))
     except HearthError as error:

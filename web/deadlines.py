@@ -14,6 +14,12 @@ from hearth.schemas.failures import Code
 WAITS = 1.5
 """Seconds that a request or message waits for what others hold, in all."""
 
+ACTS = 4.0
+"""Seconds that a decision in a game waits: a person would rather wait than decide again."""
+
+OPENS = 8.0
+"""Seconds that a socket waits while it opens: a class of people opens its games, which takes work, at one moment."""
+
 LEAST = 0.3
 """Seconds that it waits at each place, however long it has worked before."""
 
@@ -23,9 +29,9 @@ PATIENCE = 20.0
 _UNTIL: ContextVar[float] = ContextVar("until", default=math.inf)
 
 
-def begin() -> None:
+def begin(seconds: float = WAITS) -> None:
     """Let the time of a request or message begin, in its task and in the threads that work for it."""
-    _UNTIL.set(time.monotonic() + WAITS)
+    _UNTIL.set(time.monotonic() + seconds)
 
 
 def wait_until() -> float:

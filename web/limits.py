@@ -18,8 +18,11 @@ MOST_FIELDS = 2_000
 MOST_MESSAGE = 64 * 1024
 """Bytes of a message over a socket."""
 
-QUIET_SECONDS = 10.0
-"""Seconds for which a connection may ask nothing, read nothing, or send no more of a request's body."""
+QUIET_SECONDS = 9.0
+"""Seconds for which a connection may ask nothing, read nothing, or be in the middle of a request's body.
+
+It is looked at every second, so that it ends within ten.
+"""
 
 MOST_CONNECTIONS = 4_000
 """Connections of a process at once, where the limit of open files allows as many."""

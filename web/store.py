@@ -234,7 +234,7 @@ def _set_up_sqlite(connection: Any, record: object) -> None:
 
 def _wait(connection: sql.Connection) -> int:
     """The milliseconds that a transaction may wait for a lock."""
-    until = connection.get_execution_options().get("hearth_until", 0.0)
+    until: float = connection.get_execution_options().get("hearth_until", 0.0)
     return max(50, round(1000 * (until - time.monotonic())))
 
 

@@ -13,7 +13,7 @@ from hearth.web import deadlines
 
 T = TypeVar("T")
 
-THREADS = 24
+THREADS = 10
 """Handlers that run at once in a process."""
 
 MOST_WAITING = 200

@@ -44,10 +44,7 @@ def held(path, statements):
 
 def timed(ask, *given, **options):
     since = time.monotonic()
-    try:
-        answer = ask(*given, **options, timeout=60)
-    except httpx.HTTPError as error:
-        return time.monotonic() - since, error
+    answer = ask(*given, **options)
     return time.monotonic() - since, answer
 
 
@@ -119,7 +116,7 @@ def test_a_game_says_that_the_store_is_busy_and_goes_on(server, person):
         holder = held(embedded(server.out), LOCKS["a writer"])
         since = time.monotonic()
         refused = player.act("[Turnleft]")
-        assert refused["error"]["code"] == "TIMED_OUT" and time.monotonic() - since < SOON
+        assert refused["error"]["code"] == "TIMED_OUT" and time.monotonic() - since < 2 * SOON
         holder.close()
         assert player.act("[Turnleft]")["type"] == "tick"
 

@@ -185,3 +185,13 @@ def test_a_header_does_not_change_the_link_to_come_back(served, header):
     person = httpx.Client(base_url=served.address)
     person.post("/begin")
     assert f"{served.address}/come" in person.get("/mine", headers={header: "evil.example"}).text
+
+
+def test_who_goes_in_the_middle_of_a_body_leaves_nothing_in_the_log(serving):
+    server = serving(limits="true")
+    connection = connected(server.address)
+    connection.sendall(b"POST /begin HTTP/1.1\r\n" + HOST + FORM + b"Content-Length: 99\r\n\r\na=")
+    time.sleep(0.5)
+    connection.close()
+    time.sleep(1)
+    assert answers(server.address) and "Traceback" not in server.log.read_text()

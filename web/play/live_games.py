@@ -244,9 +244,12 @@ class Games:
     def open(self, game: str) -> LiveGame:
         """A game, for who may see it."""
         with self._lock:
-            if game not in self._kept:
-                stored = self._store.read(lambda connection: game_store.stored(connection, game))
-                self._kept[game] = LiveGame(self._store, stored, self._knowledge)
+            made = self._kept.get(game)
+        if made is None:  # outside the lock: others do not wait for the store and for this home
+            stored = self._store.read(lambda connection: game_store.stored(connection, game))
+            made = LiveGame(self._store, stored, self._knowledge)
+        with self._lock:
+            self._kept.setdefault(game, made)
             self._kept.move_to_end(game)
             forgotten = [self._kept.popitem(last=False)[1] for _ in range(len(self._kept) - MOST_GAMES)]
             found = self._kept[game]

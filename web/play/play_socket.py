@@ -196,6 +196,7 @@ def _act_of(message: dict[str, Any]) -> str | None:
 async def live(link: Link) -> None:
     """Serve a page until it goes."""
     web = link.web
+    deadlines.begin(deadlines.OPENS)
     try:
         found = games(web.store, web.known).find
         game, number = await in_thread(found, str(link.socket.path_params["game"]), link.session.id)
@@ -211,7 +212,7 @@ async def live(link: Link) -> None:
     watching = asyncio.create_task(page.watch())
     try:
         while (message := await link.receive()) is not None:
-            deadlines.begin()
+            deadlines.begin(deadlines.OPENS if message["type"] == "hello" else deadlines.ACTS)
             try:
                 await page.take(message)
             except WebError as fault:
