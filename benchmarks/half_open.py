@@ -60,7 +60,7 @@ class Strangers:
             await asyncio.sleep(0.05)
 
     async def run(self, number: int) -> None:
-        """Hold so many, and print every second how many are open, and how long the longest lasted."""
+        """Hold this number of connections; print every second how many are open, and how long the longest lasted."""
         held = [asyncio.create_task(self.hold(each)) for each in range(number)]
         while held:
             await asyncio.sleep(1)

@@ -54,7 +54,7 @@ class BoundedLock:
     """A lock that its holder may take again, and for which nobody waits longer than a request may.
 
     Args:
-        what: names it where it is waited for in vain.
+        what: names it in the refusal.
     """
 
     def __init__(self, what: str) -> None:

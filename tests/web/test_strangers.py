@@ -186,7 +186,7 @@ def study(tmp_path, knowledge):
 
 
 def joins(server, address, many):
-    """How many of so many new sessions of an address get a place."""
+    """How many of some new sessions of an address get a place."""
     found = 0
     for _ in range(many):
         client = server.client(client=(address, 5))
@@ -207,7 +207,7 @@ def program_of(server, person):
     return game, player
 
 
-def told(connection, line: bytes, wait: float = 4.0) -> bytes:
+def answer_on(connection, line: bytes, wait: float = 4.0) -> bytes:
     """What comes back on a port of a game."""
     connection.settimeout(wait)
     try:
@@ -227,7 +227,7 @@ def test_a_program_needs_the_token_of_its_game(server, person):
                 time.sleep(0.1)
                 state = player.act("[Turnleft]")
                 assert state["type"] == "tick"
-                assert b"observe" not in told(stranger, b"", 0.5)
+                assert b"observe" not in answer_on(stranger, b"", 0.5)
         with socket.create_connection(("127.0.0.1", port)) as mine:
             mine.sendall(json.dumps({"token": token}).encode() + b"\n")
             time.sleep(0.5)

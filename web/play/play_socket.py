@@ -180,7 +180,7 @@ class Page:
             deadlines.begin()
             try:
                 await self.tell(self._news)
-            except HearthError:  # the store is busy: the next look tells it
+            except HearthError:  # the store is busy: the next look finds it
                 continue
             except WebError as fault:  # the game was deleted, as its other person asked
                 await self.link.refuse(fault)

@@ -10,7 +10,7 @@ from hearth.schemas.failures import Code
 from hearth.web.web_errors import WebError
 
 SHARE = 2
-"""One address may hold one in so many of a study's places at once, of people who are under way."""
+"""An address may hold the number of a study's places divided by this at once, for people who are under way."""
 
 FEWEST = 2
 """Places that it may hold in any study."""
@@ -58,7 +58,7 @@ HELD = PlacesHeld()
 
 
 def is_stranger(address: str, public: bool) -> bool:
-    """Whether an address tells strangers apart: on a server without a public name all come from this machine."""
+    """Return whether strangers differ by their address: on a server without a public name all come from this machine."""
     try:
         return public or not ip_address(address).is_loopback
     except ValueError:
