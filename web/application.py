@@ -27,6 +27,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import deadlines, desk_access, front, sessions
+from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
 from hearth.web.limits import MOST_FIELDS, QUIET_SECONDS, Rate, usual_rates
 from hearth.web.link import Link, nobody
 from hearth.web.room import Address, Room, Who
@@ -35,7 +36,6 @@ from hearth.web.security import Security
 from hearth.web.sessions import Session
 from hearth.web.store import Store
 from hearth.web.third_party_scripts import FETCHED
-from hearth.web.threads import DESK_WITHIN, WITHIN, in_thread
 from hearth.web.visit import Visit, Web, by_browser, json_answer, render
 from hearth.web.web_errors import WebError
 

@@ -135,7 +135,7 @@ def test_a_handler_that_does_not_end_is_left_alone(server, monkeypatch):
 def test_more_requests_than_can_wait_are_refused_at_once():
     import asyncio
 
-    from hearth.web.threads import Threads
+    from hearth.web.handler_threads import Threads
 
     async def ask():
         threads, free = Threads(2, 3), threading.Event()

@@ -58,7 +58,7 @@ HELD = PlacesHeld()
 
 
 def is_stranger(address: str, public: bool) -> bool:
-    """Return whether strangers differ by their address: on a server without a public name all come from this machine."""
+    """Return whether strangers differ by their address; without a public name all come from this machine."""
     try:
         return public or not ip_address(address).is_loopback
     except ValueError:
