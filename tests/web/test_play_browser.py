@@ -235,7 +235,7 @@ def test_a_program_in_another_language_helps(serving, page):
     port, token = said.split("port ")[1].split(" ")[0], said.split("token ")[1].rstrip(".")
     program = subprocess.Popen(["node", ROOT / "docs/examples/helper.js", port, token])
     try:
-        time.sleep(1.5)
+        time.sleep(3)
         for tick in range(8):
             page.keyboard.press("ArrowLeft")
             page.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)

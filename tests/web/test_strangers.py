@@ -237,6 +237,21 @@ def test_a_program_needs_the_token_of_its_game(server, person):
             assert b"begin" in mine.recv(100)
 
 
+def test_silent_connections_do_not_keep_a_program_out(server, person):
+    _, player = program_of(server, person)
+    with player:
+        silent = [socket.create_connection(("127.0.0.1", player.state["port"])) for _ in range(6)]
+        with socket.create_connection(("127.0.0.1", player.state["port"])) as mine:
+            mine.sendall(json.dumps({"token": player.state["token"]}).encode() + b"\n")
+            until = time.monotonic() + 4
+            live = games(server.store, default()).open(player.game)
+            while live._program is None and time.monotonic() < until:
+                time.sleep(0.05)
+            assert live._program is not None
+        for each in silent:
+            each.close()
+
+
 def closed(port: int, within: float) -> bool:
     until = time.monotonic() + within
     while time.monotonic() < until:

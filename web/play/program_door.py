@@ -23,8 +23,11 @@ UNWATCHED = 60.0
 LOOKS_EVERY = 2.0
 """Seconds between looks at whether the game goes on."""
 
-SHOWN_WITHIN = 2.0
+SHOWN_WITHIN = 5.0
 """Seconds in which a program shows the token."""
+
+MOST_SHOWING = 8
+"""Connections of a port that may be about to show it; more wait."""
 
 
 class Waiting(Protocol):
@@ -56,29 +59,35 @@ class ProgramDoor:
     def __init__(self, game: Waiting) -> None:
         self._listener, self._game = Listener(), game
         self.port, self.token, self.closed = self._listener.port, secrets.token_urlsafe(16), False
+        self._showing = threading.BoundedSemaphore(MOST_SHOWING)
         ProgramDoor.open.add(self)
         for run in (self._accept, self._watch):
             threading.Thread(target=run, daemon=True).start()
 
     def _accept(self) -> None:
-        """Take the programs that connect and show the token, one after the other."""
+        """Take the programs that connect and show the token; who says nothing holds nobody else up."""
         while not self.closed:
-            with contextlib.suppress(HearthError, OSError):
+            if not self._showing.acquire(timeout=1.0):
+                continue
+            try:
                 channel = self._listener.accept(1.0)
-                if not self._lets_in(channel):
-                    channel.close()
+            except (HearthError, OSError):
+                self._showing.release()
+                continue
+            threading.Thread(target=self._look_at, args=(channel,), daemon=True).start()
 
-    def _lets_in(self, channel: SocketChannel) -> bool:
+    def _look_at(self, channel: SocketChannel) -> None:
+        """Let a program in that shows the token, and close the connection of any other."""
+        let_in = False
         try:
-            if not self._is_shown(channel.receive(time.monotonic() + SHOWN_WITHIN)):
-                return False
-            self._game.take_program(channel)
-        except Exception as error:  # whatever goes wrong, the connection is not left open
-            if isinstance(error, HearthError | OSError):
-                return False
-            channel.close()
-            raise
-        return True
+            with contextlib.suppress(HearthError, OSError):
+                if self._is_shown(channel.receive(time.monotonic() + SHOWN_WITHIN)):
+                    self._game.take_program(channel)
+                    let_in = True
+        finally:
+            self._showing.release()
+            if not let_in:
+                channel.close()
 
     def _is_shown(self, line: bytes) -> bool:
         try:
