@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from hearth.old_names import install
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.version import VERSION
 
 if TYPE_CHECKING:

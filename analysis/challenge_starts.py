@@ -1,12 +1,12 @@
-"""Where things are when tasks start: the distributions of the thesis's figures B-4 and B-5."""
+"""Starting places of things in tasks: the distributions of the thesis's figures B-4 and B-5."""
 
 from __future__ import annotations
 
 from collections import Counter
 from typing import NamedTuple
 
-from hearth.analysis.distribution import Counts
-from hearth.challenges.definition import challenge
+from hearth.analysis.object_distribution import Counts
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.goal_grammar import wanted_things
 from hearth.challenges.task_files import Suite
 from hearth.kb.knowledge import Knowledge
@@ -55,7 +55,7 @@ def starts(suite: Suite, knowledge: Knowledge) -> Starts:
 
 
 def place_of(world: World, i: int) -> str:
-    """`ON table`, `INSIDE fridge`: what a thing is on or in."""
+    """Return the place of a thing, as `ON table` or `INSIDE fridge`."""
     for relation, places in (("ON", rows.on(world, i)), ("INSIDE", rows.inside(world, i))):
         furniture = places & ~world.home.rooms
         if furniture:

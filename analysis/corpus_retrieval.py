@@ -1,4 +1,4 @@
-"""What a larger corpus is worth: retrieval of programs by description, trained on its first part and on all of it."""
+"""The value of a larger corpus: retrieval of programs by description, trained on its first part and on all of it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ from hearth.schemas.rng import derive
 from hearth.schemas.syntax import print_step
 from hearth.scoring.baselines import Example, nearest_description
 from hearth.scoring.bootstrap import intervals
-from hearth.scoring.lines import read, steps_of
+from hearth.scoring.line_sequences import read, steps_of
 from hearth.scoring.metrics import lcs
 
 SCORES = ("action", "object", "step", "mean")
@@ -63,7 +63,7 @@ def before_and_after(known: Knowledge, seed: int = 0, tested: Sequence[str] | No
 
 
 def _described(found: Corpus) -> list[SplitProgram]:
-    """The programs with a description, in the order of their ids."""
+    """Return the programs with a description, in the order of their ids."""
     programs = [
         SplitProgram(
             one.program_id,

@@ -1,4 +1,4 @@
-"""Cross-validation of learned sketches over activities, beside rules and majorities, with intervals of their leads."""
+"""Cross-validation of learned sketches over activities, with rules, majorities, and intervals of the leads."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _majority(place: int) -> Learned:
 
 
 def _model(change: Callable[[SketchModel], SketchModel]) -> Learned:
-    """A fitted model, or one of its parts."""
+    """Return a fitted model, or one of its parts."""
 
     def learned(train: Sequence[Example], base: SketchModel | None, seed: int) -> Callable[[Example], Keep]:
         model = change(fit(train, "training folds", base, seed))
@@ -114,7 +114,7 @@ def _total(counts: dict[str, Counts]) -> dict[str, float]:
 
 
 def _lead(mine: dict[str, Counts], usual: dict[str, Counts], seed: int) -> dict[str, float]:
-    """The difference in F1 and its percentile interval; activities are drawn with replacement."""
+    """Return the difference in F1 and its percentile interval; activities are drawn with replacement."""
     import numpy as np
 
     table = np.array([[[c.both, c.extra, c.missing] for c in each.values()] for each in (mine, usual)], dtype=float)

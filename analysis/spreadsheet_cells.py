@@ -8,7 +8,7 @@ from hearth.storage.csv_files import safe_cell
 
 
 def original_cell(text: str) -> str:
-    """The inverse of `safe_cell`; text without an apostrophe, which some spreadsheets remove, stays."""
+    """Invert `safe_cell`; text without an apostrophe, which some spreadsheets remove, stays."""
     return text[1:] if text.startswith("'") else text
 
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from itertools import cycle, islice
 from typing import NamedTuple
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
-from hearth.homes.procedural.generate import generate
+from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.arrays import Image
@@ -19,7 +19,7 @@ from hearth.rendering.cameras.visibility import seen_as
 from hearth.rendering.film.snapshots import Keyframe, Trajectory, named_nodes, trajectory_of
 from hearth.rendering.modalities import pictures_of
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.rays.camera_shot import shoot
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
@@ -99,7 +99,7 @@ def _pictured(
     name: str, graph: EnvironmentGraph, programs: Iterator[Program], knowledge: Knowledge, done: Counter[str],
     number: int, seed: int, size: tuple[int, int], quality: str,
 ) -> Pictured | None:  # fmt: skip
-    """The step of some programs that is most worth a picture in a home: of an action that was shown least."""
+    """Return the step of some programs that is most worth a picture in a home: of an action that was shown least."""
     place, hour = Home.from_graph(graph, name, knowledge), HOURS[number % len(HOURS)]
     best: Pictured | None = None
     for program in programs:
@@ -120,7 +120,7 @@ def _pictured(
 
 
 def _rank(step: Step, done: Counter[str]) -> tuple[int, bool]:
-    """How little a step adds to a gallery: its action was shown, or moves no hand."""
+    """Return how little a step adds to a gallery: its action was shown, or moves no hand."""
     gesture = gesture_of(step)
     return done[step.action], not (gesture.hand or gesture.rests)
 
@@ -128,7 +128,7 @@ def _rank(step: Step, done: Counter[str]) -> tuple[int, bool]:
 def picture_of(
     trajectory: Trajectory, keyframe: Keyframe, graph: EnvironmentGraph, size: tuple[int, int], quality: str = "draft"
 ) -> tuple[Image, bool]:
-    """A picture of what is done, from where it is seen best; and whether person and object can be recognised in it."""
+    """Return a picture of a step from its best camera, and whether person and object can be recognized in it."""
     rooms = {node.id: node.box for node in graph.nodes if node.category == ROOM_CATEGORY}
     named = tuple(dict.fromkeys(seen_as(node, keyframe.places) for node in named_nodes(keyframe.steps, rooms)))
     actor = keyframe.acting

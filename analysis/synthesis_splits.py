@@ -23,7 +23,10 @@ SPLITS = {
     "pairs": "test: programs with a pair of tasks that train has only apart",
     "objects": "test: programs with an object of which train has no program",
 }
-"""What each split holds out. A tenth of the rest is `validation`; near duplicates of a later part have none."""
+"""The held-out part of each split.
+
+A tenth of the rest is `validation`. Near duplicates of a later part have no part.
+"""
 
 _OUT = {"tasks": 10, "pairs": 6, "objects": 30}
 """One name of this number is held out."""
@@ -43,7 +46,7 @@ def splits(programs: Sequence[Synthetic], seed: int = 0) -> list[SplitText]:
 
     Args:
         programs: in the order of their numbers.
-        seed: of what is held out; what `paraphrases` holds out is the same for every seed.
+        seed: of the held-out names; those that `paraphrases` holds out are the same for every seed.
     """
     texts = [(number, place) for number, one in enumerate(programs, 1) for place in range(len(one.descriptions))]
     near = _near([normalised(programs[number - 1].descriptions[place]) for number, place in texts])
@@ -75,7 +78,7 @@ def _names(split: str, one: Synthetic) -> list[str]:
 
 
 def _near(texts: Sequence[str]) -> list[list[int]]:
-    """For each text, the places of equal and nearly equal ones."""
+    """Return for each text the places of equal and nearly equal ones."""
     found: list[list[int]] = [[] for _ in texts]
     places: dict[str, list[int]] = {}
     for place, text in enumerate(texts):
@@ -94,7 +97,7 @@ _ORDER = ("train", "validation", "test")
 
 
 def _apart(parts: Sequence[str], near: Sequence[Sequence[int]]) -> Iterator[str | None]:
-    """The parts, without those of which a near duplicate is in a later part."""
+    """Yield the parts, without those of which a near duplicate is in a later part."""
     for part, like in zip(parts, near, strict=True):
         later = any(_ORDER.index(parts[other]) > _ORDER.index(part) for other in like)
         yield None if later else part
@@ -124,7 +127,7 @@ def figures(programs: Sequence[Synthetic], rows: Sequence[SplitText] = ()) -> di
 
 
 def of_first(rows: Sequence[SplitText]) -> dict[int, dict[str, str | None]]:
-    """The part of each program's first description in every split, by number of the program."""
+    """Return the part of each program's first description in every split, by number of the program."""
     found: dict[int, dict[str, str | None]] = {}
     for row in rows:
         if row.description == 0:

@@ -38,13 +38,13 @@ class Wording:
     """The words.
 
     Attributes:
-        synonyms: a phrase of the grammar -> what may stand for it.
-        nouns: an object -> what people call it.
+        synonyms: a phrase of the grammar -> its alternatives.
+        nouns: an object -> people's names for it.
         like: adjectives.
         openers, links, endings: beginnings of the first, later and last sentences.
         aims: clauses of purpose and time.
         asides: sentences that name no step.
-        lists: what `<name>` stands for.
+        lists: the alternatives of `<name>`.
         known: other names of objects.
     """
 
@@ -65,13 +65,13 @@ class Wording:
         return re.compile(rf"(?<![\w{{])(?:{found})(?!\w)")
 
     def expanded(self, text: str, chance: Random) -> str:
-        """A text with an entry of its list for each `<name>`, and for those within."""
+        """Return a text with an entry of its list for each `<name>`, and for those within."""
         while "<" in text:
             text = _LIST.sub(lambda match: chance.choice(self.lists[match[1]]), text, count=1)
         return text
 
     def fault(self, text: object, slots: Collection[str]) -> str:
-        """Why a text of a grammar can't be said; "" if it can: it names lists and slots that there are."""
+        """Return why a text of a grammar can't be said; "" if it can: it names lists and slots that there are."""
         if not isinstance(text, str):
             return "is not a text"
         unknown = {*_SLOT.findall(text)} - {*slots} | {*_LIST.findall(text)} - self.lists.keys()
@@ -80,11 +80,11 @@ class Wording:
         return ""
 
     def reworded(self, clause: str, chance: Random) -> str:
-        """A clause with synonyms of its phrases."""
+        """Return a clause with synonyms of its phrases."""
         return self._phrases.sub(lambda match: chance.choice(self.synonyms[match[0]]), clause)
 
     def noun(self, name: str, chance: Random) -> str:
-        """What somebody calls a thing."""
+        """Return a person's word for a thing."""
         return chance.choice(self.nouns.get(name) or (plain(name),))
 
 
@@ -121,12 +121,12 @@ _PLAIN = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ce
 
 
 def plain(name: str) -> str:
-    """The name of a class as words."""
+    """Return the name of a class as words."""
     return _PLAIN.get(name) or name.removeprefix("food_").removeprefix("clothes_").replace("_", " ")
 
 
 def is_held_out(paraphrase: str) -> bool:
-    """Whether a paraphrase is held out; the same for every seed, so that no corpus has it in training."""
+    """Return whether a paraphrase is held out; the same for every seed, so that no corpus has it in training."""
     return derive(0, "paraphrase", paraphrase) % HELD_OUT == 0
 
 
@@ -141,7 +141,7 @@ def _of_kind(say: tuple[str, ...], held_out: bool) -> tuple[str, ...]:
 
 
 def slots_of(template: str, subject: str, objects: Collection[str]) -> set[str]:
-    """The slots of objects that a clause names: see `Speaker.clause`."""
+    """Return the slots of objects that a clause names: see `Speaker.clause`."""
     return {*_SLOT.findall(_with_subject(template, subject, objects))}
 
 
@@ -150,7 +150,7 @@ def _with_subject(template: str, subject: str, objects: Collection[str]) -> str:
 
 
 class Speaker:
-    """Somebody who describes a program: remembers the last thing named, and speaks in one person."""
+    """A person who describes a program: remembers the last thing named, and speaks in one grammatical person."""
 
     def __init__(self, words: Wording, first_person: bool, chance: Random) -> None:
         self.words, self.first, self.chance = words, first_person, chance
@@ -213,7 +213,7 @@ class Speaker:
         return f"I {self._bare(clause)}" if self.first else clause
 
     def _bare(self, clause: str) -> str:
-        """A clause without its subject, in the speaker's person."""
+        """Return a clause without its subject, in the speaker's person."""
         if not self.first:
             return clause
         return _YOU.sub(lambda match: "my" if match[1] else "I am" if match[2] else "I", clause)
@@ -241,7 +241,7 @@ def _capital(text: str) -> str:
 
 
 def mistyped(text: str, chance: Random) -> str:
-    """A text with one typing error: two letters swapped, one left out or one doubled, within a longer word."""
+    """Return a text with one typing error: two letters swapped, one left out or one doubled, within a longer word."""
     places = [match.start() for match in re.finditer(r"(?<=\w\w)\w(?=\w\w)", text)]
     if not places:
         return text

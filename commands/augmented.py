@@ -15,30 +15,31 @@ def augmented(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Print table 5.1 of the thesis beside a dataset's own figures, and the effects of augmenting.
+    """Print table 5.1 of the thesis next to a dataset's own figures, and the effects of augmenting.
 
-    Counts programs, steps, nodes and edges; lengths of programs before and after; conditions of their objects at the
-    start (figure 5-4, for cups and sauce pans); near-duplicates of one parent in one home (none are expected). With
-    --circumstances every augmented program and its original run again: the share of programs that do each step they
-    have kept as the original does it (sitting, lying, holding, with what was opened or switched on), and the number
-    that are never seated at what the original does in its seat.
+    The output counts programs, steps, nodes and edges. It has lengths of programs before and after, and conditions of
+    their objects at the start (figure 5-4, for cups and sauce pans). It counts near-duplicates of one parent in one
+    home (none are expected). With --circumstances every augmented program and its original run again. The output then
+    has the share of programs that do each step they have kept as the original does it: sitting, lying, holding, with
+    the same things opened or switched on. It also has the number of programs that are never seated for an activity that
+    the original does in its seat.
 
     \b
     Examples:
-      python cli.py augmented data_out --out figures
-      python cli.py augmented data_out --circumstances
+      hearth augmented data_out --out figures
+      hearth augmented data_out --circumstances
     """
-    from hearth.analysis.augment_figures import figures
+    from hearth.analysis.augmentation_results import figures
 
     found = figures(_published(dataset))
     if circumstances:
-        from hearth.analysis.kept_circumstances import measure
+        from hearth.analysis.context_preservation import measure
         from hearth.commands.progress_line import bar
 
         with bar("shares run again") as seen:
             found["circumstances"] = measure(_published(dataset), workers, seen)
     if out is not None:
-        from hearth.analysis.augment_pictures import draw
+        from hearth.analysis.augmentation_charts import draw
 
         found["files"] = [str(file) for file in draw(found, out)]
     if as_json:

@@ -58,17 +58,17 @@ def build(
 
     Sources are recognised by content: the ActivityPrograms release (zip or folder), tables (CSV), program text, plans
     of language models, JSON or JSON Lines, sketches, scene graphs, a dataset; packed or not. A second build runs only
-    what changed, and a stopped build continues. The last table counts the records of each stage. Folders may be URLs
-    (s3://bucket/folder), with the extra `remote`.
+    the changed parts, and a stopped build continues. The last table counts the records of each stage. Folders may be
+    URLs (s3://bucket/folder), with the extra `remote`.
 
     \b
     Examples:
-      python cli.py build --out data_out
-      python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
-      python cli.py build corpus.csv --out small --tier mini
-      python cli.py build release.zip --out hard --strength thesis
-      python cli.py build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
-      python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
+      hearth build --out data_out
+      hearth build release.zip my_programs/ --out mine --seed 7 --workers 4
+      hearth build corpus.csv --out small --tier mini
+      hearth build release.zip --out hard --strength thesis
+      hearth build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
+      hearth build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
     from hearth.pipelines.engine.tiers import STANDARD
 
@@ -76,7 +76,7 @@ def build(
 
 
 def _tiered(context: typer.Context, tier: str = "") -> dict[str, Any]:
-    """The options of a command, with those that its tier and its strength set."""
+    """Return the options of a command, with those that its tier and its strength set."""
     from hearth.pipelines.engine.tiers import tiered
 
     sources_of = {name: context.get_parameter_source(name) for name in context.params}
@@ -102,7 +102,7 @@ def ingest(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py ingest batch.csv --out data_out
+      hearth ingest batch.csv --out data_out
     """
     _run(context, "ingest")
 
@@ -113,7 +113,7 @@ def validate(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py validate --out data_out
+      hearth validate --out data_out
     """
     _run(context, "validate")
 
@@ -140,9 +140,9 @@ def sample(
 
     \b
     Examples:
-      python cli.py sample --out data_out --seed 7 --home maple
-      python cli.py sample release.zip --homes all --homes their_homes --json
-      python cli.py sample release.zip --homes all --nodes 290
+      hearth sample --out data_out --seed 7 --home maple
+      hearth sample release.zip --homes all --homes their_homes --json
+      hearth sample release.zip --homes all --nodes 290
     """
     folder = next((Path(text) for text in homes or () if text != _ALL), None)
     if not sources:
@@ -178,16 +178,16 @@ def augment(
 
     \b
     Examples:
-      python cli.py augment --out data_out --per-program 5
-      python cli.py augment --out data_out --strength thesis
-      python cli.py augment --out data_out --target 30000 --homes maple,birch --json
+      hearth augment --out data_out --per-program 5
+      hearth augment --out data_out --strength thesis
+      hearth augment --out data_out --target 30000 --homes maple,birch --json
     """
     folder, names = _homes_or_names(homes)
     chosen = {**_tiered(context), "home": [*(home or ()), *names], "homes": folder}
     if not as_json:
         _run(context, "augment", chosen)
         return
-    from hearth.analysis.augment_figures import outcome
+    from hearth.analysis.augmentation_results import outcome
 
     found = _built("augment", chosen)
     output.emit(outcome(out / "augment"))
@@ -195,7 +195,7 @@ def augment(
 
 
 def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
-    """The values of --homes: a folder, and names of homes."""
+    """Return the values of --homes: a folder, and names of homes."""
     texts = [text for text in given or () if text != _ALL]
     folder = next((Path(text) for text in texts if Path(text).is_dir()), None)
     return folder, [name for text in texts if not Path(text).is_dir() for name in text.split(",") if name]
@@ -207,7 +207,7 @@ def render(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py render --out data_out --pictures 10 --videos 2
+      hearth render --out data_out --pictures 10 --videos 2
     """
     _run(context, "render")
 
@@ -218,7 +218,7 @@ def publish(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py publish --out data_out
+      hearth publish --out data_out
     """
     _run(context, "publish")
 
@@ -255,7 +255,7 @@ _OTHERS = frozenset({"sources", "out", "only", "tier", "size", "log_json", "as_j
 
 
 def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of a build, from the options of a command."""
+    """Return the settings of a build, from the options of a command."""
     found = {_NAMES.get(name, name): value for name, value in chosen.items() if name not in _OTHERS}
     folders = {name: str(found[name]) for name in ("homes_folder", "kb_folder") if found.get(name) is not None}
     return {**found, **folders, **({"homes": tuple(found["homes"] or ())} if "homes" in found else {})}

@@ -1,4 +1,4 @@
-"""`challenge`: tasks in which agents help somebody, runs of agents on them, and how good they were."""
+"""`challenge`: tasks in which agents help a partner, runs of agents on them, and their scores."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def tasks(
 
     \b
     Examples:
-      python cli.py challenge tasks wah --split test-1 --out test-1.json
-      python cli.py challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
+      hearth challenge tasks wah --split test-1 --out test-1.json
+      hearth challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
     """
     from hearth.challenges.published_tasks import PUBLISHED
     from hearth.challenges.task_files import suite, write
@@ -90,13 +90,13 @@ def run_tasks(
 
     \b
     Examples:
-      python cli.py challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
-      python cli.py challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
-      python cli.py challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
-      python cli.py challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
+      hearth challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
+      hearth challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
+      hearth challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
+      hearth challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
     """
-    from hearth.challenges.episode_spread import spread_over
-    from hearth.challenges.lineup import Lineup
+    from hearth.challenges.episode_agents import Lineup
+    from hearth.challenges.parallel_episodes import spread_over
     from hearth.challenges.suite_runs import run
     from hearth.challenges.task_files import read
     from hearth.commands.progress_line import bar
@@ -117,7 +117,7 @@ def score(results: Path, *, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py challenge score hp.jsonl --json
+      hearth challenge score hp.jsonl --json
     """
     from hearth.challenges.verification import read_whole
 
@@ -139,9 +139,9 @@ def build(
 
     \b
     Examples:
-      python cli.py challenge build wah --out data_out/wah
-      python cli.py challenge build wah hp.jsonl random.jsonl --out data_out/wah
-      python cli.py query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
+      hearth challenge build wah --out data_out/wah
+      hearth challenge build wah hp.jsonl random.jsonl --out data_out/wah
+      hearth query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
     """
     from hearth.challenges.challenge_tables import publish
     from hearth.challenges.verification import read_whole
@@ -181,17 +181,17 @@ def table(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them beside its text.
+    """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them next to its text.
 
-    What the folder has already is not run again. Intervals are of 95 %; t, p and effect compare lengths with those of
-    the main agent alone, task by task.
+    Results in the folder are kept. Intervals are of 95 %; t, p and effect compare lengths with those of the main agent
+    alone, task by task.
 
     \b
     Examples:
-      python cli.py challenge table wah --out data_out/challenges/wah
-      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah
-      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah --by-set     (figure 7-6a)
-      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah --particles  (figure C-5)
+      hearth challenge table wah --out data_out/challenges/wah
+      hearth challenge table owah --seeds 3 --out data_out/challenges/owah
+      hearth challenge table owah --seeds 3 --out data_out/challenges/owah --by-set     (figure 7-6a)
+      hearth challenge table owah --seeds 3 --out data_out/challenges/owah --particles  (figure C-5)
     """
     from hearth.analysis.challenge_table import TABLES, figure, methods, rows
     from hearth.challenges.task_files import suite
@@ -235,7 +235,7 @@ for _command in (
 
 
 def _print(results: Results, as_json: bool) -> None:
-    """The summary of a run; one object for machines."""
+    """Print the summary of a run; one object for machines."""
     from hearth.challenges.metrics import summary
 
     header = results.header

@@ -13,7 +13,7 @@ def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bo
 
     \b
     Example:
-      python cli.py challenge verify hp.jsonl
+      hearth challenge verify hp.jsonl
     """
     from hearth.challenges.result_files import read
     from hearth.challenges.verification import verify as differences
@@ -30,23 +30,25 @@ def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bo
     else:
         output.report(faults)
         which = "the published tasks" if found.header.suite.published else "other tasks than the published ones"
-        print(f"{len(found.records):,} episodes of {which} done again: {len(faults)} differ")
+        print(f"{len(found.records):,} episodes of {which} replayed: {len(faults)} differ")
     output.status(len(faults), strict=True)
 
 
 def solvable(
     name: str, split: list[str] | None = None, *, limit: int | None = None, workers: int = 0, as_json: bool = False
 ) -> None:
-    """Let who sees everything do each published task alone; the status is 1 if one can't be done, or is done already.
+    """Let an agent that sees everything do each published task alone.
+
+    The status is 1 if a task can't be done, or is done already.
 
     \b
     Examples:
-      python cli.py challenge solvable wah
-      python cli.py challenge solvable owah --split test
+      hearth challenge solvable wah
+      hearth challenge solvable owah --split test
     """
-    from hearth.challenges.definition import challenge
+    from hearth.challenges.challenge_definition import challenge
     from hearth.challenges.published_tasks import tasks
-    from hearth.challenges.solvable import solved
+    from hearth.challenges.solvability import solved
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
@@ -73,11 +75,11 @@ def solvable(
 
 
 def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> None:
-    """Rank runs by speedup, each done again and its metrics computed again; the status is 1 if one is false.
+    """Rank runs by speedup, each replayed and its metrics computed again; the status is 1 if one is false.
 
     \b
     Example:
-      python cli.py challenge board hp.jsonl mine.jsonl
+      hearth challenge board hp.jsonl mine.jsonl
     """
     from hearth.challenges.metrics import summary
     from hearth.challenges.verification import read_whole

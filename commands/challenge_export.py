@@ -16,12 +16,12 @@ def export(
     limit: int | None = None,
     as_json: bool = False,
 ) -> None:
-    """Write what an agent saw, did and earned in each tick of a run, for Minari or LeRobot.
+    """Write an agent's observations, actions and rewards in each tick of a run, for Minari or LeRobot.
 
     \b
     Examples:
-      python cli.py challenge export hp.jsonl --format minari --out hp-minari
-      python cli.py challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
+      hearth challenge export hp.jsonl --format minari --out hp-minari
+      hearth challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
     """
     from hearth.challenges.verification import read_whole
     from hearth.interop.episode_export import export as written

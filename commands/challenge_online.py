@@ -1,4 +1,4 @@
-"""`challenge infer | people`: what helpers that are not given the goal believe, and whether they do harm."""
+"""`challenge infer | people`: the beliefs of helpers that are not given the goal, and the test that they do no harm."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def infer(results: Path, *, workers: int = 0, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py challenge infer nopa.jsonl
+      hearth challenge infer nopa.jsonl
     """
     from hearth.analysis.online_inference import inference
     from hearth.challenges.verification import read_whole
@@ -52,9 +52,9 @@ def people(
 
     \b
     Example:
-      python cli.py challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
+      hearth challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
     """
-    from hearth.analysis.helped_people import helped_people
+    from hearth.analysis.helper_harm import helped_people
     from hearth.challenges.task_files import suite
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
@@ -71,7 +71,7 @@ def people(
 def draw_beliefs(
     out: Path, task: Task, record: Record, helper: str, actions: Sequence[tuple[int, int, str, str]]
 ) -> None:
-    """Draw what a helper believed (figure 7-4); errors as of `helper_beliefs.beliefs`."""
+    """Draw a helper's beliefs (figure 7-4); errors as of `helper_beliefs.beliefs`."""
     from hearth.analysis.goal_belief_drawing import drawn
     from hearth.challenges.helper_beliefs import beliefs
     from hearth.kb.loading.load import default
@@ -80,7 +80,7 @@ def draw_beliefs(
 
 
 def print_by_set(found: Sequence[dict[str, Any]]) -> None:
-    """A table of speedups by goal set (figures 7-6a, C-3)."""
+    """Print a table of speedups by goal set (figures 7-6a, C-3)."""
     there = [row for row in found if "by_set" in row]
     names = tuple(there[0]["by_set"])
     cells = [

@@ -1,4 +1,4 @@
-"""`challenge stats | show`: where tasks start, and what was done in an episode, printed and drawn."""
+"""`challenge stats | show`: the starts of tasks, and the actions of an episode, printed and drawn."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None
 
     \b
     Example:
-      python cli.py challenge stats test-1.json --out figures
+      hearth challenge stats test-1.json --out figures
     """
     from hearth.analysis.challenge_starts import starts
-    from hearth.analysis.distribution import heat_map
+    from hearth.analysis.object_distribution import heat_map
     from hearth.challenges.task_files import read
     from hearth.kb.loading.load import default
     from hearth.storage.names import inside
@@ -51,17 +51,19 @@ def show(
     goal_beliefs: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6, and what
-    the helper believed of the goal as in figure 7-4.
+    """Show the agents' actions in an episode.
 
-    An episode with a helper is drawn beside that of the main agent alone. With --belief it is where the main agent
-    believes wanted things to be, as time goes by (figure B-3).
+    Draw their ways on the floor plan as in the thesis's figure 6-6, and the helper's beliefs about the goal as in
+    figure 7-4.
+
+    An episode with a helper is drawn next to that of the main agent alone. With --belief the drawing shows the places
+    where the main agent believes wanted things to be, over time (figure B-3).
 
     \b
     Examples:
-      python cli.py challenge show nopa.jsonl owah-test-0003 --goal-beliefs beliefs.svg
-      python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
-      python cli.py challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
+      hearth challenge show nopa.jsonl owah-test-0003 --goal-beliefs beliefs.svg
+      hearth challenge show hp.jsonl wah-test-1-0003 --out figure.png
+      hearth challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
     """
     from hearth.analysis import belief_drawing
     from hearth.analysis.episode_drawing import episode_of, furniture, narrated, panels_of, ticks_of

@@ -17,7 +17,7 @@ def diff(first: Path, second: Path, rows: int = 5, strict: bool = False, as_json
 
     \b
     Example:
-      python cli.py diff data_out yesterday/data_out --rows 20
+      hearth diff data_out yesterday/data_out --rows 20
     """
     from hearth.datasets.diff import compare
 
@@ -42,7 +42,7 @@ def _lines(found: TableDifference) -> Iterator[str]:
 
 
 def _key(key: tuple[Any, ...]) -> str:
-    """What identifies a row, as far as it is short."""
+    """Return the key of a row, as far as it is short."""
     return " ".join(str(value) for value in key if value is not None and not isinstance(value, list))
 
 

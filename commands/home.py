@@ -31,7 +31,7 @@ def list_homes(homes: Path | None = None, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py home list --homes my_homes
+      hearth home list --homes my_homes
     """
     from hearth.homes import library
 
@@ -54,13 +54,13 @@ def show(home: str, out: Path | None = None, homes: Path | None = None, as_json:
 
     \b
     Example:
-      python cli.py home show maple --out maple.svg
+      hearth home show maple --out maple.svg
     """
     graph = _graph(home, homes)
     if out is not None:
-        from hearth.homes import drawing
+        from hearth.homes import floor_plan_drawing
 
-        drawing.write(_layout(home, homes), out)
+        floor_plan_drawing.write(_layout(home, homes), out)
     rooms = _rooms(graph)
     if as_json:
         output.emit({"home": home, **_figures(graph), "contents": rooms, "drawing": out})
@@ -77,15 +77,15 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
     """Report the faults of a home or of any scene graph; the status is 1 if there are any.
 
     Nodes without category, properties or states have those of their class in the knowledge, here and wherever a graph
-    is read. Named beside the faults: how many these are, and things that nothing can be done with.
+    is read. The output also names the number of these nodes, and the things that no action applies to.
 
     With --layout, a graph without geometry is laid out, and every relation that the layout can't show is named; these
     are not faults.
 
     \b
     Examples:
-      python cli.py home lint TrimmedTestScene1_graph.json
-      python cli.py home lint TrimmedTestScene1_graph.json --layout
+      hearth home lint TrimmedTestScene1_graph.json
+      hearth home lint TrimmedTestScene1_graph.json --layout
     """
     from hearth.commands.inputs import note_filled
     from hearth.homes import library
@@ -120,7 +120,7 @@ def _codes(faults: Sequence[Diagnostic]) -> dict[str, int]:
 
 
 def met(layout: GraphLayout) -> list[dict[str, Any]]:
-    """For nodes and for each relation, the number in the graph and the number that the layout shows."""
+    """Return for nodes and for each relation the number in the graph and the number that the layout shows."""
     edges = Counter(edge.relation for edge in layout.graph.edges)
     lost = Counter(
         "things" if fault.code == "NO_PLACE" else next(name for name in edges if f") {name} " in fault.message)
@@ -134,21 +134,21 @@ def met(layout: GraphLayout) -> list[dict[str, Any]]:
 def convert(home: str, out: Path, layout: bool = False, homes: Path | None = None, as_json: bool = False) -> None:
     """Write a home as a scene graph in the release's layout, or its node ids by name.
 
-    A file `x.ids.csv` beside a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
+    A file `x.ids.csv` next to a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
 
     \b
     Examples:
-      python cli.py home convert maple maple.json
-      python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
-      python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
+      hearth home convert maple maple.json
+      hearth home convert my_homes/oak.yaml my_homes/oak.ids.csv
+      hearth home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
-    from hearth.homes import exporting, library
+    from hearth.homes import home_export, library
 
     if out.name.endswith(".ids.csv"):
-        written = exporting.write_ids(_layout(home, homes), out)
+        written = home_export.write_ids(_layout(home, homes), out)
     else:
         made = library.graph_layout(home, read_knowledge(None), homes).graph if layout else _graph(home, homes)
-        written = exporting.write_release(made, out)
+        written = home_export.write_release(made, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 
@@ -161,19 +161,19 @@ def export(
     homes: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Write what is in a home for other programs, as they draw it: Blender, three.js, MuJoCo.
+    """Write the drawn contents of a home for other programs: Blender, three.js, MuJoCo.
 
-    A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colours, in an
-    .mtl beside it, and no textures.
+    A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colors, in an
+    .mtl next to it, and no textures.
 
     \b
     Examples:
-      python cli.py home export maple --format gltf
-      python cli.py home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
+      hearth home export maple --format gltf
+      hearth home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
     """
+    from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.rendering.scene.interchange import ENDINGS, write
-    from hearth.rendering.scene.prepared import PreparedScene
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.scene_preparation import PreparedScene
 
     known = read_knowledge(None)
     drawable = with_geometry(_graph(home, homes), home, known)
@@ -189,16 +189,16 @@ def generate(rooms: int = 5, seed: int = 0, out: Path | None = None, as_json: bo
 
     \b
     Example:
-      python cli.py home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
+      hearth home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
     """
-    from hearth.homes import exporting
-    from hearth.homes.procedural.generate import generate as generated_layout
+    from hearth.homes import home_export
+    from hearth.homes.procedural.home_generator import generate as generated_layout
     from hearth.homes.scene_graph import scene
 
     known = read_knowledge(None)
     layout = generated_layout(rooms, seed, known)
     if out is not None:
-        exporting.write(layout, out, known)
+        home_export.write(layout, out, known)
     figures = _figures(scene(layout, known))
     names = ", ".join(room.name for room in layout.plan.rooms)
     text = f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else "")
@@ -220,14 +220,14 @@ def edit(
 
     \b
     Example:
-      python cli.py home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
+      hearth home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
     """
     from hearth.commands.home_edits import edited
-    from hearth.homes import exporting
+    from hearth.homes import home_export
 
     graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),
                         knowledge=read_knowledge(None), name=home)  # fmt: skip
-    exporting.write_release(graph, out)
+    home_export.write_release(graph, out)
     ids = f", new ids {', '.join(map(str, new))}" if new else ""
     text = f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}"
     output.say(text, {"home": home, "file": out, "added": new, **_figures(graph)}, as_json)
@@ -250,14 +250,14 @@ def stats(
 
     \b
     Examples:
-      python cli.py home stats --homes release_homes
-      python cli.py home stats --against release_homes
-      python cli.py home stats --generated 1000
+      hearth home stats --homes release_homes
+      hearth home stats --against release_homes
+      hearth home stats --generated 1000
     """
     from hearth.homes import library
-    from hearth.homes.procedural.generate import generate as generated_layout
+    from hearth.homes.home_statistics import beside, of_homes, placement_distance, places
+    from hearth.homes.procedural.home_generator import generate as generated_layout
     from hearth.homes.scene_graph import scene
-    from hearth.homes.statistics import beside, of_homes, placement_distance, places
 
     known, ours = read_knowledge(None), library.names()
     groups = {
@@ -287,13 +287,13 @@ def stats(
 def ways(names: list[str] | None = None, homes: Path | None = None, workers: int = 0, as_json: bool = False) -> None:
     """Make the shortest ways to everything in homes beforehand, and store them; walks by metres then read them there.
 
-    All homes if none is named. The files are beside our homes, or in the folder that HEARTH_WAYS names. Each belongs
+    All homes if none is named. The files are next to our homes, or in the folder that HEARTH_WAYS names. Each belongs
     to a floor: a home that is changed makes its ways anew, stored or not.
 
     \b
     Examples:
-      python cli.py home ways
-      HEARTH_WAYS=ways python cli.py home ways oak --homes my_homes
+      hearth home ways
+      HEARTH_WAYS=ways hearth home ways oak --homes my_homes
     """
     from hearth.commands.progress_line import bar
     from hearth.homes import library
@@ -318,7 +318,7 @@ def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
     """The mean placement distance of each home to all others."""
     from statistics import fmean
 
-    from hearth.homes.statistics import placement_distance, places
+    from hearth.homes.home_statistics import placement_distance, places
 
     known = read_knowledge(None)
     apart = [
@@ -360,7 +360,7 @@ def _figures(graph: EnvironmentGraph) -> dict[str, Any]:
 
 
 def _rooms(graph: EnvironmentGraph) -> list[dict[str, Any]]:
-    """Each room with what is INSIDE it, counted by class."""
+    """Return each room with the objects INSIDE it, counted by class."""
     nodes = {node.id: node for node in graph.nodes}
     inside: dict[int, Counter[str]] = {node.id: Counter() for node in graph.nodes if node.category == "Rooms"}
     for edge in graph.edges:

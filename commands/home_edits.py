@@ -29,15 +29,15 @@ def edited(
     knowledge: Knowledge,
     name: str = "",
 ) -> tuple[EnvironmentGraph, tuple[int, ...]]:
-    """A graph with things added, removed and moved and states set, and the ids of added things.
+    """Return a graph with things added, removed and moved and states set, and the ids of added things.
 
     In a home with geometry, added and moved things get a position with room on or in their place.
 
     Raises:
         HearthError: an order can't be read, names an unknown node or class, or contradicts the knowledge.
     """
-    from hearth.homes.from_graph.measured import has_geometry
-    from hearth.homes.reposing import posed
+    from hearth.homes.from_graph.layout_from_boxes import has_geometry
+    from hearth.homes.object_repositioning import posed
     from hearth.simulation.world.edit import edit, free_id
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World

@@ -1,4 +1,4 @@
-"""`model table | tables`: the tables of chapters 4 and 5, the thesis's figures beside ours beside yardsticks."""
+"""`model table | tables`: the tables of chapters 4 and 5, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.models.scored_rows import Row
+    from hearth.models.method_scores import Row
 
 FILMS = ("4.2", "4.3", "4.3b", "4.6")
 """Tables of clips and films."""
@@ -28,8 +28,10 @@ def table(
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
-    4.2, 4.3, 4.3b and 4.6 of clips; 5.5 and A.4 of demonstrations.
+    """Print a table of the thesis next to ours.
+
+    The tables are 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4; 4.2, 4.3, 4.3b and 4.6 of
+    clips; 5.5 and A.4 of demonstrations.
 
     Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
     Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
@@ -38,13 +40,13 @@ def table(
 
     \b
     Example:
-      python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
-      python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
-      python cli.py model table 4.2 data_out/clips --model clips-seen --model masks
-      python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
-      python cli.py model table 4.6 data_out/clips --model clips-context --model films-mle
-      python cli.py model table 5.5 data_out/demos --model build/demo2sketch --model chooser --beam 1
-      python cli.py model table A.4 data_out/demos --model build/demo2sketch --model build/retrieve-sketch
+      hearth model table 4.5 data_out --model build/retrieve-edit --repair
+      hearth model table 5.2 data_out --model planner --most 40 --beam 1
+      hearth model table 4.2 data_out/clips --model clips-seen --model masks
+      hearth model table 4.3 data_out/clips --model clips-0 --model clips-1
+      hearth model table 4.6 data_out/clips --model clips-context --model films-mle
+      hearth model table 5.5 data_out/demos --model build/demo2sketch --model chooser --beam 1
+      hearth model table A.4 data_out/demos --model build/demo2sketch --model build/retrieve-sketch
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
@@ -110,8 +112,8 @@ def _print_films(number: str, rows: Sequence[Any]) -> None:
 
 
 def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketches: str, as_json: bool) -> None:
-    """Sketches from demonstrations beside those from descriptions (A.4)."""
-    from hearth.models.demonstrations.kinds_compared import compared
+    """Print sketches from demonstrations next to those from descriptions (A.4)."""
+    from hearth.models.demonstrations.demonstration_comparison import compared
 
     found = compared(dataset, split, models, beam, sketches)
     if as_json:
@@ -139,15 +141,15 @@ def tables(
 ) -> None:
     """Tables 4.2 to 4.6 and 5.2 to 5.4 whole: all their models are trained, each with several seeds, and compared.
 
-    What is trained already is kept, so that the same command goes on after a stop; with the usual budget it takes a
-    night. Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for
-    paraphrases, that are held out of training. Tables of films need a dataset of clips, and are left out without one.
+    Trained models are kept, so that the same command continues after a stop; with the usual budget it takes a night.
+    Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for paraphrases, that
+    are held out of training. Tables of films need a dataset of clips, and are left out without one.
 
     \b
     Examples:
-      python cli.py model tables data_out data_out/synthetic --out data_out/tables
-      python cli.py model tables data_out data_out/synthetic --out quick --table 4.5 --seeds 1 --minutes 1
-      python cli.py model tables data_out --clips data_out/clips --out data_out/tables --table 4.3 --table 4.6
+      hearth model tables data_out data_out/synthetic --out data_out/tables
+      hearth model tables data_out data_out/synthetic --out quick --table 4.5 --seeds 1 --minutes 1
+      hearth model tables data_out --clips data_out/clips --out data_out/tables --table 4.3 --table 4.6
     """
     from hearth.commands.progress_line import bar
     from hearth.models import table_plan
@@ -187,7 +189,7 @@ def _print(rows: Sequence[Row], columns: Mapping[str, str]) -> None:
 
 
 def _score(value: Any) -> str:
-    """A mean with its interval, or a number of the thesis."""
+    """Return a mean with its interval, or a number of the thesis."""
     if value is None:
         return ""
     return f"{value:.3f}" if isinstance(value, float) else f"{value.mean:.3f} ({value.low:.3f}-{value.high:.3f})"

@@ -37,7 +37,7 @@ def emit(value: Any) -> None:
 
 
 def write(file: Path, value: Any) -> None:
-    """Write what `emit` prints into a file."""
+    """Write the output of `emit` into a file."""
     from hearth.storage.files import write_bytes
 
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -57,7 +57,7 @@ _CONTROL = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if
 
 
 def shown(text: str) -> str:
-    """Text of others for a terminal: what would move its cursor, colour it or turn it around is escaped."""
+    """Return a text for a terminal: characters that would move its cursor, color it or turn it around are escaped."""
     return text if text.isprintable() else text.translate(_CONTROL)
 
 
@@ -81,7 +81,7 @@ def say(text: str, document: Any, as_json: bool) -> None:
 
 
 def note(text: str) -> None:
-    """Print information about the work itself, beside its result."""
+    """Print information about the work itself, apart from its result."""
     print(shown(text), file=sys.stderr)
 
 
@@ -183,7 +183,7 @@ def _one_line(message: str) -> str:
 
 
 def _window(source: str, column: int) -> tuple[str, int]:
-    """The part of a long line around `column` (from 1), and the column within it."""
+    """Return the part of a long line around `column` (from 1), and the column within it."""
     shown = "".join(char if char.isprintable() else " " for char in source)
     start = column - 1 - _AROUND if column - 1 > _SHOWN - _AROUND else 0
     start = max(0, start)

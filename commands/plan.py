@@ -9,12 +9,12 @@ def plan(dataset: Path, problems: int = 200, workers: int = 0, as_json: bool = F
     """Solve planning problems of a dataset with Fast Downward, and run the plans in the engine.
 
     Problems are those of `export --format pddl`, spread over the executions of the dataset. Each is read by
-    unified-planning and solved; the plan is run as steps in the execution's environment and must reach its goal. The
-    status is 1 if one does not. Needs unified-planning and up-fast-downward; a problem takes a few seconds.
+    unified-planning and solved. The plan is run as steps in the execution's environment and must reach its goal. The
+    status is 1 if a plan does not. Needs unified-planning and up-fast-downward; a problem takes a few seconds.
 
     \b
     Example:
-      python cli.py plan data_out --problems 20
+      hearth plan data_out --problems 20
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset

@@ -26,13 +26,13 @@ def replay(
     Prints the number of executed programs and of end graphs reproduced exactly, in every state and relation, and the
     edges of each mismatch. The release is read in place, one program at a time.
 
-    Episodes are done again and compared tick by tick, with the state of the home, the poses and the failures as they
-    were recorded; the status is 1 if one differs.
+    Episodes are replayed and compared tick by tick, with the recorded state of the home, poses and failures; the status
+    is 1 if one differs.
 
     \b
     Examples:
-      python cli.py replay activityprograms.zip
-      python cli.py replay episode.jsonl
+      hearth replay activityprograms.zip
+      hearth replay episode.jsonl
     """
     if release.name.endswith((".jsonl", ".jsonl.gz")):
         _episodes(release, limit, as_json)
@@ -49,7 +49,7 @@ def replay(
     from hearth.simulation.rules import DEFAULT, REPLAY
 
     known = default()
-    gc.freeze()  # What is loaded by now stays, and of a program nothing is in circles: looking through it takes time
+    gc.freeze()  # Objects loaded by now stay, and a program's objects form no circles: looking through them takes time
     gc.set_threshold(20_000)  # and finds nothing.
     found = islice(run_all(release, known, DEFAULT if default_rules else REPLAY), limit)
     with bar("programs run") as seen:

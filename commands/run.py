@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from hearth.commands import output
 from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
-from hearth.commands.run_shown import Outcome, document, failed, show
+from hearth.commands.run_output import Outcome, document, failed, show
 from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
@@ -39,18 +39,19 @@ def run(
     """Run a program in a home as it is, and print the changes of each step.
 
     Its objects are bound to nodes of the home so that as many steps as possible run. A step that fails ends the run:
-    the output says why and what would fix it. With --sample the home is changed and filled until the program
-    runs, and what was added is printed. The status is 1 if the program did not run as given, or if a goal is not
-    reached: what holds at the end, what was done (`WATCH(television)`), in which order (`then`), or alternatives.
+    the output says why and names a fix. With --sample the home is changed and filled until the program
+    runs, and the additions are printed. The status is 1 if the program did not run as given, or if a goal is not
+    reached: a literal at the end, an action (`WATCH(television)`), an order (`then`), or alternatives.
 
     Actions are read by --rules: ours (default), those of the release of 2018 (replay), or those of VirtualHome 2.x
-    (evolving_graph: what is in an opened thing that one stands at is within reach, a room only walked into is not). By
-    `auto` a graph in which no two things are CLOSE is read by the last, any other home by ours.
+    (evolving_graph). By evolving_graph the contents of an opened thing are within reach of a character next to it, and
+    a room only walked into is not. By `auto` a graph in which no two things are CLOSE is read by the last, any other
+    home by ours.
 
     \b
     Examples:
-      python cli.py run watch_tv.txt --home maple --explain
-      python cli.py run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
+      hearth run watch_tv.txt --home maple --explain
+      hearth run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
     known = read_knowledge(kb, home, graph, homes)
@@ -107,7 +108,7 @@ def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
 
 def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rules) -> Outcome:
     """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
-    from hearth.grounding.trial import LEAST, as_given, attempt
+    from hearth.grounding.grounded_run import LEAST, as_given, attempt
     from hearth.repair.remedies import stop_reason
     from hearth.schemas.failures import Failure
 

@@ -1,4 +1,4 @@
-"""Output of `score`: a table or JSON of means, first failures, what was left out, and the rows that were refused."""
+"""Output of `score`: a table or JSON of means and first failures, the parts left out, and the refused rows."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from hearth.commands import output
 
 if TYPE_CHECKING:
     from hearth.scoring.evaluate import Options, Scored, Summary
-    from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.refused_rows import FirstFaults
 
 
 def show(scored: Sequence[Scored], how: Options, by: str | None, rejects: FirstFaults, as_json: bool) -> None:
-    """Print the means of all scores, by a field if one is named, or everything as JSON."""
+    """Print the means of all scores, by a field if a field is named, or everything as JSON."""
     from hearth.scoring.evaluate import by_field, summarise
 
     summary, groups = summarise(scored, how.seed), by_field(scored, by, how.seed) if by else {}

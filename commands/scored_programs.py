@@ -12,11 +12,11 @@ from hearth.kb.language.fuzzy import Fuzzy
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring.environments import GRAPH, HOME
-from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.line_reader import LineReader, in_order
-from hearth.scoring.lines import Line
+from hearth.scoring.line_sequences import Line
 from hearth.scoring.prediction_rows import has_predictions
 from hearth.scoring.predictions import Pair, read_pairs
+from hearth.scoring.refused_rows import FirstFaults
 from hearth.storage.input_files import placed
 from hearth.storage.rejects import Reject
 
@@ -69,7 +69,7 @@ def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults, fuz
 
 
 def _lines(given: inputs.Given) -> tuple[Line, ...]:
-    """The lines of a program in order: its steps, and those that are refused with their codes."""
+    """Return the lines of a program in order: its steps, and those that are refused with their codes."""
     return in_order(given.program.steps, given.program.lines, given.faults)
 
 

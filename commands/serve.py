@@ -28,15 +28,16 @@ def serve(
     """Serve the rooms for people, and the researcher's desk, on 127.0.0.1.
 
     Everything is kept in DIR, in an embedded database or, with --store, in a PostgreSQL that servers of many machines
-    share. What people made and others accepted is what `build DIR` reads. Prints the address and the link to the desk,
-    whose token is also in DIR/.server/desk-token. Ctrl-C stops it; what was accepted is kept, also if it is killed.
+    share. `build DIR` reads the contributions that other people accepted. Prints the address and the link to the desk,
+    whose token is also in DIR/.server/desk-token. Ctrl-C stops it; accepted contributions are kept, also if it is
+    killed.
 
     \b
     Examples:
-      python cli.py serve
-      python cli.py serve --study people-alone
-      python cli.py serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
-      python cli.py serve --public https://homes.example.org --proxy 127.0.0.1
+      hearth serve
+      hearth serve --study people-alone
+      hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
+      hearth serve --public https://homes.example.org --proxy 127.0.0.1
     """
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)

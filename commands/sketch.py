@@ -32,18 +32,18 @@ def sketch(
     """Print the sketches of programs: the steps that do not depend on the environment.
 
     A sketch has the fewest steps from which, in several homes, repairs still reach the goal of the program, and the
-    steps of which only the description speaks. With --judge the sketches are compared with people's: precision, recall
-    and F1 over steps, beside two baselines, one of which knows the answers. With --model a learned model decides:
-    `ours`, fitted on our own annotations, or a file that --fit wrote, fitted on others' on top of ours. With --folds it
-    is cross-validated: fitted on some activities, tested on others.
+    steps of which only the description speaks. With --judge the sketches are compared with people's. The output then
+    has precision, recall and F1 over steps, and those of two baselines, one of which knows the answers. With --model a
+    learned model decides: `ours`, fitted on our own annotations, or a file that --fit wrote, fitted on others' on top
+    of ours. With --folds it is cross-validated: fitted on some activities, tested on others.
 
     \b
     Examples:
-      python cli.py sketch watch_tv.txt
-      python cli.py sketch release.zip --judge sketch_annotation.json --disagreements
-      python cli.py sketch release.zip --judge sketch_annotation.json --folds 10
-      python cli.py sketch release.zip --judge sketch_annotation.json --fit people.json
-      python cli.py sketch watch_tv.txt --model people.json
+      hearth sketch watch_tv.txt
+      hearth sketch release.zip --judge sketch_annotation.json --disagreements
+      hearth sketch release.zip --judge sketch_annotation.json --folds 10
+      hearth sketch release.zip --judge sketch_annotation.json --fit people.json
+      hearth sketch watch_tv.txt --model people.json
     """
     from hearth.analysis.coverage import scripts
     from hearth.schemas.diagnostics import HearthError

@@ -27,7 +27,7 @@ def shipped(*, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py study list
+      hearth study list
     """
     from hearth.studies.study_file import SHIPPED, named
 
@@ -44,8 +44,8 @@ def check(study: str, *, as_json: bool = False) -> None:
 
     \b
     Examples:
-      python cli.py study check people-with-helpers
-      python cli.py study check mine.yaml
+      hearth study check people-with-helpers
+      hearth study check mine.yaml
     """
     from collections import Counter
 
@@ -90,13 +90,13 @@ def simulate(
 ) -> None:
     """Let agents take part in people's places, by the code that people's trials go through, until all is done.
 
-    The other study that it is about, such as people's lengths alone, is simulated first. What a stopped simulation had
-    written is kept; the same command goes on from there.
+    The other study that it is about, such as people's lengths alone, is simulated first. The events of a stopped
+    simulation are kept; the same command continues from there.
 
     \b
     Examples:
-      python cli.py study simulate people-with-helpers --out build/studies
-      python cli.py study report build/studies/people-with-helpers
+      hearth study simulate people-with-helpers --out build/studies
+      hearth study report build/studies/people-with-helpers
     """
     from hearth.storage.names import inside
     from hearth.studies.study_tables import helper_fault
@@ -155,15 +155,15 @@ def prepare(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Make what a study with people needs: the agent's episodes in its tasks, and the films that are judged.
+    """Make the files that a study with people needs: the agent's episodes in its tasks, and the films to judge.
 
     Films that are there already are kept.
 
     \b
     Examples:
-      python cli.py study prepare programs-by-lcs --out collected/studies
-      python cli.py study prepare programs-by-lcs --predictions predicted.jsonl --out collected/studies
-      python cli.py study prepare likeness-of-films --people collected --out collected/studies
+      hearth study prepare programs-by-lcs --out collected/studies
+      hearth study prepare programs-by-lcs --predictions predicted.jsonl --out collected/studies
+      hearth study prepare likeness-of-films --people collected --out collected/studies
     """
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
@@ -186,8 +186,8 @@ def export(source: Path, *, out: Path, store: str = "", study: str = "", as_json
 
     \b
     Examples:
-      python cli.py study export build/studies/people-with-helpers --out tables
-      python cli.py study export collected --study people-alone --out tables
+      hearth study export build/studies/people-with-helpers --out tables
+      hearth study export collected --study people-alone --out tables
     """
     from hearth.studies.study_tables import export as write
 
@@ -205,8 +205,8 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
 
     \b
     Examples:
-      python cli.py study report build/studies/people-with-helpers --out report
-      python cli.py study report collected --study people-alone --json
+      hearth study report build/studies/people-with-helpers --out report
+      hearth study report collected --study people-alone --json
     """
     from hearth.studies.study_figures import names_of
     from hearth.studies.study_findings import findings
@@ -246,9 +246,9 @@ def figure(
 
     \b
     Examples:
-      python cli.py study figure 6-8 --out build/studies
-      python cli.py study figure 7-6b --out build/studies
-      python cli.py study figure 4-9 --out build/studies
+      hearth study figure 6-8 --out build/studies
+      hearth study figure 7-6b --out build/studies
+      hearth study figure 4-9 --out build/studies
     """
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
@@ -274,7 +274,7 @@ def forget(source: Path, person: str, *, store: str = "", study: str = "", as_js
 
     \b
     Example:
-      python cli.py study forget collected 3f6c0a9d2b7e4815 --study people-alone
+      hearth study forget collected 3f6c0a9d2b7e4815 --study people-alone
     """
     from hearth.studies.study_tables import person_of
 
@@ -284,7 +284,7 @@ def forget(source: Path, person: str, *, store: str = "", study: str = "", as_js
 
 
 def _opened(source: Path, store: str, study: str) -> Collected:
-    """The study of a folder that was simulated into, or that the server keeps its store in."""
+    """Return the study of a folder that was simulated into, or that the server keeps its store in."""
     from hearth.kb.loading.load import default
     from hearth.studies.study_folder import EVENTS, opened
 
@@ -299,7 +299,7 @@ def _opened(source: Path, store: str, study: str) -> Collected:
 
 
 def _alone(collected: Collected, source: Path, store: str) -> Collected | None:
-    """The study whose lengths are those without a helper, from where the other one is."""
+    """Return the study with the lengths without a helper, from the place of the other study."""
     from hearth.studies.study_folder import EVENTS, beside
 
     if (source / EVENTS).is_file() and not store:

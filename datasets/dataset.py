@@ -16,10 +16,10 @@ from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
 from hearth.datasets.stored_homes import StoredHome
-from hearth.schemas.brief import cut
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.published_rows import StoredRunRow
+from hearth.schemas.short_repr import cut
 from hearth.schemas.tables import TABLES
 from hearth.storage.manifest import NAME
 
@@ -65,7 +65,7 @@ class Dataset:
             path: of the folder.
             failures: whether runs, exports and scores have the executions in which the program fails, too. Queries
                 always have them.
-            remembers: whether what queries learn of the files stays in memory, 0.1 MB a file: the next are faster.
+            remembers: whether facts about files stay in memory, 0.1 MB a file: the next queries are faster.
 
         Raises:
             HearthError: the path is not a dataset, or a newer version wrote it, or it is incomplete.
@@ -97,13 +97,15 @@ class Dataset:
 
     @property
     def connection(self) -> Any:
-        """A DuckDB connection with the views and macros, which reaches this folder only; `sql` refuses what changes it.
+        """Return a DuckDB connection with the views and macros.
+
+        The connection reaches this folder only; `sql` refuses statements that change it.
 
         After a build has replaced the dataset, a new connection to the current one is made.
 
         Raises:
             HearthError: MISSING_FILE, if a table is missing; DAMAGED_FILE, if one cannot be read; errors of
-                `published_manifest`, if what replaced the dataset is none.
+                `published_manifest`, if the replacement is not a dataset.
         """
         now = version(self.folder)
         if now is not None and now != self._version:

@@ -21,7 +21,7 @@ _FOOTERS = """
     )
     FROM parquet_metadata($paths) WHERE path_in_schema = $key GROUP BY file_name
 """
-"""Of each file with the column: its least and greatest value, and whether all its row groups say theirs."""
+"""The ranges of each file with the column: its least and greatest value, and whether all row groups state theirs."""
 
 
 class Range(NamedTuple):
@@ -33,7 +33,7 @@ class Range(NamedTuple):
 
 
 def reading_between(folder: Path, table: str, low: str, high: str) -> str:
-    """What a query reads instead of a table when it asks for a range of ids: the files that may have some.
+    """Return the expression that replaces a table in a query for a range of ids: the files that may have some.
 
     Args:
         folder: of the dataset; of the present format, or one whose table has its own files.
@@ -50,9 +50,11 @@ def reading_between(folder: Path, table: str, low: str, high: str) -> str:
 
 @lru_cache(maxsize=16)
 def _ranges(folder: str, table: str, key: str, _: tuple[int, int] | None) -> tuple[Range, ...]:
-    """The ranges of all files, where one may have all ids if its footer does not say which; read again after a build.
+    """Return the ranges of all files; a file whose footer has no range may have all ids.
 
-    DuckDB reads the footers, as pyarrow ends the process where one has damaged statistics of sizes.
+    The ranges are read again after a build.
+
+    DuckDB reads the footers, because pyarrow ends the process where one has damaged statistics of sizes.
     """
     import duckdb
 

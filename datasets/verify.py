@@ -14,9 +14,9 @@ from hearth.datasets.dataset_knowledge import other_base
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify_folder import AGAIN, manifest_faults, other_files, unknown
-from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.short_repr import brief
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES
 from hearth.simulation.world.home import Home
 from hearth.storage.manifest import NAME
@@ -64,8 +64,8 @@ class Verdict:
 def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     """Check a dataset from its folder alone; the result is the same for any number of workers.
 
-    Files are checked first: if one is missing, differs from the manifest or has other columns, the other checks, which
-    depend on it, are skipped.
+    Files are checked first: if a file is missing, differs from the manifest or has other columns, the other checks,
+    which depend on it, are skipped.
 
     Args:
         path: of the dataset.
@@ -197,7 +197,7 @@ def _count(dataset: Dataset, table: str) -> int:
 
 
 def _listed(dataset: Dataset, code: Code, table: str, query: str, message: str) -> Iterator[Diagnostic]:
-    """A fault of the table for each value that a query finds."""
+    """Yield a fault of the table for each value that a query finds."""
     values = [value for (value,) in dataset.rows(query)[1]]
     for value in values[:SHOWN]:
         yield Diagnostic(code, message.format(value=value), str(dataset.folder / table), found=str(value))
@@ -246,7 +246,7 @@ class StoredHomes:
         self.home = cache(self._home)
 
     def _home(self, name: str) -> Home:
-        """The home of that name.
+        """Return the home of that name.
 
         Raises:
             KeyError: the name is unknown.
@@ -323,6 +323,6 @@ def _replay(job: tuple[str, list[str]]) -> Wrong:
 
 @lru_cache(maxsize=1)
 def opened(folder: str) -> tuple[Dataset, StoredHomes]:
-    """A dataset and its homes, cached per process."""
+    """Return a dataset and its homes, cached per process."""
     dataset = Dataset.open(folder, remembers=False)
     return dataset, StoredHomes(dataset)

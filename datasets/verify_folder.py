@@ -90,7 +90,7 @@ def _other_parts(folder: Path, content: dict[str, Any]) -> Iterator[str]:
 
 
 def other_files(folder: Path) -> Iterator[Diagnostic]:
-    """What is wrong with the catalog, which is made again and compared, and with the timing."""
+    """Yield the faults of the catalog, which is made again and compared, and of the timing."""
     path, timing = folder / CATALOG, folder / TIMING
     if not path.is_file():
         yield Diagnostic(Code.MISSING_FILE, "a dataset has it, the folder has not", str(path), suggestion=AGAIN)
@@ -116,7 +116,7 @@ def _known_sql(folder: Path) -> str | None:
 
 def _expected(folder: Path, sql: str) -> list[Any]:
     with TemporaryDirectory() as aside:
-        path = Path(aside) / "again.duckdb"  # by the name of a catalog it would look for the tables beside itself
+        path = Path(aside) / "again.duckdb"  # under the name of a catalog it would look for tables in its own folder
         make_catalog(path, folder, sql)
         return _holds(path)
 

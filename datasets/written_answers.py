@@ -24,7 +24,7 @@ _BATCH = 2_048
 
 
 def plain(value: Any) -> Any:
-    """A value of DuckDB's as JSON has it; what JSON has no form for, numbers of more than 64 bits too, as text."""
+    """Return a value of DuckDB's for JSON; a value without a form there, such as a number over 64 bits, as text."""
     if isinstance(value, dict):
         return {str(key): plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
@@ -118,7 +118,7 @@ def write_answer(dataset: Dataset, query: str, path: Path, form: str = "") -> in
         dataset: that is asked.
         query: the question.
         path: the file; one of before is replaced.
-        form: of `WRITERS`; by default what the file's name ends in.
+        form: of `WRITERS`; by default the ending of the file's name.
 
     Raises:
         HearthError: as of `Dataset.sql`; UNSUPPORTED_FILE, where the name ends in none of `WRITERS`; UNWRITABLE.

@@ -10,9 +10,9 @@ from typing import Any
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.checkpoint import save
-from hearth.models.data import corpus, facts_of
 from hearth.models.interface import Settings, Training
 from hearth.models.model_registry import MODELS, settings_of
+from hearth.models.text_examples import corpus, facts_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
@@ -33,7 +33,7 @@ def fit(
     how: Mapping[str, Any],
     seen: Seen = unseen,
 ) -> dict[str, Any]:
-    """Train a model and write its checkpoint; what the checkpoint records of the training.
+    """Train a model and write its checkpoint, and return the checkpoint's record of the training.
 
     Args:
         name: in the registry.
@@ -70,7 +70,7 @@ def fit(
 
 
 BOOLEANS = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
-"""How the value of a setting may be written that is true or false."""
+"""Spellings of a true or false setting."""
 
 
 def _changed(name: str, changed: Sequence[str]) -> dict[str, Any]:

@@ -8,20 +8,20 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engine.build_estimates import forecast
 from hearth.pipelines.engine.build_homes import Homes, known_homes
 from hearth.pipelines.engine.engines import engine as make_engine
-from hearth.pipelines.engine.estimates import forecast
-from hearth.pipelines.engine.overlays import kept_overlays, overlays
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, record_of, stage
 from hearth.pipelines.engine.tiers import tiered
+from hearth.pipelines.engine.user_overlays import kept_overlays, overlays
 from hearth.pipelines.render import no_pictures
-from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
+from hearth.schemas.short_repr import brief
 from hearth.schemas.stage_rows import RejectedRow
 from hearth.storage.fetching import fetched
 from hearth.storage.lock import locked
@@ -40,11 +40,11 @@ _SHOWN = 20
 
 @dataclass(frozen=True, slots=True)
 class Funnel:
-    """What became of every record.
+    """The counts of records through the stages of a build.
 
     Attributes:
         stages: counts by stage, in order, of the stages that have run.
-        records: what a record of each of them is, and what was left out.
+        records: the meaning of a record of each of them, and a note of the records that were left out.
         fresh: stages that were not up to date.
         dataset: the folder of the published dataset; None before it is published.
         columns: the columns of each table that was read, by field.
@@ -157,7 +157,7 @@ def _note_lacking(progress: Progress) -> None:
 
 
 def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
-    """The counts in the manifests of a build."""
+    """Return the counts in the manifests of a build."""
     manifests = {name: read_manifest(settings.folder(name)) for name in STAGES}
     counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
     records = {name: record_of(name, manifest.content["plan"]) for name, manifest in manifests.items() if manifest}
@@ -169,7 +169,7 @@ def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
 
 
 def _unread(ingested: Manifest | None) -> Iterator[str]:
-    """The files that `ingest` refused whole, with the reason; at most `_SHOWN`, then their number."""
+    """Yield the files that `ingest` refused whole, with the reason; at most `_SHOWN`, then their number."""
     if ingested is None:
         return
     rows = pq.read_table(ingested.folder / REJECTS, columns=["record_id", "file", "message", "fault"]).to_pylist()

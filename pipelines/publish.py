@@ -16,10 +16,10 @@ from hearth.datasets.format.split_columns import PARTS
 from hearth.datasets.format.splits import LEFT_OUT
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.final_tables import finish, strength_used
-from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.split_assignment import Assignment, assignment
 from hearth.pipelines.engine.stage import Job, Partition, Stage
+from hearth.pipelines.engine.user_overlays import overlays, overlays_used
 from hearth.schemas.failures import Code
 from hearth.schemas.published_rows import EnvironmentRow, ExecutionRow, PerturbedRow, ProgramRow, RepairedRow
 from hearth.schemas.row_types import Row, columns_of
@@ -97,7 +97,7 @@ def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
     if not perturbed and case["program_id"] != context.last:
         context.last = case["program_id"]
         yield f"programs.{case['split'] or LEFT_OUT}", {**program_row(case), **STAMP}
-    # What came of repairing: for an original, nothing.
+    # The outcome of repairing: for an original, nothing.
     came: Any = {"program_id": None, "execution_id": None, "parent_id": case["program_id"]} if perturbed else {}
     if case["environment_id"] != context.environment:
         context.environment = case["environment_id"]

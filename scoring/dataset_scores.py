@@ -17,11 +17,11 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
 from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, scored
-from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.line_reader import LineReader
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.prediction_rows import Named
 from hearth.scoring.predictions import Pair, read_pairs
+from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.engine import run
 from hearth.simulation.rules import RULES
 from hearth.storage.parallel import Seen, spread, unseen
@@ -30,7 +30,7 @@ PART = 250
 """References in memory at a time, the unit of a worker's work."""
 
 _ID = "execution_id::VARCHAR AS execution_id"
-"""As text: a stranger's table may have ids of another type, which no reference has."""
+"""The id as text: a stranger's table may have ids of another type, which no reference has."""
 
 Job = tuple[str, list[Pair], Options]
 """A dataset's folder, pairs without their references, and how to score them."""
@@ -94,7 +94,7 @@ def score_given(
 
 
 def _read(dataset: Dataset, file: Path, rejects: FirstFaults | None = None, fuzzy: Fuzzy = Fuzzy.TYPOS) -> list[Pair]:
-    """A pair for each execution of a dataset; `line` is 0 where the file lacks it."""
+    """Return a pair for each execution of a dataset; `line` is 0 where the file lacks it."""
     opened.cache_clear()
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
     return read_pairs(file, known, LineReader(dataset.knowledge, fuzzy), _named(dataset), rejects)
@@ -135,7 +135,7 @@ def _scored_share(job: Job) -> list[Scored]:
 def _scored(
     case: StoredCaseRow, pairs: Sequence[tuple[Pair, BothLcs]], homes: Source, options: Options
 ) -> Iterator[Scored]:
-    """The scores of an execution's predictions, given with their LCS."""
+    """Yield the scores of an execution's predictions, given with their LCS."""
     with using(f"execution {case['execution_id']}"):
         world = start_of(case["environment"], case["home"], homes)
         options = replace(options, rules=RULES[case["rules"]])
@@ -150,7 +150,7 @@ def _scored(
 
 
 def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
-    """A pair with its reference, and the fields for grouping, without a goal that its row brings along."""
+    """Return a pair with its reference, and the fields for grouping, without a goal that its row brings along."""
     with using(f"execution {case['execution_id']}"):
         steps = program_of(case, bindings_of(case["bindings"])).steps
     given = {name: value for name, value in pair.more.items() if name not in GOALS}
@@ -158,7 +158,7 @@ def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
 
 
 def _named(dataset: Dataset) -> Named:
-    """A function from a row without `id` to its executions."""
+    """Return a function from a row without `id` to its executions."""
     of_program: dict[str, list[str]] = {}
     there: dict[tuple[str, str], list[str]] = {}
     query = f"SELECT {_ID}, program_id::VARCHAR, home::VARCHAR FROM executions WHERE {dataset.included} ORDER BY 1"
@@ -184,7 +184,7 @@ def _every(dataset: Dataset) -> list[str]:
 
 
 def chosen(dataset: Dataset, split: str = "", part: str = "", originals: bool = False) -> list[str]:
-    """The ids of the executions in a part of a split, sorted; without a split, of all that the dataset includes.
+    """Return the ids of the executions in a part of a split, sorted; without a split, of all that the dataset includes.
 
     Args:
         dataset: with the executions.

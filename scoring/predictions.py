@@ -9,10 +9,10 @@ from hearth.datasets.format.ids import names_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.first_faults import SHOWN, FirstFaults
 from hearth.scoring.line_reader import LineReader
-from hearth.scoring.lines import Lines, Reader, Source, read, steps_of
+from hearth.scoring.line_sequences import Lines, Reader, Source, read, steps_of
 from hearth.scoring.prediction_rows import Named, Row, rows_of, source_of
+from hearth.scoring.refused_rows import SHOWN, FirstFaults
 
 EXAMPLE = '{"id": "p1", "predicted": "[Walk] <kitchen> (1)", "reference": ["[Walk] <kitchen> (1)"]}'
 
@@ -87,7 +87,7 @@ def read_pairs(
 
 
 def _as_known(row: Row, known: Mapping[str, Lines]) -> Row:
-    """The row under the id of its reference, which may be of another version."""
+    """Return the row under the id of its reference, which may be of another version."""
     return replace(row, id=next((name for name in names_of(row.id) if name in known), row.id))
 
 
@@ -105,7 +105,7 @@ def _references(references: Path | Mapping[str, Source], reader: Reader, faults:
 def _rows(
     path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None, numbered: bool = False
 ) -> list[Row]:
-    """The rows of a file with unique ids; faults of the others are added to `faults`."""
+    """Return the rows of a file with unique ids; faults of the others are added to `faults`."""
     rows = _unique(rows_of(path, columns, faults, named, numbered), path, faults)
     if not rows and not faults:
         raise HearthError.of(Code.EMPTY, "no predictions", file=str(path), suggestion=f"write rows like {EXAMPLE}")
@@ -113,7 +113,7 @@ def _rows(
 
 
 def _unique(found: Iterable[Row], path: Path, faults: FirstFaults) -> list[Row]:
-    """The first row of each id; the others are faults."""
+    """Return the first row of each id; the others are faults."""
     rows: dict[str, Row] = {}
     for row in found:
         first = rows.setdefault(row.id, row)
@@ -125,7 +125,7 @@ def _unique(found: Iterable[Row], path: Path, faults: FirstFaults) -> list[Row]:
 
 
 def _whole(row: Row, path: Path, reader: Reader, faults: FirstFaults, alone: bool) -> Pair | None:
-    """The pair of a row with its own reference, or without one; None if the row is refused."""
+    """Return the pair of a row with its own reference, or without one; None if the row is refused."""
     if alone and row.values.get("reference") is None:
         return _pair(row, None, path, reader, faults)
     reference = _program(row, "reference", path, reader)

@@ -1,4 +1,4 @@
-"""Tables that somebody wrote with a spreadsheet or a program: CSV whose first line names the columns."""
+"""Tables from a spreadsheet or a program: CSV whose first line names the columns."""
 
 import csv
 import io
@@ -18,7 +18,7 @@ DELIMITERS = ",;\t|"
 
 
 def delimiter_of(line: str) -> str:
-    """What separates the cells of a table, by its first line: the most frequent of `DELIMITERS`."""
+    """Return the separator of a table's cells, by its first line: the most frequent of `DELIMITERS`."""
     return max(DELIMITERS, key=line.count)
 
 

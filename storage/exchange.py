@@ -1,4 +1,4 @@
-"""A folder takes the place of another in one step: whoever opens it finds the old or the new one, never none."""
+"""A folder takes the place of another in one step: a reader that opens it finds the old or the new one, never none."""
 
 import ctypes
 import os
@@ -20,24 +20,24 @@ _EXCHANGE = 2
 
 
 def beside(folder: Path) -> Path:
-    """Where the next version of a folder is written."""
+    """Return where the next version of a folder is written."""
     return _real(folder).with_name(f".{folder.name}")
 
 
 def away(folder: Path) -> Path:
-    """Where the version before stands for a moment, on systems that cannot exchange two folders in one step."""
+    """Return where the version before stands for a moment, on systems that cannot exchange two folders in one step."""
     return _real(folder).with_name(f".{folder.name}.old")
 
 
 def _real(folder: Path) -> Path:
-    """The folder that a link leads to: the link stays."""
+    """Return the folder that a link leads to: the link stays."""
     return folder.resolve() if folder.is_symlink() else folder
 
 
 def start_from(folder: Path, files: Iterable[Path]) -> None:
     """Make the folder for the next version, with these files of the present one in it; they share their bytes.
 
-    Nothing may write into these files: what changes must be written anew and renamed.
+    Nothing may write into these files: a changed file must be written anew and renamed.
     """
     following = beside(folder)
     if following.exists():
@@ -55,7 +55,7 @@ def start_from(folder: Path, files: Iterable[Path]) -> None:
 
 
 def put_in_place(folder: Path) -> None:
-    """Give the next version its folder's name; what stood there goes."""
+    """Give the next version its folder's name; the former folder goes."""
     following, before, folder = beside(folder), away(folder), _real(folder)
     if not folder.exists():
         following.rename(folder)
@@ -74,14 +74,17 @@ def tidy(folder: Path) -> None:
 
 
 def recover(folder: Path) -> None:
-    """Bring back what was moved away for a moment, where that moment was the last of a build."""
+    """Bring back the folder that was moved away for a moment, where that moment was the last of a build."""
     if not folder.exists():
         with suppress(FileNotFoundError):
             away(folder).rename(folder)
 
 
 def present(folder: Path) -> Path:
-    """Where a folder is to be read: by its own name, or, for the moment of its replacement, where it was moved."""
+    """Return where a folder is to be read.
+
+    By its own name, or, for the moment of its replacement, where it was moved.
+    """
     return folder if folder.exists() or not away(folder).exists() else away(folder)
 
 

@@ -16,7 +16,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
 from hearth.schemas.rng import derive, rng
 from hearth.schemas.syntax import parse_program, print_lines
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.metrics.lcs import score
 from hearth.scoring.predictions import read_pairs
 from hearth.simulation.engine import Execution
@@ -25,7 +25,7 @@ from hearth.studies.judged_films import JudgedFilm
 from hearth.studies.study import Band, Study
 
 HOMES = ("rowan", "willow")
-"""Where programs are filmed: the homes of testing."""
+"""The homes in which programs are filmed: the homes of testing."""
 
 DRAWN = 600
 """Synthetic programs that are drawn, of which those that fit are damaged."""
@@ -47,7 +47,7 @@ class Written(NamedTuple):
 
 
 def judged_programs(study: Study, knowledge: Knowledge, predictions: Path | None = None) -> list[JudgedFilm]:
-    """As many programs of each band as the study asks for; only those that run in a home of testing are taken.
+    """Return as many programs of each band as the study asks for; only those that run in a home of testing.
 
     Args:
         study: its films' bands.
@@ -85,13 +85,13 @@ def _film(study: Study, band: Band, turn: int, one: Written, home: str) -> Judge
 
 
 def execution_in(program: Program, home: Home, seed: int) -> Execution | None:
-    """A program's execution in an environment that is drawn for it; None where it does not run in the home."""
+    """Return a program's execution in an environment that is drawn for it; None where it does not run in the home."""
     found = sample(program, home, seed, program.title)
     return None if isinstance(found, Failure) else found[1]
 
 
 def program_of(film: JudgedFilm) -> Program:
-    """The program of a film."""
+    """Return the program of a film."""
     title, _, description = film.about.partition(": ")
     return Program(
         title=title, description=description, steps=parse_program("\n".join([title, "", *film.content]))[0].steps

@@ -1,4 +1,4 @@
-"""The server as one ASGI application: rooms, start page, desk, files, and what a request must pass."""
+"""The server as one ASGI application: rooms, start page, desk, files, and the checks on every request."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def application(
         study: the file of the study.
         films: a dataset whose films people describe.
         hosts: names of a public address by which people come, over https.
-        rooms: what it consists of.
-        rates: how fast one may ask; as usual if None.
+        rooms: the rooms of the server.
+        rates: limits on the rate of requests; the usual ones if None.
     """
     templates = _templates(rooms)
     rates, follows = rates or usual_rates(), tuple(room.opens for room in rooms)
@@ -141,7 +141,7 @@ def _answer(web: Web, address: Address, request: Request, session: Session | Non
     """Run a handler, in a thread.
 
     Raises:
-        WebError: NO_SESSION or NOT_ALLOWED, if whoever asks may not; what the handler raises.
+        WebError: NO_SESSION or NOT_ALLOWED, if the sender may not ask; errors of the handler.
     """
     if address.who is Who.PERSON and session is None:
         raise nobody()

@@ -1,4 +1,4 @@
-"""How much and how fast one sender may ask."""
+"""Limits on the size and the rate of one sender's requests."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ MOST_SENDERS = 10_000
 
 
 class Rate:
-    """At most `burst` requests at once and `each_second` in the long run, of each sender.
+    """A limit of each sender: at most `burst` requests at once and `each_second` in the long run.
 
     Args:
         each_second: requests a second.
@@ -69,5 +69,5 @@ class Rate:
 
 
 def usual_rates() -> dict[str, Rate]:
-    """The limits of `RATES`, with nothing counted yet."""
+    """Return the limits of `RATES`, with nothing counted yet."""
     return {name: Rate(each_second, burst) for name, (each_second, burst) in RATES.items()}

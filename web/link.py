@@ -1,4 +1,4 @@
-"""A person's socket: messages in are checked, faults are answered, and the room sees what is in order alone."""
+"""A person's socket: messages in are checked, faults are answered, and the room gets only valid messages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Link:
     """A socket of a session.
 
     Attributes:
-        web: what all handlers share.
+        web: the common state of all handlers.
         session: whose it is.
         socket: for the address's parts, and for closing.
     """
@@ -72,5 +72,5 @@ class Link:
 
 
 def nobody() -> WebError:
-    """The refusal of whoever has no session."""
+    """Return the refusal for a sender without a session."""
     return WebError(Code.NO_SESSION, "session", "the token of a session", "none, or an unknown one")

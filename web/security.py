@@ -1,4 +1,4 @@
-"""What holds for every answer and every request, before any room sees it: headers, hosts, origins."""
+"""The rules for every answer and every request, before any room sees it: headers, hosts, origins."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
 }
-"""Of every answer: nothing runs or loads that did not come from this server, and nothing inline."""
+"""Headers of every answer: only scripts and files of this server run or load, and nothing inline."""
 
 SECURE = {"Strict-Transport-Security": "max-age=31536000"}
 """Of answers to people who come by https."""
@@ -36,7 +36,7 @@ class Security:
     """Adds the headers to every answer; refuses requests for other hosts and from pages of other servers.
 
     Args:
-        app: what answers otherwise.
+        app: the application that answers otherwise.
         hosts: names, besides this machine's own, by which people may ask (a public address).
     """
 

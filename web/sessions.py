@@ -32,7 +32,7 @@ class Session(NamedTuple):
 
 
 def digest(token: str) -> str:
-    """What the store keeps of a token."""
+    """Return the store's record of a token."""
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()
 
 
@@ -93,7 +93,7 @@ def take_tab(store: Store, session: str, tab: str) -> None:
 
 
 def check_tab(connection: sql.Connection, session: str, tab: str) -> None:
-    """Refuse a tab that is not the one that may act; called within the transaction of what it does.
+    """Refuse a tab that is not the one that may act; called within the transaction of its action.
 
     Raises:
         WebError: LOCKED.

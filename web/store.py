@@ -1,6 +1,6 @@
-"""Where everything is kept: one database, embedded (SQLite) or of many machines (PostgreSQL), one schema.
+"""The store of all data: one database, embedded (SQLite) or of many machines (PostgreSQL), one schema.
 
-A write is one transaction, isolated from all others and on the disk when it returns: what was accepted survives a kill.
+A write is one transaction, isolated from all others and on the disk when it returns: accepted data survives a kill.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Store:
 
     def __init__(self, url: str) -> None:
         self.engine = _engine(url)
-        # SQLite lets one write; who waits here is woken at once, who waits for SQLite tries again later.
+        # SQLite lets one thread write. A thread that waits here is woken at once; SQLite itself would only retry later.
         self._turn: contextlib.AbstractContextManager[Any] = contextlib.nullcontext()
         if self.engine.dialect.name == "sqlite":
             self._turn = deadlines.BoundedLock("the store")
@@ -59,7 +59,7 @@ class Store:
             self.read(partial(_check_columns, _shown(url)))
 
     def read(self, work: Callable[[sql.Connection], T]) -> T:
-        """What a function returns that reads one state of the store and changes nothing.
+        """Return the result of a function that reads one state of the store and changes nothing.
 
         Raises:
             HearthError: TIMED_OUT, UNWRITABLE or DAMAGED_FILE, as of `store_faults.said`.
@@ -83,7 +83,7 @@ class Store:
         return self.read(lambda connection: connection.execute(query).scalar())
 
     def write(self, work: Callable[[sql.Connection], T]) -> T:
-        """Run a function as one transaction; what it returns, once that is on the disk.
+        """Run a function as one transaction, and return its result once the transaction is on the disk.
 
         It may run several times, until it conflicts with no other: it changes nothing but the store.
 
@@ -137,7 +137,7 @@ class Store:
 
 @contextlib.contextmanager
 def usable(place: str, message: str) -> Iterator[None]:
-    """Say of a store that somebody gave why the database refuses it.
+    """Give the reason why the database refuses a store that a user gave.
 
     Raises:
         HearthError: MISSING_FILE.
@@ -239,7 +239,7 @@ def _wait(connection: sql.Connection) -> int:
 
 
 def _begin_sqlite(connection: sql.Connection) -> None:
-    """A writer takes the lock at once, so that what it has read is still so when it writes."""
+    """Let a writer take the lock at once, so that the data it has read still holds when it writes."""
     writes = connection.get_execution_options().get("hearth_writes")
     connection.exec_driver_sql(f"PRAGMA busy_timeout = {_wait(connection)}")
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
@@ -256,7 +256,7 @@ def _transaction(engine: sql.Engine, options: dict[str, Any]) -> Iterator[sql.Co
 
 
 def _check_schema(connection: sql.Connection) -> None:
-    """Refuse views, which could stand for our tables and never end, and triggers, which follow what we change."""
+    """Refuse views, which could stand for our tables and never end, and triggers, which follow our changes."""
     if connection.dialect.name == "sqlite":
         query = "SELECT type, name FROM sqlite_master WHERE type IN ('view', 'trigger')"
         for kind, name in connection.exec_driver_sql(query):

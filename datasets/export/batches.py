@@ -28,7 +28,7 @@ class Wanted:
 
     @property
     def some(self) -> bool:
-        """Whether not all are wanted."""
+        """Return whether not all are wanted."""
         return bool(self.programs) or self.limit is not None
 
     def chosen(self) -> tuple[str, dict[str, Any]]:
@@ -41,14 +41,14 @@ class Wanted:
 
 
 def programs(dataset: Dataset, wanted: Wanted) -> Iterator[ProgramRow]:
-    """Rows of `programs`, sorted by id."""
+    """Yield rows of `programs`, sorted by id."""
     chosen, asked = wanted.chosen()
     yield from stream(dataset, f"SELECT * FROM programs SEMI JOIN ({chosen}) USING (program_id)"
                                 " ORDER BY program_id", asked)  # fmt: skip
 
 
 def runs(dataset: Dataset, wanted: Wanted, included: str = "") -> Iterator[tuple[ProgramRow, Run]]:
-    """Each execution with its program's row, sorted by the ids of both.
+    """Yield each execution with its program's row, sorted by the ids of both.
 
     Args:
         dataset: to read.
@@ -65,7 +65,7 @@ def runs(dataset: Dataset, wanted: Wanted, included: str = "") -> Iterator[tuple
 
 
 def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]:
-    """The rows of a query."""
+    """Yield the rows of a query."""
     # A separate cursor: a connection has one open result, and homes are read meanwhile.
     with reading(dataset.folder), dataset.connection.cursor() as cursor:
         for batch in cursor.sql(query, params=asked or None).to_arrow_reader(_BATCH):

@@ -1,4 +1,4 @@
-"""The dataset card: `README.md` beside the tables, with the header that `datasets.load_dataset` reads."""
+"""The dataset card: `README.md` next to the tables, with the header that `datasets.load_dataset` reads."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -12,7 +12,7 @@ from hearth.datasets.format.croissant import SUMMARY
 from hearth.datasets.format.datasheet import datasheet
 from hearth.datasets.format.split_columns import PARTS
 from hearth.datasets.format.splits import LEFT_OUT
-from hearth.repair.strengths import MILD
+from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.storage.files import write_bytes
 from hearth.version import ACTION_SET, VERSION
@@ -57,7 +57,7 @@ _LICENCE = ("MIT, as is every source that Hearth reads by default; records keep 
 
 def _datasheet(folder: Path, strength: str) -> Iterator[str]:
     sheet = datasheet(folder, strength)
-    yield from ("## Who made it, how, and for what", "")
+    yield from ("## Authors, method and purpose", "")
     for name in ("motivation", "composition", "process", "authors", "uses", "limits"):
         yield from (f"**{name.capitalize()}.** {sheet[name]}", "")
     yield from (sheet["thesis"], "", "```bibtex", sheet["bibtex"], "```", "")
@@ -139,8 +139,8 @@ _SPLITS = (
 
 _FAILURES = (
     "An original that fails in a perturbed environment is an execution of its own, with `executable` false and a typed",
-    "failure; `perturbations` says how the environment was perturbed and what each perturbation caused, `repairs` what",
-    "was done about it. Such executions are in no split. `hearth.load(..., failures=True)`, `export --failures` and",
+    "failure; `perturbations` has each perturbation of the environment and its effect, `repairs` the repairs that",
+    "followed. Such executions are in no split. `hearth.load(..., failures=True)`, `export --failures` and",
     "`score dataset --failures` have them; otherwise runs, tensors and scores are of executions that ran to their end.",
 )
 

@@ -27,7 +27,10 @@ _BESIDE = (
     r"regexp_replace(regexp_extract(current_setting('temp_directory'), '^(.*[/\\])catalog\.duckdb\.tmp$', 1), "
     r"'([*?\[])', '[\1]', 'g')"
 )
-"""The folder of the opened database: DuckDB sets its folder for temporary files beside it, and gives no other path."""
+"""The folder of the opened database.
+
+DuckDB sets its folder for temporary files next to the database, and gives no other path.
+"""
 
 
 def statements(root: str = "") -> str:
@@ -55,7 +58,10 @@ def published() -> str:
 
 
 def describe(connection: Any) -> None:
-    """Comment what a connection of `attach` has; not done there, for it takes as long as all the views."""
+    """Comment the tables and columns of a connection of `attach`.
+
+    A step of its own, for it takes as long as all the views.
+    """
     import duckdb
 
     for statement in comments():
@@ -75,14 +81,14 @@ def _reading(table: str, root: str = "") -> str:
 
 @cache
 def earlier(format: int) -> dict[str, Any]:
-    """How tables of a format differ from today's, by table: see `earlier.yaml`."""
+    """Return how tables of a format differ from today's, by table: see `earlier.yaml`."""
     if format >= FORMAT:
         return {}
     return dict(packaged("hearth.datasets.format", "earlier.yaml")[format])
 
 
 def reading(table: str, format: int = FORMAT, root: str = "") -> str:
-    """What a query reads a table from: its files, or, in a dataset of an earlier format, a query over them.
+    """Return the expression for a table: its files, or, in a dataset of an earlier format, a query over them.
 
     Args:
         table: its name.
@@ -162,7 +168,7 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
         folder: of the dataset.
         absent: tables without files.
         format: of the dataset.
-        database: its name, where macros are called from others: what they name is looked for where the caller is.
+        database: its name, where macros are called from others: names in a macro are looked up at the caller.
     """
     from hearth.schemas.tables import TABLES
 

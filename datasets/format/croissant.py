@@ -7,7 +7,7 @@ from typing import Any
 import pyarrow as pa
 
 from hearth.datasets.format.datasheet import datasheet
-from hearth.repair.strengths import MILD
+from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.program import MOST_OBJECTS
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of
 from hearth.schemas.yaml_extent import packaged
@@ -15,9 +15,7 @@ from hearth.storage.files import file_digest, write_json
 from hearth.version import RELEASED, VERSION
 
 NAME = "croissant.json"
-SUMMARY = (
-    "Programs of household activities, run in homes: what was done, what changed, what broke and how it was mended."
-)
+SUMMARY = "Programs of household activities, run in homes: their actions, the changes, the failures and the repairs."
 PARQUET = "application/x-parquet"
 LICENSE = "https://spdx.org/licenses/MIT.html"
 
@@ -111,14 +109,14 @@ def _within(table: str, kind: pa.StructType, path: str) -> list[dict[str, Any]]:
 
 
 def _place(table: str, kind: pa.StructType, path: str) -> dict[str, Any]:
-    """The objects that the steps of a list have in one place; empty where a step has fewer."""
+    """Return the objects that the steps of a list have in one place; empty where a step has fewer."""
     place = path[path.rindex("[") + 1 : -1]
     meaning = f"Of each entry, the object in place {place}, from 0; empty where there are fewer."
     return {**_head(table, path, place, meaning, True), "subField": _within(table, kind, path)}
 
 
 def _head(table: str, path: str, name: str, meaning: str, listed: bool) -> dict[str, Any]:
-    """What every field has; `steps[*].objects[0].name` is `programs/steps/objects/0/name`."""
+    """Return the common keys of every field; `steps[*].objects[0].name` is `programs/steps/objects/0/name`."""
     words = path.replace("[*]", "").replace("[", ".").replace("]", "").split(".")
     head = {"@type": "cr:Field", "@id": "/".join([table, *words]), "name": name, "description": meaning}
     return {**head, "repeated": True} if listed else head

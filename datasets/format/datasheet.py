@@ -1,9 +1,9 @@
-"""Who wrote a dataset, how it was made, for what, and what it does not show: the same wherever it is said."""
+"""A dataset's authors, method, purpose and limits: the same in every place."""
 
 from pathlib import Path
 
 from hearth.datasets.format.ids import OURS
-from hearth.repair.strengths import MILD, strength
+from hearth.repair.perturbation_strengths import MILD, strength
 from hearth.schemas.yaml_extent import packaged
 
 STRENGTH = "strength"

@@ -3,12 +3,12 @@
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, ObjectClass, Placement
-from hearth.kb.tools.reasons import Reasons
+from hearth.kb.knowledge_records import Action, ObjectClass, Placement
+from hearth.kb.tools.correction_reasons import Reasons
 
 
 def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
-    """Everything about a class; placements and what is done with it, most usual first."""
+    """Return everything about a class; placements and uses, most usual first."""
     name = thing.name
     taken = [[a.name for a in knowledge.actions.values() if knowledge.affords(a.name, n, name)] for n in (0, 1)]
     return {

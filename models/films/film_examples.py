@@ -1,4 +1,4 @@
-"""Films as examples for a writer of programs: what a classifier says of their clips, and what is done in them."""
+"""Films as examples for a writer of programs: a classifier's probabilities for their clips, and their steps."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from hearth.models.data import facts_of
+from hearth.models.execution_trials import Trial
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
 from hearth.models.films.film_executions import shown_films
-from hearth.models.films.seen_model import TrainedSeenModel
+from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.interface import Steps
-from hearth.models.tried_programs import Trial
+from hearth.models.text_examples import facts_of
 from hearth.storage.files import value_digest
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ class FilmExample(NamedTuple):
 
     Attributes:
         execution: its id.
-        clips: what a classifier says of its clips: all that a writer reads.
-        steps: what is done, by the classes of its objects.
+        clips: a classifier's probabilities for its clips: all that a writer reads.
+        steps: its steps, by the classes of their objects.
         trial: its execution, in which other programs may be tried.
     """
 
@@ -36,7 +36,7 @@ class FilmExample(NamedTuple):
 
 
 def film_examples(dataset: Dataset, part: str, reader: TrainedSeenModel, most: int = 0) -> list[FilmExample]:
-    """The films of a part; each is read once.
+    """Return the films of a part; each is read once.
 
     Args:
         dataset: with clips.
@@ -70,7 +70,7 @@ class _Question:
 def film_probabilities(
     dataset: Dataset, clips: Clips, part: str, most: int, reader: TrainedSeenModel
 ) -> tuple[ClipProbabilities, ...]:
-    """What a classifier says of each film of a part.
+    """Return a classifier's probabilities for each film of a part.
 
     It takes two seconds a film, and several writers read the same: a process remembers it.
 

@@ -1,4 +1,4 @@
-"""What the films of a dataset show: the world at their start, and what is done by the classes of its objects."""
+"""The contents of a dataset's films: the world at their start, and their steps by the classes of the objects."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from hearth.models.execution_trials import Trial, trials
 from hearth.models.interface import Steps
-from hearth.models.tried_programs import Trial, trials
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef
@@ -25,12 +25,12 @@ class Shown(NamedTuple):
 
     @property
     def world(self) -> World:
-        """The world at the start."""
+        """Return the world at the start."""
         return self.trial.world
 
 
 def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
-    """What the films of some executions show, in their order."""
+    """Return the contents of the films of some executions, in their order."""
     found = trials(dataset, executions)
     if missing := [name for name in executions if name not in found]:
         raise HearthError.of(Code.UNKNOWN_ID, f"a clip is of an unknown execution, `{missing[0][:80]}`")

@@ -1,4 +1,4 @@
-"""What the chooser learns from: objects of sketches with their nodes, and steps with what could have come instead.
+"""The training data of the chooser: objects of sketches with their nodes, and steps with their alternatives.
 
 Nodes and steps before a choice are those of the program; only the choice is predicted.
 """
@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from hearth.models.decoding.options import Grammar
-from hearth.models.sketches.choices import Choice
-from hearth.models.sketches.grounded import Grounded
+from hearth.models.decoding.next_step_options import Grammar
+from hearth.models.sketches.candidate_choices import Choice
+from hearth.models.sketches.grounded_programs import Grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import Habits
 from hearth.models.sketches.node_features import Places, node_choice
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Offer
-from hearth.models.sketches.text_clues import NO_CLUES, Clues
+from hearth.models.sketches.text_features import NO_CLUES, Clues
 from hearth.schemas.failures import Failure
 from hearth.schemas.rng import rng
 from hearth.simulation.engine import act
@@ -39,11 +39,11 @@ def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]
 def step_choices(
     examples: Iterable[Grounded], habits: Habits, words: Words, *, text: bool = False, most: int = 24
 ) -> Iterator[Choice]:
-    """The choice of each step of each program, and of its end; those that are not offered are left out.
+    """Yield the choice of each step of each program, and of its end; those that are not offered are left out.
 
     Args:
         examples: programs with their sketches.
-        habits: what programs do beside their sketches.
+        habits: the steps of programs that their sketches leave out.
         words: numbers of names.
         text: whether the title and the description are looked at.
         most: candidates of a choice, the right one and random others.

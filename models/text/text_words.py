@@ -21,6 +21,6 @@ def words(text: str) -> list[str]:
 
 
 def words_of(request: Request) -> list[str]:
-    """The words of the title, a break, and the words of the description, at most `LONGEST` of them."""
+    """Return the words of the title, a break, and the words of the description, at most `LONGEST` of them."""
     title, description = words(request.title), words(request.description)
     return [*title, BREAK, *description][:LONGEST] if title else description[:LONGEST]

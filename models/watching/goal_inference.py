@@ -1,4 +1,4 @@
-"""Goal inference from states (thesis 6.4, B.3.1): what somebody wants, from where things were seen."""
+"""Goal inference from states (thesis 6.4, B.3.1): a person's goal, from the observed places of things."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from hearth.models.interface import Settings, Training, texts
+from hearth.models.watching.demonstration_batches import Counts, Joining, Watched, epoch, in_batches, packed
 from hearth.models.watching.goal_decoding import PossibleGoals, possible_goals
-from hearth.models.watching.sightings import Layout, Predicate, sightings
-from hearth.models.watching.watched_batches import Counts, Joining, Watched, epoch, in_batches, packed
+from hearth.models.watching.object_sightings import Layout, Predicate, sightings
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
@@ -23,8 +23,8 @@ from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.checkpoint import Checkpoint
-    from hearth.models.watching.moment_network import MomentNetwork
-    from hearth.models.watching.thing_network import ThingNetwork
+    from hearth.models.watching.object_network import ThingNetwork
+    from hearth.models.watching.state_network import MomentNetwork
 
 NAME = "goal-inference"
 
@@ -52,13 +52,13 @@ class GoalInference(Settings):
     shape: str = "things"
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", self.heads, "its `heads` share it")
 
     def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:
         """A network that has learnt nothing."""
-        from hearth.models.watching.moment_network import MomentNetwork
-        from hearth.models.watching.thing_network import ThingNetwork
+        from hearth.models.watching.object_network import ThingNetwork
+        from hearth.models.watching.state_network import MomentNetwork
 
         shapes: dict[str, type[ThingNetwork | MomentNetwork]] = {"things": ThingNetwork, "moments": MomentNetwork}
         kind = shapes[self.shape]
@@ -99,7 +99,7 @@ class GoalInference(Settings):
             return in_batches(epoch(learnt, joining, self.joined, chooser), self.batch, len(predicates))
 
         def loss(batch: Any) -> torch.Tensor:
-            from hearth.models.watching.thing_network import loss_of
+            from hearth.models.watching.object_network import loss_of
 
             return loss_of(network, batch)
 
@@ -114,7 +114,7 @@ class GoalInference(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGoalInference:
         """The trained network of a checkpoint."""
-        from hearth.models.filled import filled
+        from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
         content = checkpoint.content
@@ -127,7 +127,10 @@ class GoalInference(Settings):
 
 
 def _parted(examples: Sequence[Watched]) -> tuple[list[Watched], list[Watched]]:
-    """What is learnt from, and the demonstrations of other goals, for validation; none where there are few goals."""
+    """Split examples into those to train on and those for validation, which have other goals.
+
+    There is no validation where there are few goals.
+    """
     goals = list(dict.fromkeys(each.counts for each in examples))
     chosen = set(rng(0, "validation goals").sample(goals, len(goals) // VALIDATION))
     return [e for e in examples if e.counts not in chosen], [e for e in examples if e.counts in chosen]
@@ -176,7 +179,7 @@ class TrainedGoalInference:
         """The goal of a demonstration.
 
         Args:
-            ticks: what happened.
+            ticks: of a demonstration.
             predicates: in the network's order, with the nodes of the demonstration's home; the goal is made of them.
             goals: all of single goal sets that there are, with the names of furniture.
 

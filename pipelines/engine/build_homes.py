@@ -5,7 +5,7 @@ from pathlib import Path
 
 import orjson
 
-from hearth.pipelines.engine.context import knowledge
+from hearth.pipelines.engine.build_context import knowledge
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
 from hearth.simulation.world.home import Home
@@ -54,13 +54,13 @@ class Homes:
         return self._settings.homes or self.catalog()
 
     def catalog(self) -> tuple[str, ...]:
-        """All homes of ours, of the user's folder, and of scene graphs among the sources."""
+        """Return all homes of ours, of the user's folder, and of scene graphs among the sources."""
         from hearth.homes import library
 
         return tuple(sorted({*library.names(self._settings.homes_folder), *self._scenes}))
 
     def graph(self, name: str) -> EnvironmentGraph:
-        """The scene graph of a home of the catalog.
+        """Return the scene graph of a home of the catalog.
 
         Raises:
             HearthError: UNKNOWN_HOME, or every fault of its plan or graph.
@@ -72,15 +72,15 @@ class Homes:
         return library.load_graph(name, self.knowledge, self._settings.homes_folder)
 
     def in_catalog(self, name: str) -> bool:
-        """Whether a home is one of the catalog's."""
+        """Return whether a home is one of the catalog's."""
         return name in self.catalog()
 
     def _edges(self, name: str) -> frozenset[Edge]:
-        """The edges of a home."""
+        """Return the edges of a home."""
         return frozenset(World.start(self.home(name)).edges())
 
     def _home(self, name: str) -> Home:
-        """The home to which environments of that name are differences."""
+        """Return the home to which environments of that name are differences."""
         from hearth.grounding.environments.default_state import prepared
 
         if self.in_catalog(name):

@@ -110,7 +110,7 @@ def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
 
 
 def _sketches(job: Job, annotated: Iterable[stage_rows.SketchRow]) -> Iterator[stage_rows.SketchRow]:
-    """Inferred and inherited sketches, annotated ones, and what augmented programs inherit of these."""
+    """Yield inferred and inherited sketches, annotated ones, and those that augmented programs inherit of these."""
     yield from _rows(job, "augment", "sketches")
     yield from annotated
     of_program = {row["program_id"]: row for row in annotated}
@@ -125,7 +125,7 @@ def _annotated(job: Job) -> Annotations:
 
 
 def _steps_of(job: Job, names: list[str]) -> dict[str, int]:
-    """How many steps these programs have, by id, as far as they are published."""
+    """Return how many steps these programs have, by id, as far as they are published."""
     found: dict[str, int] = {}
     for path in sorted((job.folder / "programs").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["program_id", "steps"], filters=[("program_id", "in", names)])
@@ -223,7 +223,7 @@ def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:
 
 
 def _copy_pictures(job: Job) -> None:
-    """Copy the pictures beside the tables, and remove those of an earlier build."""
+    """Copy the pictures next to the tables, and remove those of an earlier build."""
     for name in ("frames", "films"):
         _copy_folder(job.settings.folder("render") / name, job.folder / name)
 

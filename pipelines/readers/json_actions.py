@@ -18,7 +18,7 @@ ACTIONS = ("action", "verb", "act", "function", "skill", "primitive", "operator"
 """Keys of the action of a step, the likeliest first."""
 
 _WITH_OBJECTS = frozenset({"skill", "primitive", "operator", "command", "name"})
-"""Keys that name an action only where objects stand beside them."""
+"""Keys that name an action only in a record with objects."""
 
 OBJECTS = frozenset({
     "object", "objects", "obj", "noun", "object_name", "where", "container", "surface", "target", "targets",
@@ -35,7 +35,7 @@ _OF_MAPPING = re.compile(r"""\s*(?:```\w*\s*)?\{\s*["'][A-Z][A-Z_]+["']\s*:\s*\[
 
 
 def is_action(value: Any) -> bool:
-    """Whether a value is an object with an action and perhaps objects, or a call of a tool.
+    """Return whether a value is an object with an action and perhaps objects, or a call of a tool.
 
     A row of a dataset's steps, whose objects are objects with a name, is none.
     """
@@ -64,7 +64,7 @@ def step_of(value: dict[str, Any]) -> str:
 
 
 def _related(key: str, value: Any) -> Iterator[tuple[str, str]]:
-    """The names in a value with the word that relates each to what stands before it: its key."""
+    """Yield the names in a value, each with its key: the word that relates it to the names before it."""
     if isinstance(value, dict):
         yield from ((name, _bare(inside)) for inside, part in value.items() for name in _names({inside: part}))
     else:
@@ -169,7 +169,7 @@ def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:
 
 
 def is_mapping(value: Any) -> bool:
-    """Whether an object maps names of actions in capitals to lists of names and numbers, and knows one of them."""
+    """Return whether an object maps action names in capitals, one of them known, to lists of names and numbers."""
     pairs = pairs_of(value) if isinstance(value, dict) else []
     if not pairs or not all(_ACTION.fullmatch(key) and _are_names(part) for key, part in pairs):
         return False
@@ -216,7 +216,7 @@ def _as_is(value: Any) -> str:
 
 
 def looks_like_mapping(text: str) -> bool:
-    """Whether a text begins a mapping of actions, perhaps in a code fence."""
+    """Return whether a text begins a mapping of actions, perhaps in a code fence."""
     return _OF_MAPPING.match(text) is not None
 
 
@@ -266,7 +266,7 @@ _ACTION_NAME = re.compile(r"[a-z]+(?:_[a-z]+)*")
 
 
 def of_planner(plans: Iterable[Any]) -> bool:
-    """Whether lists are all actions of BEHAVIOR's planner, whose things have names of WordNet, or names of actions."""
+    """Return whether lists are all actions of BEHAVIOR's planner, with WordNet's names of things, or action names."""
     steps = [step for plan in plans if isinstance(plan, list) for step in plan]
     if not steps or not all(isinstance(step, str) for step in steps):
         return False

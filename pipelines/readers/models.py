@@ -3,11 +3,11 @@
 from typing import Any
 
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
-from hearth.schemas.blocks import TITLE
+from hearth.schemas.program_blocks import TITLE
 
 
 def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
-    """An object of such a form as a record of ours, with the texts that it holds; None for any other object."""
+    """Return an object of such a form as a record of ours, with the texts that it holds; None for any other object."""
     if is_mapping(value):
         return {"steps": steps_of_mapping(value)}
     answered = _in_batch(value)
@@ -27,7 +27,7 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
-    """The last answer of a chat, with the request before it as title."""
+    """Return the last answer of a chat, with the request before it as title."""
     last = max((at for at, each in enumerate(messages) if each["role"] == "assistant"), default=None)
     asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
     title = asked[-1] if asked else ""
@@ -38,7 +38,7 @@ def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _answer(message: dict[str, Any]) -> dict[str, Any]:
-    """The program of a message: its calls of tools, else its content."""
+    """Return the program of a message: its calls of tools, else its content."""
     if _are_calls(message.get("tool_calls")):
         return {"steps": message["tool_calls"]}
     content = message.get("content")
@@ -49,7 +49,7 @@ def _answer(message: dict[str, Any]) -> dict[str, Any]:
 
 
 def _said(content: Any) -> str:
-    """The text of a message, or of the first of its parts that has one."""
+    """Return the text of a message, or of the first of its parts that has one."""
     if isinstance(content, list):
         parts = [part["text"] for part in content if isinstance(part, dict) and isinstance(part.get("text"), str)]
         content = parts[0] if parts else None
@@ -57,7 +57,7 @@ def _said(content: Any) -> str:
 
 
 def _used(content: list[Any]) -> list[dict[str, Any]]:
-    """The calls of tools among the parts of a message."""
+    """Return the calls of tools among the parts of a message."""
     parts = [part for part in content if isinstance(part, dict) and part.get("type") == "tool_use"]
     return [{"action": part["name"], "args": part.get("input")} for part in parts if isinstance(part.get("name"), str)]
 
@@ -70,7 +70,10 @@ _CONTENTS = ("content", "value", "parts", "text")
 
 
 def _messages(value: Any) -> list[dict[str, Any]]:
-    """The messages of a chat, with `role` and `content` for `from` and `value` of others; empty for other values."""
+    """Return the messages of a chat, with `role` and `content` for `from` and `value` of others.
+
+    The result is empty for other values.
+    """
     if not isinstance(value, list) or not value:
         return []
     found = []
@@ -88,7 +91,7 @@ def _are_calls(value: Any) -> bool:
 
 
 def _in_batch(value: dict[str, Any]) -> dict[str, Any] | None:
-    """The message of the first choice in an answer, or in a line of a batch's output."""
+    """Return the message of the first choice in an answer, or in a line of a batch's output."""
     found: Any = value
     for key in ("response", "body"):
         found = found[key] if isinstance(found, dict) and key in found and "choices" not in found else found

@@ -22,11 +22,11 @@ from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
 from hearth.pipelines.readers.step_texts import Places, numbered, places_of, steps_of
 from hearth.pipelines.readers.text import header
-from hearth.schemas.blocks import STEP
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.program_blocks import STEP
 from hearth.schemas.row_types import QuantityRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.syntax import normal_name, print_lines
@@ -46,7 +46,7 @@ _ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "syntheti
 
 
 def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
-    """The items of each line that is not blank."""
+    """Yield the items of each line that is not blank."""
     yield from of_entries(_lines(path, place), place, asked)
 
 
@@ -58,14 +58,14 @@ def _lines(path: Place, place: str) -> Iterator[Entry]:
 
 
 def of_entries(entries: Iterable[Entry], place: str, asked: Asked) -> Iterator[Item]:
-    """The items of the records of a file, of which several may be the steps of one program."""
+    """Yield the items of the records of a file, of which several may be the steps of one program."""
     for value, line, name in joined(entries, lambda value: row_of_json(value, asked)):
         yield from items(value, place, line, name, asked)
     yield from absent(asked, place)
 
 
 def scan_document(path: Place, place: str, asked: Asked) -> Iterator[Item]:
-    """The items of one value."""
+    """Yield the items of one value."""
     found = located_document(path, place)
     if isinstance(found, Located) and isinstance(found.value, list):
         found.value = {"title": suffixless(PurePath(place).name).replace("_", " "), "steps": found.value}
@@ -74,13 +74,13 @@ def scan_document(path: Place, place: str, asked: Asked) -> Iterator[Item]:
 
 
 def absent(asked: Asked, place: str) -> Iterator[Item]:
-    """The fault of each column that `--columns` names and no record has."""
+    """Yield the fault of each column that `--columns` names and no record has."""
     for field, name in asked.absent() if asked.names else ():
         yield refused(place, lacks(field, name, asked.names, place), f"{place}~{name}")
 
 
 def scan_list(path: Place, place: str, asked: Asked) -> Iterator[Item]:
-    """The items of each entry of a list."""
+    """Yield the items of each entry of a list."""
     entries = enumerate(located_entries(path, place), 1)
     yield from of_entries((Entry(value, line, f"{place}[{number}]") for number, (line, value) in entries), place, asked)
 
@@ -120,14 +120,14 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
 
 
 def _version(value: dict[str, Any]) -> str:
-    """What changes when the places of a record's program do."""
+    """Return a text that changes when the places of a record's program do."""
     texts = (value[key] for key in ("steps", "program", "text") if key in value)
     found = [f"{text.line}.{text.column}.{len(text.raw)}" for text in texts_in(list(texts))]
     return " ".join(found[:1] + found[-1:])
 
 
 def id_fault(own: str, place: str, line: int = 0) -> Reject | None:
-    """Why an id that comes with a record is not taken."""
+    """Return why an id that comes with a record is not taken."""
     if not any(map(leaves, own.split(":"))) and own.isprintable():
         return None
     message = "an id that is a path out of its folder, or not printable"
@@ -137,7 +137,7 @@ def id_fault(own: str, place: str, line: int = 0) -> Reject | None:
 
 
 def read(item: Item, salt: str = "") -> list[IngestedRow | Reject]:
-    """The record of an item; with further descriptions, one record for each.
+    """Return the record of an item; with further descriptions, one record for each.
 
     Args:
         item: as scanned.
@@ -212,7 +212,7 @@ def _placed(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[
 
 
 def _grounded(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow | Reject]:
-    """The row with the graph in which its program runs, if it has one; a faulty graph is refused alone."""
+    """Yield the row with the graph in which its program runs, if it has one; a faulty graph is refused alone."""
     if row["kind"] != "program" or "init_graph" not in value:
         yield row
         return
@@ -246,7 +246,7 @@ _TEXTS = ("steps", "text", "program")
 
 
 def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool, Places]:
-    """The program's text, whether it has natural-language steps, and the places of its lines."""
+    """Return the program's text, whether it has natural-language steps, and the places of its lines."""
     steps = next((value[key] for key in ("steps", "program") if isinstance(value.get(key), list)), None)
     text = "" if steps is not None else next((word for key in _TEXTS if (word := _word(value, key))), "")
     listed: Any = steps_of(text) if steps is None else steps
@@ -269,7 +269,7 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
 
 
 def _step(value: Mapping[str, Any]) -> Step:
-    """A step from a published row."""
+    """Return a step from a published row."""
     objects = tuple(
         ObjectRef(normal_name(str(ref["name"])), int(ref.get("instance") or 1), None)
         for ref in value.get("objects") or ()

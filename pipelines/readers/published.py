@@ -34,7 +34,7 @@ DESCRIPTION_COLUMNS = [
 
 
 def names_it(path: Path) -> bool:
-    """Whether a folder is a dataset."""
+    """Return whether a folder is a dataset."""
     manifest = read_json(path / "manifest.json")
     return isinstance(manifest, dict) and manifest.get("stage") == "publish"
 
@@ -113,7 +113,7 @@ def _check_text(schema: Any, columns: list[str]) -> None:
 
 
 def read(item: Item) -> list[IngestedRow | Reject]:
-    """The record of a row."""
+    """Return the record of a row."""
     value = item.value
     try:
         origin = str(value["origin"])

@@ -27,10 +27,10 @@ from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
 from hearth.pipelines.readers.json_actions import is_only_action
 from hearth.pipelines.readers.relaxed_json import uncommented
-from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph_wrappers import graph_in
+from hearth.schemas.program_blocks import TITLE
 from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
 from hearth.storage.files import SERVED, links_not_followed, walk
 from hearth.storage.rejects import Reject, as_text
@@ -119,14 +119,14 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
 
 
 _OF_PEOPLE = frozenset({crowd.NAME, scenes.NAME, sketches.NAME, spreadsheets.NAME})
-"""Readers that know their files by layouts of their own: these are read beside a release, too."""
+"""Readers that know their files by layouts of their own: these are read next to a release, too."""
 
 
 def _beside_release(found: Recognised) -> Recognised:
-    """A file beside a release: texts and JSON there are about it, and no programs."""
+    """Refuse a file next to a release: texts and JSON there are about the release, and no programs."""
     if found.refusal or found.reader in _OF_PEOPLE:
         return found
-    message, remedy = "a file beside a release: only the release is read", "name the file as a source of its own"
+    message, remedy = "a file next to a release: only the release is read", "name the file as a source of its own"
     return found._replace(
         reader="", refusal=Reject.of(Code.UNSUPPORTED_FILE, message, file=found.inside, suggestion=remedy)
     )

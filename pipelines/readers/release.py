@@ -44,12 +44,15 @@ _HOME = re.compile(r"(.*?)(_graph)?")
 
 
 def names_it(path: str) -> bool:
-    """Whether a path inside an archive or folder belongs to the release's layout."""
+    """Return whether a path inside an archive or folder belongs to the release's layout."""
     return _located(path) is not None
 
 
 def _located(path: str) -> tuple[str, str, str] | None:
-    """The kind of a file, its home ("" for none), and its program (`batch/file`); None for a file of another layout."""
+    """Return the kind of a file, its home ("" for none), and its program (`batch/file`).
+
+    The result is None for a file of another layout.
+    """
     parts = path.split("/")
     for number, part in enumerate(parts[:-1]):
         kind = FOLDERS.get(part)
@@ -104,7 +107,7 @@ def _item(path: Path, place: str, key: str, members: JsonObject, version: str) -
 
 
 def _listing(path: Path) -> Iterable[tuple[str, str]]:
-    """The name and a checksum of each file."""
+    """Return the name and a checksum of each file."""
     if path.is_dir():
         for file in walk(path):
             yield file.relative_to(path).as_posix(), file_digest(file)[:16]
@@ -114,7 +117,7 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
 
 
 def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
-    """A member's bytes, or the fault that prevents reading them."""
+    """Return a member's bytes, or the fault that prevents reading them."""
     path = Path(value["path"])
     place = f"{value['label']}/{name}"
     try:
@@ -129,18 +132,18 @@ def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
             return Diagnostic(Code.FILE_TOO_LARGE, message, place, suggestion="leave it out, or split it")
         with archive(path).open(info) as file:
             return file.read(max(info.file_size, 1))  # Twice as fast as without a size, which is the most there is.
-    except Exception as error:  # archives raise what their compression raises: zlib, lzma, bz2, struct, ...
+    except Exception as error:  # archives raise the errors of their compression: zlib, lzma, bz2, struct, ...
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
 
 
 def text_of(value: JsonObject, name: str) -> str | Diagnostic:
-    """A member of the release as text, or its fault; `value` is an item's, with its path."""
+    """Return a member of the release as text, or its fault; `value` is an item's, with its path."""
     data = _bytes(value, name)
     return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
 
 
 def json_of(value: JsonObject, name: str, loads: Callable[[bytes], Any] = orjson.loads) -> Any:
-    """A member of the release as a JSON value, as `loads` reads it, or its fault."""
+    """Return a member of the release as a JSON value, as `loads` reads it, or its fault."""
     data = _bytes(value, name)
     if isinstance(data, Diagnostic):
         return data
@@ -151,7 +154,7 @@ def json_of(value: JsonObject, name: str, loads: Callable[[bytes], Any] = orjson
 
 
 def read(item: Item) -> Iterator[IngestedRow | Reject]:
-    """The record of a program with all its groundings; a grounding that can't be read is refused alone."""
+    """Yield the record of a program with all its groundings; a grounding that can't be read is refused alone."""
     value = {**item.value, "path": item.path}
     groundings: list[WrittenGroundingRow] = []
     faults: list[Diagnostic] = []
@@ -188,7 +191,7 @@ def _row(item: Item, text: str, groundings: list[WrittenGroundingRow], condition
 
 
 def _collected(value: JsonObject, groundings: list[WrittenGroundingRow]) -> str | Diagnostic:
-    """The text as collected, or else the first grounded one without its node ids."""
+    """Return the text as collected, or else the first grounded one without its node ids."""
     if "collected" in value:
         return text_of(value, value["collected"])
     if groundings:
@@ -218,7 +221,7 @@ def _graphs(value: JsonObject, name: str) -> tuple[GraphRow, ChangeRow | None] |
 
 
 def graphs_of(data: Any, place: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
-    """The start graph of a pair, and the change to its final graph if there is one."""
+    """Return the start graph of a pair, and the change to its final graph if there is one."""
     return _pair_row(partial(pair_of, data), place)
 
 

@@ -23,17 +23,17 @@ NAME = "spreadsheet"
 
 
 def names_it(line: str) -> bool:
-    """Whether a first line names the columns of such a table; a file called `.csv` is one whatever it says."""
+    """Return whether a first line names the columns of such a table; a file called `.csv` is one whatever it says."""
     columns = layout_of(line).columns
     return len(columns) > 1 and {"program", "description"} & guessed(columns, {}, exact=True).keys() != set()
 
 
 class Table(NamedTuple):
-    """What the columns of a table hold.
+    """The contents of a table's columns.
 
     Attributes:
         first: the number of the line that names the columns.
-        layout: the columns and what separates them.
+        layout: the columns and their separator.
         columns: the column of each field.
         steps: columns that hold a step each, in order; empty if a cell holds a whole program, or a row is a step.
         number: the column that counts the steps of a program whose steps are rows.
@@ -68,7 +68,7 @@ def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
 
 
 def table_of(path: Place, given: FieldColumns) -> Table:
-    """What the columns of a table hold: as given, by their names, or by the cells of its first rows."""
+    """Return the contents of a table's columns: as given, by their names, or by the cells of its first rows."""
     rows = Rows(path)
     first, layout, is_row = begun(rows, given)
     names = layout.columns
@@ -111,7 +111,7 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
 
 
 def _row_is_step(layout: Layout, found: FieldColumns) -> bool:
-    """Whether the names of columns say that a row is a step: it is an action, or has one `step`."""
+    """Return whether the names of columns say that a row is a step: it is an action, or has one `step`."""
     return _is_action(layout, found) or plain_name(found.get("program", "")) in ("step", "action")
 
 
@@ -120,7 +120,7 @@ def _is_action(layout: Layout, found: FieldColumns) -> bool:
 
 
 def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
-    """Whether most rows hold one step and stand beside another row of their title, which is nowhere else."""
+    """Return whether most rows hold one step and are next to another row of their title, which is nowhere else."""
     if "title" not in found and "program" in found and _row_is_step(layout, found):
         program = layout.columns.index(found["program"])
         return len(sample) > 1 and all(is_one_step(row[program]) for row in sample if row[program])
@@ -160,7 +160,7 @@ _WORDS = re.compile(r"(?!@)[^\d_]{2,}")
 
 
 def _is_title(cells: Sequence[str]) -> bool:
-    """Whether cells are words, as names of tasks are, and ids such as `w_12` and `@kim` are not."""
+    """Return whether cells are words, as names of tasks are, and ids such as `w_12` and `@kim` are not."""
     return bool(cells) and 2 * sum(bool(_WORDS.fullmatch(cell.strip())) for cell in cells) >= len(cells)
 
 
@@ -189,7 +189,7 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
 
 
 def _reader_of(table: Table) -> Callable[[Any], StepRow | None]:
-    """What reads a row as a step; no row is one where cells hold whole programs."""
+    """Return a function that reads a row as a step; no row is a step where cells hold whole programs."""
     is_counted = table.number and "program" in table.columns and not table.steps
     are_steps = is_counted or table.has_actions or table.by_title
     return row_of_table(table.columns, table.number) if are_steps else lambda _: None

@@ -20,7 +20,7 @@ class StepRow(NamedTuple):
     Attributes:
         key: of its task; "" where the row says nothing of it.
         number: of the step; None where rows are not numbered.
-        is_sure: whether it is a step also where no other row of its task stands beside it.
+        is_sure: whether it is a step also where no row next to it has its task.
         value: the record so far, with `steps`.
     """
 
@@ -97,7 +97,7 @@ def row_of_json(found: Any, given: FieldColumns) -> StepRow | None:
 
 
 def _step(value: Mapping[str, Any], others: Container[str], number: str) -> str | None:
-    """Return the step of an object beside its other keys."""
+    """Return the step of an object, given its other keys."""
     rest = {key: part for key, part in value.items() if key not in others}
     return step_of(rest) if is_action(rest) else text_of({**rest, number: value[number]})
 
@@ -107,13 +107,13 @@ def _record(value: Mapping[str, Any], title: str, step: Any) -> dict[str, Any]:
 
 
 def _key(value: Mapping[str, Any], title: str, number: str) -> str:
-    """Return what rows of one task have in common: its name, else its id."""
+    """Return the common key of the rows of one task: its name, else its id."""
     own = next((key for key in value if key != number and plain_name(key).split()[-1:] == ["id"]), "")
     return str(value[title or own]) if title or own else ""
 
 
 def row_of_table(columns: Mapping[str, str], number: str) -> Callable[[Any], StepRow | None]:
-    """Return what reads a row of a table as a step.
+    """Return a function that reads a row of a table as a step.
 
     Args:
         columns: of the fields; the program's column holds a step, or there are columns of an action and its objects.

@@ -29,7 +29,7 @@ def begun(rows: Rows, given: FieldColumns) -> tuple[int, Layout, bool]:
 
 
 def _names(cells: Sequence[str]) -> tuple[str, ...]:
-    """What the columns of a table are called whose first line is a row; none if the line names them itself."""
+    """Return the names of the columns of a table whose first line is a row; none if the line names them itself."""
     first, *rest = cells or ("",)
     things = [cell for cell in rest if cell.strip()]
     if things and len(rest) < _MOST_OBJECTS and is_known(first, things) and all(map(is_thing, things)):

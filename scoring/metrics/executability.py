@@ -7,10 +7,10 @@ from functools import lru_cache
 
 from hearth.kb.grammar import affordances, check
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.scoring.lines import Lines, steps_of
+from hearth.schemas.short_repr import brief
+from hearth.scoring.line_sequences import Lines, steps_of
 from hearth.scoring.metrics.final_graph import nodes_of
 from hearth.scoring.metrics.parsability import parsability
 from hearth.scoring.predicted_nodes import bind
@@ -26,7 +26,7 @@ SIGNATURE = signature("executable", 2, level="program", empty=0)
 class ErrorClass(StrEnum):
     """The class of a program's first failure.
 
-    `wrong order`: the program's own steps could mend it, if the failing step stood at the last place where it was
+    `wrong order`: the program's own steps could fix it, if the failing step stood at the last place where it was
     possible, or if a later step stood before it. `additional step`: its effect already holds. `missing step`: neither.
     """
 
@@ -69,7 +69,10 @@ ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code
 
 
 PLACED: dict[str, Callable[[World, int], int]] = {"ON": rows.on, "INSIDE": rows.inside}
-"""Where a thing may be put, and the row with the result; repeated, such actions are additional steps."""
+"""Relations in which a thing may be put, each with the row of the result.
+
+A repeated action of this kind is an additional step.
+"""
 
 First = tuple[int, ErrorClass, Code]
 
@@ -102,7 +105,7 @@ class Executability:
 
     @property
     def executable(self) -> bool:
-        """As in A.3: it has steps, the grammar allows every step's objects, and all steps run."""
+        """Return whether the program has steps, the grammar allows every step's objects, and all steps run (A.3)."""
         return not self.empty and self.afforded and self.runs
 
 
@@ -118,7 +121,7 @@ def executability(
         rules: of simulation.
 
     Examples:
-        >>> from hearth.scoring.lines import read
+        >>> from hearth.scoring.line_sequences import read
         >>> found = hearth.executability(read(["[Walk] <fridge> (1)", "[Close] <fridge> (1)"]), world)
         >>> found.executable, found.failed_line, str(found.code)
         (False, 1, 'IS_CLOSED')
@@ -145,7 +148,7 @@ def executability(
 
 
 def _canonical(step: Step, knowledge: Knowledge) -> Step:
-    """The step with canonical names; unchanged if it has a fault."""
+    """Return the step with canonical names; unchanged if it has a fault."""
     names = tuple([ref.name for ref in step.objects])
     action, canonical = _names(step.action, names, knowledge)
     if action == step.action and canonical == names:
@@ -156,13 +159,13 @@ def _canonical(step: Step, knowledge: Knowledge) -> Step:
 
 @lru_cache(maxsize=65_536)
 def _names(action: str, names: tuple[str, ...], knowledge: Knowledge) -> tuple[str, tuple[str, ...]]:
-    """The canonical names of a step without instances, cached because steps recur in a corpus."""
+    """Return the canonical names of a step without instances, cached because steps recur in a corpus."""
     program, _ = check(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
     return program.steps[0].action, tuple(ref.name for ref in program.steps[0].objects)
 
 
 def _fits(step: Step, knowledge: Knowledge) -> bool:
-    """Whether the grammar allows the step's objects in their roles."""
+    """Return whether the grammar allows the step's objects in their roles."""
     return _afforded(step.action, tuple([ref.name for ref in step.objects]), knowledge)
 
 
@@ -172,7 +175,7 @@ def _afforded(action: str, names: tuple[str, ...], knowledge: Knowledge) -> bool
 
 
 def _failed_step(steps: Sequence[Step], failure: Failure) -> int:
-    """The index of the failing step: the agent's step in the failing tick."""
+    """Return the index of the failing step: the agent's step in the failing tick."""
     starts = [number for number, step in enumerate(steps) if not number or not step.joins]
     start = starts[failure.tick]
     end = starts[failure.tick + 1] if failure.tick + 1 < len(starts) else len(steps)
@@ -194,14 +197,14 @@ def _classify(
 
 
 def _is_so(action: str, code: Code, knowledge: Knowledge) -> bool:
-    """Whether a failure implies that the action's effect already holds."""
+    """Return whether a failure implies that the action's effect already holds."""
     if code in ALREADY_IN:
         return action in knowledge.achieving(ALREADY_IN[code])
     return code in ALREADY_SO and action in knowledge.group(ALREADY_SO[code])
 
 
 def _is_put(step: Step, world: World) -> bool:
-    """Whether the object of a put is already at its destination."""
+    """Return whether the object of a put is already at its destination."""
     read = PLACED.get(world.home.knowledge.relation_of(step.action))
     if read is None:
         return False
@@ -210,7 +213,7 @@ def _is_put(step: Step, world: World) -> bool:
 
 
 def _mended_by_order(steps: Sequence[Step], failed: int, worlds: Sequence[World], rules: Rules) -> bool:
-    """Whether the failing step succeeds after moving one step: a later one before it, or itself forward."""
+    """Return whether the failing step succeeds after moving one step: a later one before it, or itself forward."""
     step = steps[failed]
     later = dict.fromkeys(steps[failed + 1 :])
     if any(_runs(worlds[failed], (other, step), rules) for other in later):

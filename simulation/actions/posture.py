@@ -25,7 +25,7 @@ def _lie(world: World, number: int, o: int, rules: Rules) -> World:
 
 
 def stand_up(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Get up; the character stays ON what it sat or lay on, wherever it walks (as the release has it)."""
+    """Get up; the character stays ON its seat or bed, wherever it walks (as the release has it)."""
     agent = world.agents[number]
     failure = _need_rest(world, agent)
     if failure is not None:

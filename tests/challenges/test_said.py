@@ -7,11 +7,11 @@ import sys
 
 import pytest
 
-from hearth.challenges.channels import ProcessChannel
-from hearth.challenges.play import Player, play
-from hearth.challenges.wire import WireAgent
-from hearth.envs.answers import by_words
-from hearth.envs.observations import observation
+from hearth.challenges.agent_channels import ProcessChannel
+from hearth.challenges.episode_loop import Player, play
+from hearth.challenges.wire_protocol import WireAgent
+from hearth.envs.agent_answers import by_words
+from hearth.envs.json_observations import observation
 from hearth.envs.text_protocol import TextAgent
 from hearth.kb.loading.load import default
 from hearth.schemas.agent_messages import Message

@@ -10,10 +10,10 @@ import orjson
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scrambled import scrambled
+from scrambled_worlds import scrambled
 
-from hearth.envs.answers import by_text
-from hearth.envs.observations import observation
+from hearth.envs.agent_answers import by_text
+from hearth.envs.json_observations import observation
 from hearth.envs.text_protocol import description, menu, plain
 from hearth.homes import library
 from hearth.kb.loading.load import default

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from hearth.agents.protocol import Resigned
-from hearth.challenges.play import Player, play
-from hearth.envs.answers import by_text
-from hearth.envs.observations import observation, seen_goal
+from hearth.challenges.episode_loop import Player, play
+from hearth.envs.agent_answers import by_text
+from hearth.envs.json_observations import observation, seen_goal
 from hearth.envs.text_protocol import MOST_LISTED, TextAgent, description, menu, plain, understood
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

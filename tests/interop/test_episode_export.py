@@ -9,8 +9,8 @@ import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_arrays import episodes_of
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
 from hearth.interop.episode_export import FORMATS, export

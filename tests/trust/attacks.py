@@ -153,7 +153,7 @@ def yaml_files() -> Iterator[Attack]:
     """YAML that stands for more than it takes to write, or would call something."""
     from hearth.homes.library import layout_of
     from hearth.kb.loading.load import default
-    from hearth.repair.strengths import load_strengths
+    from hearth.repair.perturbation_strengths import load_strengths
     from hearth.storage.input_files import load_yaml
 
     def read(reader: Callable[[Path], Any], text: str, ground: Ground) -> None:

@@ -22,8 +22,8 @@ def watched() -> tuple[dict[str, Any], dict[str, Any]]:
     """A file of results with the first ticks of an episode, in which a helper infers the goal."""
     from dataclasses import replace
 
+    from hearth.challenges.episode_agents import Lineup
     from hearth.challenges.episodes import Job, played
-    from hearth.challenges.lineup import Lineup
 
     suite = files.suite("owah", "test", limit=1)
     lineup = Lineup("human_like", "nopa", "none")

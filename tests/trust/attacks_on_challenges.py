@@ -112,8 +112,8 @@ def task_files() -> Iterator[Attack]:
 
 def _played() -> list[bytes]:
     """The lines of a true file of results: one task, alone."""
+    from hearth.challenges.episode_agents import Lineup
     from hearth.challenges.episodes import Job, played
-    from hearth.challenges.lineup import Lineup
 
     suite = files.suite("wah", "test-1", limit=1)
     header = result_files.Header(suite, Lineup("human_like", "none"), 1)
@@ -221,10 +221,10 @@ def clients() -> Iterator[Attack]:
 
 
 def _against(sent: bytes) -> Any:
-    from hearth.challenges.channels import Channel
+    from hearth.challenges.agent_channels import Channel
+    from hearth.challenges.episode_loop import Player, play
     from hearth.challenges.episodes import start_of
-    from hearth.challenges.play import Player, play
-    from hearth.challenges.wire import WireAgent
+    from hearth.challenges.wire_protocol import WireAgent
 
     task = files.suite("wah", "test-1", limit=1).tasks[0]
     there, here = os.pipe(), os.pipe()  # to the client, from the client

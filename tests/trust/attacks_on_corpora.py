@@ -189,7 +189,7 @@ def _models() -> Iterator[Attack]:
 
 def rated(path: Path) -> Any:
     """The medians of a sheet."""
-    from hearth.analysis.ratings import medians, read_sheets
+    from hearth.analysis.completeness_ratings import medians, read_sheets
 
     try:
         return medians(read_sheets([path]))

@@ -54,7 +54,7 @@ def opened(folder: Path) -> Any:
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.dataset_homes import own_homes
     from hearth.datasets.verify import verify
-    from hearth.models.data import facts_of
+    from hearth.models.text_examples import facts_of
     from hearth.pipelines.engine.sources import labelled
     from hearth.pipelines.ingest import items, read
 

@@ -177,7 +177,7 @@ def _taken(ground: Ground, data: bytes) -> Any:
 
 def named(path: Path, data: bytes) -> Any:
     """Read a film as `model show` does, and name its clips."""
-    from hearth.models.films.film_shown import cut
+    from hearth.models.films.film_prediction import cut
 
     path.write_bytes(data)
     return _trained("clips-seen").named(cut(film_input.read_masks(path)))

@@ -109,7 +109,7 @@ def changes() -> tuple[tuple[str, Place, Any], ...]:
 
 def _asked(folder: Path, aside: Path) -> Iterator[tuple[str, Callable[[], Any]]]:
     """All that reads a dataset's tables, by name."""
-    from hearth.analysis.augment_figures import figures
+    from hearth.analysis.augmentation_results import figures
     from hearth.datasets.diff import compare
     from hearth.datasets.export.formats import FORMATS, export
     from hearth.datasets.published_programs import programs

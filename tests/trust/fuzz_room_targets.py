@@ -38,8 +38,8 @@ def _tasks() -> bytes:
 
 def _results() -> bytes:
     from hearth.challenges import result_files
+    from hearth.challenges.episode_agents import Lineup
     from hearth.challenges.episodes import Job, played
-    from hearth.challenges.lineup import Lineup
     from hearth.kb.loading.load import default
 
     suite = _suite()
@@ -266,8 +266,8 @@ def _continued(scratch: Path) -> One:
 
 def _answers(scratch: Path) -> One:
     """A line of an agent, and the text in it, in the middle of nothing."""
-    from hearth.challenges.wire import read_answer
-    from hearth.envs.answers import by_number, by_text
+    from hearth.challenges.wire_protocol import read_answer
+    from hearth.envs.agent_answers import by_number, by_text
     from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.simulation.actions.legal import legal

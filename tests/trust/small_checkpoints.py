@@ -98,7 +98,7 @@ def film() -> np.ndarray:
 
 def _name(model: Any) -> Any:
     """The instructions of a film's clips."""
-    from hearth.models.films.film_shown import cut
+    from hearth.models.films.film_prediction import cut
 
     clips = cut(film())
     (found,) = model.readings(clips)
@@ -111,7 +111,7 @@ def colours() -> np.ndarray:
 
 
 def _name_colours(model: Any) -> Any:
-    from hearth.models.films.film_shown import cut
+    from hearth.models.films.film_prediction import cut
 
     return list(model.readings(cut(colours())))
 
@@ -134,7 +134,7 @@ def _sketch(model: Any) -> Any:
 
 def _infer(model: Any) -> Any:
     """The goal of the published demonstration's predicates, where nothing happens."""
-    from hearth.challenges.definition import challenge
+    from hearth.challenges.challenge_definition import challenge
 
     grammar = challenge("wah").grammar
     return model.infer((), grammar.predicates, tuple(grammar.goals))
@@ -212,7 +212,7 @@ def _of_clips() -> Any:
 
 def _seen(**changed: Any) -> Any:
     from hearth.models.films.class_table import ClassTable
-    from hearth.models.films.seen_model import SeenModel, TrainedSeenModel
+    from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel
     from hearth.models.films.step_order import StepOrder
 
     done, _ = _of_clips()

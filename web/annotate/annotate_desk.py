@@ -1,4 +1,4 @@
-"""The researcher's view of annotating: what there is, which blocks are missing, the files."""
+"""The researcher's view of annotating: the contributions, the missing blocks, the files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
-from hearth.pipelines.checks import special
+from hearth.pipelines.checks import special_blocks
 from hearth.schemas.failures import Code
 from hearth.web.annotate import collected_files, withdrawal
 from hearth.web.annotate.annotate_tables import DRAFT, MARKS, PROGRAMS, REVIEWS, TEXTS
@@ -29,7 +29,7 @@ def overview(visit: Visit) -> Response:
 
 
 def download(visit: Visit) -> Response:
-    """A file of what was accepted, or the sheet of grades."""
+    """Return a file of the accepted contributions, or the sheet of grades."""
     name = visit.part("file")
     files = collected_files.collected(visit.web.store)
     data = collected_files.ratings_sheet(visit.web.store).encode() if name == RATINGS else files.get(name, b"")
@@ -81,7 +81,7 @@ def special_texts(store: Store) -> list[tuple[str, int, bool]]:
         for block in stored(draft).blocks
         if block.action == SPECIAL
     )
-    return [(text, number, text in special.blocks()) for text, number in sorted(texts.items(), key=_by_number)]
+    return [(text, number, text in special_blocks.blocks()) for text, number in sorted(texts.items(), key=_by_number)]
 
 
 def _by_number(pair: tuple[str, int]) -> tuple[int, str]:

@@ -24,7 +24,7 @@ from hearth.web.visit import Visit
 
 
 def _home(visit: Visit) -> Response:
-    """What one can do, with what waits for oneself."""
+    """Return the start page: the person's possible tasks, and how many contributions wait for each."""
     store, person = visit.web.store, visit.person
     query = sql.select(sql.func.count()).select_from(TEXTS)
     waiting = {

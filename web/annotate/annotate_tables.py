@@ -1,4 +1,4 @@
-"""What annotators made, by the session that made it (thesis 3.3)."""
+"""The contributions of annotators, by the session that made them (thesis 3.3)."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ REVIEWS = sql.Table(
     _text("before", "the draft as it was submitted"),
     _when(),
 )
-"""What second persons said of programs."""
+"""The judgments of reviewers on programs."""
 
 QUALIFIED = sql.Table(
     "annotate_tests",

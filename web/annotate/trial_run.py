@@ -1,4 +1,4 @@
-"""A program run in a home before it is submitted: what each step changes, and where the character is."""
+"""A program run in a home before it is submitted: the changes of each step, and the character's places."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 
 from hearth.datasets.report.drawn_plans import draw
-from hearth.grounding.trial import Trial, attempt
+from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
@@ -26,13 +26,13 @@ from hearth.web.web_errors import WebError
 
 
 def homes() -> tuple[str, ...]:
-    """The names of our homes."""
+    """Return the names of our homes."""
     return library.names()
 
 
 @lru_cache(maxsize=8)
 def home_of(name: str, known: Knowledge) -> Home:
-    """A home of ours.
+    """Return a home of ours.
 
     Raises:
         WebError: UNKNOWN_HOME.
@@ -44,7 +44,7 @@ def home_of(name: str, known: Knowledge) -> Home:
 
 @lru_cache(maxsize=8)
 def plan_of(name: str, known: Knowledge) -> str:
-    """The floor plan of a home as SVG, in metres; z points up the page."""
+    """Return the floor plan of a home as SVG, in metres; z points up the page."""
     return draw(library.load_graph(name, known).nodes)
 
 
@@ -70,13 +70,13 @@ def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str
 
 
 def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str, Any]:
-    """The same run in 3D, for `replay.js` of the report: `home`, the address of the home's shapes, and `run`.
+    """Return the same run in 3D, for `replay.js` of the report: `home`, the address of the home's shapes, and `run`.
 
     Raises:
         WebError: NOT_RENDERED: nothing of it runs.
         HearthError: MISSING_FILE: libraries for pictures are not installed.
     """
-    from hearth.rendering.film.replay import run_shapes
+    from hearth.rendering.film.replay_3d import run_shapes
 
     library_of("trimesh")
     trial = _trial(_lines(draft)[1], title, home, known)
@@ -88,24 +88,24 @@ def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[
 
 @lru_cache(maxsize=8)
 def shapes_of(name: str, known: Knowledge) -> bytes:
-    """The shapes of a home, as JSON.
+    """Return the shapes of a home, as JSON.
 
     Raises:
         WebError: UNKNOWN_HOME.
     """
-    from hearth.rendering.film.replay import home_shapes
+    from hearth.rendering.film.replay_3d import home_shapes
 
     home_of(name, known)
     return orjson.dumps(home_shapes(library.load_graph(name, known), known))
 
 
 def replay_script() -> bytes:
-    """The script that plays runs in 3D, which reports have, too."""
+    """Return the script that plays runs in 3D, which reports have, too."""
     return (files("hearth.datasets.report") / "assets" / "replay.js").read_bytes()
 
 
 def _lines(draft: Draft) -> tuple[list[int], list[str]]:
-    """The blocks that run, by number and as lines of a program."""
+    """Return the blocks that run, by number and as lines of a program."""
     numbers = [number for number, block in enumerate(draft.blocks) if block.action != SPECIAL]
     return numbers, [draft.blocks[number].line() for number in numbers]
 
@@ -135,5 +135,5 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
 
 
 def _where(pose: Pose | None) -> list[float] | None:
-    """Where the character stands, in metres and degrees; None in homes without geometry."""
+    """Return where the character stands, in metres and degrees; None in homes without geometry."""
     return None if pose is None else [round(pose.x, 2), round(pose.z, 2), round(pose.yaw)]

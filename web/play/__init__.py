@@ -44,7 +44,7 @@ def start_trial(connection: sql.Connection, session: str, trial: Trial, go_on: s
     Args:
         connection: of the transaction.
         session: whose trial it is; it has the first character.
-        trial: as `hearth.web.play.trials.trial` makes it of a task, a helper, an interface, a seed, and what is seen.
+        trial: as `hearth.web.play.trials.trial` makes it, with the helper, the interface, the seed and the view.
         go_on: address of ours to which the page leads once it is over.
 
     Returns:
@@ -54,12 +54,12 @@ def start_trial(connection: sql.Connection, session: str, trial: Trial, go_on: s
 
 
 def trial_address(game: str) -> str:
-    """Where the person plays it."""
+    """Return where the person plays it."""
     return f"/play/game/{game}"
 
 
 def recorded_episode(store: Store, knowledge: Knowledge, game: str) -> Record | None:
-    """What was done in a trial, as result files have it; None while it goes on.
+    """Return the actions of a trial, as result files have them; None while it goes on.
 
     `hearth.web.play.game_results.results` makes files of several.
     """

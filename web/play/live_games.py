@@ -1,4 +1,4 @@
-"""Games that this process knows: each is done again from the store, and kept while somebody plays it here."""
+"""Games that this process knows: each is replayed from the store, and kept while a person plays it here."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from hearth.challenges.channels import SocketChannel
-from hearth.challenges.guard import AgentError
-from hearth.challenges.wire import WireAgent
+from hearth.challenges.agent_channels import SocketChannel
+from hearth.challenges.agent_guard import AgentError
+from hearth.challenges.wire_protocol import WireAgent
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -29,10 +29,13 @@ if TYPE_CHECKING:
     from hearth.web.play.drawn_games import DrawnGame
 
 MOST_GAMES = 300
-"""Games that a process keeps; the one that was not asked for longest is forgotten first, and done again if needed."""
+"""Games that a process keeps; the game unused for longest is forgotten first, and replayed if needed."""
 
 PATIENCE = 15.0
-"""Seconds after which the other of two people waits in a tick, if one has decided and the other is there, undecided."""
+"""Time after which the other of two people waits in a tick, seconds.
+
+It applies if one has decided and the other is there, undecided.
+"""
 
 PROGRAM_WITHIN = 10.0
 """Seconds that a helper's program may think about a tick."""
@@ -44,7 +47,7 @@ class LiveGame:
     Attributes:
         stored: as it was begun.
         game: as far as this process knows it.
-        lock: held by whoever works with `game`.
+        lock: held by the thread that works with `game`.
         port: where the helper's program is waited for; 0 if it is not.
         seen: when a page of it was open last, by `time.monotonic`.
     """
@@ -63,16 +66,16 @@ class LiveGame:
 
     @property
     def port(self) -> int:
-        """Where the helper's program is waited for; 0 if it is not."""
+        """Return where the helper's program is waited for; 0 if it is not."""
         return self._door.port if self._door is not None and not self._door.closed else 0
 
     @property
     def characters(self) -> int:
-        """How many there are."""
+        """Return how many there are."""
         return len(self.game.start.agents)
 
     def other(self, number: int) -> str:
-        """Whether the other of two people is there; "" in a game of one."""
+        """Return whether the other of two people is there; "" in a game of one."""
         people = self.game.trial.people
         return presence(self.signs.get(1 - number)) if len(people) > 1 else ""
 
@@ -109,7 +112,7 @@ class LiveGame:
         return None if left == math.inf else max(0.0, left)
 
     def _now(self, rows: list[Decided]) -> None:
-        """Who has decided in the tick that is under way, and since when."""
+        """Record the characters that have decided in the present tick, and the time of the first decision."""
         self.decided = tuple(each.agent for each in rows)
         self.waiting_since = min((each.at for each in rows), default=0.0)
 
@@ -145,7 +148,7 @@ class LiveGame:
                 self.hurry()
 
     def _after(self) -> None:
-        """Do what is complete, and write the result once it is over."""
+        """Run the complete ticks, and write the result once the game is over."""
         self.sync()
         self._written_if_over()
 
@@ -169,7 +172,7 @@ class LiveGame:
         self._after()
 
     def hurry(self) -> None:
-        """Let whoever keeps the other waiting for too long wait in this tick; who has left, at once."""
+        """Let a character wait in this tick if it delays the other too long, or at once if its person has left."""
         with self.lock:
             late: dict[int, str | None] = {n: None for n in self.game.trial.people if n not in self.decided}
             there = any(presence(self.signs.get(n)) == HERE for n in late)
@@ -242,7 +245,7 @@ class Games:
         return self.open(game), number
 
     def open(self, game: str) -> LiveGame:
-        """A game, for who may see it."""
+        """Return a game, for a person who may see it."""
         with self._lock:
             made = self._kept.get(game)
         if made is None:  # outside the lock: others do not wait for the store and for this home

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hearth.web.play.drawn_games import DrawnGame
 
 LOOKS_EVERY = {PERSON: 0.3}
-"""Seconds between looks at the store for what others decided, by helper; another server may have taken it."""
+"""Seconds between reads of others' decisions from the store, by helper; another server may have received them."""
 
 USUALLY = 2.0
 
@@ -50,7 +50,7 @@ class Page:
         self._sending = asyncio.Lock()
 
     async def take(self, message: dict[str, Any]) -> None:
-        """Do what a message asks for.
+        """Answer a message.
 
         Raises:
             WebError: it is refused; nothing changed then.
@@ -73,7 +73,7 @@ class Page:
             raise WebError(Code.BAD_ARGUMENT, "type", "hello, act, finish, picture or pick", kind[:40])
 
     async def _show(self, message: dict[str, Any]) -> None:
-        """A picture, or what a pixel of it shows."""
+        """Send a picture, or the thing at one of its pixels."""
         if message["type"] == "picture":
             await self.link.send_bytes(await in_thread(self._picture))
             return
@@ -103,7 +103,7 @@ class Page:
         return {"helper": helped} if self.live.stored.blind else {}
 
     def _scene(self) -> dict[str, Any]:
-        """What is different in 3D, for pages that draw it."""
+        """Return the differences in 3D, for pages that draw them."""
         if self.live.game.trial.interface != "visual":
             return {}
         return {"drawn": self._drawn().as_json()}
@@ -121,7 +121,7 @@ class Page:
             return self._drawn().pick(x, y)
 
     def _code(self) -> str:
-        """What the first of two people gives the second."""
+        """Return the code that the first of two people gives the second."""
         return self.live.stored.code if self.live.game.trial.helper == PERSON and self.number == 0 else ""
 
     def _act(self, tick: int, text: str | None) -> dict[str, Any] | None:
@@ -149,7 +149,7 @@ class Page:
             self._sign = time.monotonic()
 
     def _news(self) -> dict[str, Any] | None:
-        """What others did, if anything."""
+        """Return others' actions since the last message, if there are any."""
         self.live.seen = time.monotonic()
         with self.live.lock:
             if self._told:
@@ -159,14 +159,14 @@ class Page:
             return self._new() if self._told else None
 
     def _new(self) -> dict[str, Any] | None:
-        """What the page does not know yet; None if it knows everything. Hold the lock."""
+        """Return the news for the page; None if there are none. The caller holds the lock."""
         if self._state() == self._told:
             return None
         self._told = self._state()
         return {**self.telling.tick(), **self._waiting(), **self._scene()}
 
     async def tell(self, done: Callable[..., dict[str, Any] | None], *given: Any) -> None:
-        """Do something, and send what is new then."""
+        """Call a function, and send the resulting news."""
         async with self._sending:
             if (news := await in_thread(done, *given)) is not None:
                 await self.link.send(news)
@@ -174,7 +174,7 @@ class Page:
                     await self.link.send_bytes(await in_thread(self._picture))
 
     async def watch(self) -> None:
-        """Tell what others decided, until cancelled."""
+        """Send others' decisions, until cancelled."""
         while True:
             await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
             deadlines.begin()
@@ -226,6 +226,6 @@ async def live(link: Link) -> None:
 
 
 def refusal(error: HearthError) -> WebError:
-    """Why the engine refuses a decision, as an answer."""
+    """Return why the engine refuses a decision, as an answer."""
     fault = error.diagnostics[0]
     return WebError(fault.code, "act", fault.suggestion or "one of the legal instructions", fault.message)

@@ -11,7 +11,7 @@ from typing import ClassVar, Protocol
 
 import orjson
 
-from hearth.challenges.channels import Listener, SocketChannel
+from hearth.challenges.agent_channels import Listener, SocketChannel
 from hearth.schemas.diagnostics import HearthError
 
 MOST_PORTS = 32

@@ -45,7 +45,7 @@ TEMPLATES = {
 
 
 ANSWER = "answer-"
-"""How the field of an answer begins; the name of its question follows."""
+"""Beginning of an answer's field; the name of its question follows."""
 
 MEDIA = {FILM: "video/webm", REPLAY: "application/json"}
 """The type of a film's file, by how it is shown."""
@@ -65,7 +65,7 @@ def _read(study: str, changed: int) -> Study:
 
 
 def conduct_here(web: Web) -> Conduct:
-    """The same as it goes on.
+    """Return the study of the server, as it goes on.
 
     Raises:
         WebError: MISSING_FILE: the server is for no study.
@@ -90,14 +90,14 @@ def way(visit: Visit) -> Response:
 
 
 def _note(visit: Visit, study: Study, standing: Standing | None) -> str:
-    """What the page says of a post that was not asked for and led here; "" where none did."""
+    """Return the page's note about a post that was not asked for and led here; "" where there was none."""
     return unasked_line(study, standing) if UNASKED in visit.fields else ""
 
 
 def shown(
     visit: Visit, conduct: Conduct, standing: Standing, fault: str = "", given: Mapping[str, Any] | None = None
 ) -> Response:
-    """The page of a stage; with what was wrong with answers, if anything was."""
+    """Return the page of a stage; with the faults of the answers, if there are any."""
     study = conduct.study
     note = _note(visit, study, standing)
     values: dict[str, Any] = {
@@ -130,7 +130,7 @@ def _standing(conduct: Conduct, person: str) -> Standing | None:
 
 
 def _here(visit: Visit, conduct: Conduct) -> Standing | None:
-    """Where a person is, once a game that is over is recorded; None of somebody who does not take part."""
+    """Return a person's stage, once a game that is over is recorded; None for a person who does not take part."""
     standing = _standing(conduct, visit.person)
     if standing is not None and standing.stage in (PRACTICE, TRIAL) and conduct.study.room != JUDGE:
         return gone_on(visit.web, conduct, standing)
@@ -219,7 +219,7 @@ def _given(visit: Visit, question: Question) -> Any:
 
 
 def leave(visit: Visit) -> Response:
-    """A person leaves the study; what was done is kept, and the place goes to somebody else."""
+    """Let a person leave the study; their data is kept, and the place goes to another person."""
     conduct = conduct_here(visit.web)
     in_turn(conduct.study, _standing(conduct, visit.person), "leave")
     conduct.leave(visit.person)
@@ -242,7 +242,7 @@ def film(visit: Visit) -> Response:
 
 
 def film_at(web: Web, conduct: Conduct, standing: Standing) -> JudgedFilm:
-    """What is judged in a trial.
+    """Return the film that is judged in a trial.
 
     Raises:
         WebError: MISSING_FILE: its film was not prepared.
