@@ -154,10 +154,11 @@ test-all: .venv/.tools .venv/.models  ## all tests
 coverage: .venv/.tools .venv/.models  ## coverage of lines and branches by `make test`, without rendering
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools" --cov --cov-report=term
 
-lint: $(READY)  ## ruff and mypy
+lint: $(READY)  ## ruff, mypy and the linter of words
 	@$(PY) -m ruff check .
 	@$(PY) -m ruff format --check .
 	@MYPYPATH=.types $(PY) -m mypy -p hearth
+	@$(PY) tests/house/plain_words.py
 
 bench: full  ## measure everything into benchmarks/RESULTS.md; fails if a ratio to plain code fell by a third
 	@$(PY) benchmarks/results.py

@@ -60,7 +60,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """The entry points, and what every module has: notebooks complete them."""
+    """The entry points, and the names that every module has: notebooks complete them."""
     ours = (name for name in globals() if name.startswith("__"))
     return sorted({*ours, *_public(), *_rooms()})
 

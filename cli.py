@@ -182,7 +182,7 @@ STOPPED = 128 + 2
 """The status after an interrupt (signal 2) from the keyboard, as in shells."""
 
 TERMINATED = 128 + 15
-"""The status of what was asked to end (signal 15)."""
+"""The status of a process that was asked to end (signal 15)."""
 
 
 class Terminated(KeyboardInterrupt):

@@ -69,8 +69,8 @@ def program(
         note = place.note(home)
         print(note, end="\n" if note else "")
         print(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
-        if made.get("visible") is not None:
-            print(f"Steps with all objects visible: {made['visible']:.1%}")
+        if "shows" in made:
+            print(_shown(made["shows"]))
         for page in made.get("pages", ()):
             print(f"Open {page} in a browser.")
         if failure:
@@ -134,10 +134,27 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
         files += _write(shooting.out, shot, modalities)
         if shot.camera.name != TOP:
             frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
-            seen.append(shot.seen)
-    visible = [share for share in seen if share is not None]
+            seen.append(shot)
+    visible = [shot.seen for shot in seen if shot.seen is not None]
     found = round(sum(share == 1 for share in visible) / len(visible), 4) if visible else None
-    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(shooting, frames)}
+    shows = {
+        "pictures": len(seen),
+        "with_person": sum(shot.person for shot in seen),
+        "steps_with_objects": len(visible),
+        "with_all_objects": sum(share == 1 for share in visible),
+    }
+    sheet = _sheet(shooting, frames)
+    return {"pictures": len(files), "files": files, "visible": found, "shows": shows, "sheet": sheet}
+
+
+def _shown(shows: Mapping[str, int]) -> str:
+    """Return the line that counts what the pictures of the contact sheet show."""
+    line = f"The contact sheet shows the person in {shows['with_person']} of {shows['pictures']} pictures"
+    if not shows["steps_with_objects"]:
+        return f"{line}."
+    return (
+        f"{line}, and all objects of {shows['with_all_objects']} of the {shows['steps_with_objects']} steps with any."
+    )
 
 
 def videos(

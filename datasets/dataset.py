@@ -222,7 +222,10 @@ class Dataset:
 
         Raises:
             KeyError: the id is unknown; it names those that are like it.
+            TypeError: the key is not a text: programs have ids instead of places.
         """
+        if not isinstance(program_id, str):
+            raise TypeError(self._no_id(program_id))
         return steady(self.folder, lambda: self._entry(program_id))
 
     def _entry(self, program_id: str) -> Entry:
@@ -240,6 +243,15 @@ class Dataset:
             wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
             runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         return Entry(found[0], tuple(map(self.run_of, runs)), tuple(repairs), tuple(sketches))
+
+    def _no_id(self, key: object) -> str:
+        """Return the message for a key that is not an id: which keys there are."""
+        first = next(iter(self), None)
+        example = f"dataset[{first!r}]" if first else "there is none here"
+        return (
+            f"a program is found by its id, a text, not by {cut(repr(key), 40)}: {example}; "
+            "list(dataset) has all ids, dataset.programs all programs as a table"
+        )
 
     def _unknown(self, program_id: str) -> str:
         """Return the message for an id that no program has: ids like it, or where ids are found."""

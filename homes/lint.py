@@ -196,6 +196,27 @@ def _containers(view: View) -> Iterator[Diagnostic]:
             yield _fault(Code.BAD_GRAPH, f"{view.label(node_id)} is a room INSIDE something", (node_id,), "remove it")
 
 
+def _seats(view: View) -> Iterator[Diagnostic]:
+    """Furniture on or in a seat: simulators that compare boxes say so of a table before a corner couch."""
+    for relation in ("ON", "INSIDE"):
+        for node_id, holders in view.targets[relation].items():
+            node = view.nodes[node_id]
+            if node.category != FURNITURE or "GRABBABLE" in node.properties:
+                continue
+            for seat in (holder for holder in holders if _is_seat(view.nodes[holder])):
+                message = f"{view.label(node_id)} is {relation} {view.label(seat)}: a person sitting there sits in it"
+                yield _fault(Code.CONFLICT, message, (node_id, seat), "remove the edge")
+
+
+def _is_seat(node: Node) -> bool:
+    """Return whether a node is furniture to sit on; mats are to sit on, too, and carry furniture."""
+    return node.category == FURNITURE and "SITTABLE" in node.properties
+
+
+FURNITURE = "Furniture"
+"""The category of things that stand on the floor."""
+
+
 def _circles(view: View) -> Iterator[Diagnostic]:
     """Circles of INSIDE, or of ON, each named once."""
     for relation in ("INSIDE", "ON"):
@@ -320,6 +341,7 @@ CHECKS: dict[str, Callable[[View], Iterator[Diagnostic]]] = {
     "states": _states,
     "rooms": _rooms,
     "containers": _containers,
+    "seats": _seats,
     "circles": _circles,
     "doors": _doors,
     "hands": _hands,

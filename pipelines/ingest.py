@@ -20,6 +20,7 @@ from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import (
     crowd,
+    enclosed_json,
     ours,
     plans,
     published,
@@ -55,13 +56,14 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     DOCUMENT: ours.scan_document,
     spreadsheets.NAME: spreadsheets.scan,
     yaml_documents.NAME: yaml_documents.scan,
+    enclosed_json.NAME: enclosed_json.scan,
     published.NAME: published.scan,
     sketches.NAME: sketches.scan,
     scenes.NAME: scenes.scan,
 }
 """The function that finds the records of a file or folder, by reader."""
 
-_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME})
+_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME, enclosed_json.NAME})
 """Readers of records whose fields may have other names."""
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {

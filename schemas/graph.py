@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, cast
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.graph_faults import REMEDY, graph_fault
 from hearth.schemas.numbers import stored
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import RELATIONS
@@ -109,9 +110,9 @@ def from_release(data: Mapping[str, Any], file: str = "") -> EnvironmentGraph:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise HearthError.of(
             Code.BAD_GRAPH,
-            f"not an environment graph: {type(error).__name__} {error}",
+            f"not an environment graph: {graph_fault(data, error)}",
             file=file,
-            suggestion="nodes need id and class_name; edges need from_id, relation_type and to_id",
+            suggestion=REMEDY,
         ) from error
     extra = tuple((key, value) for key, value in data.items() if key not in ("nodes", "edges"))
     return EnvironmentGraph(nodes, edges, extra)

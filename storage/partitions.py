@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -190,10 +191,18 @@ def write_batches(path: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatc
 
     Until the file is finished its footer is in memory, a kilobyte or so for each group and column.
     """
+    with table_writer(path, schema) as write:
+        for batch in batches:
+            write(batch)
+
+
+@contextmanager
+def table_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.RecordBatch], None]]:
+    """Give a function that adds a batch to a table; the file is seen when the block ends, and never after an error."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     file = _File(path, schema)
     try:
-        for batch in batches:
-            file.write(batch)
+        yield file.write
     except BaseException:
         file.abandon()
         raise

@@ -10,6 +10,7 @@ import numpy as np
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.modifiers import numbers
 from hearth.rendering.cameras.camera import Camera, top_view
+from hearth.rendering.cameras.recognition import PERSON, recognition
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.action_poses import Actor, elsewhere, initial_actors, moved, outermost
@@ -94,6 +95,7 @@ class Snapshot:
         camera: the camera.
         pictures: modality -> array, as `modalities.render` gives them.
         seen: visible share of the objects that the steps name; None where they name none.
+        person: whether the acting character can be recognised: it is large enough, and less than half hidden.
     """
 
     tick: int
@@ -101,6 +103,7 @@ class Snapshot:
     camera: Camera
     pictures: Mapping[str, Any]
     seen: float | None = None
+    person: bool = False
 
 
 def keyframes(
@@ -372,7 +375,8 @@ def snapshots(
             if "graph" in wanted:
                 pictures["graph"] = to_release(keyframe.places.graph)
             row = {name: pictures[name] for name in wanted}
-            yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named))
+            person = recognition(shot, keyframe.acting.node.id).suffices(PERSON) if keyframe.actors else False
+            yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named), person)
 
 
 def _seen(shot: Shot, named: tuple[int, ...]) -> float | None:

@@ -70,7 +70,7 @@ class Interpreter:
     def named(self, node: Node, scope: Scope) -> tuple[list[tuple[str, Build]], Scope]:
         """The named builders of a `let`, in order, and the scope after it."""
         if not isinstance(node, dict):
-            raise scope.fault("`let` takes names and what they stand for")
+            raise scope.fault("`let` takes names and their values")
         found = []
         for name, value in node.items():
             found.append((name, self.part(value, scope.at(name))))
