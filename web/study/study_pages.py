@@ -30,6 +30,7 @@ from hearth.studies.study import FILM, JUDGE, MOST_TEXT, REPLAY, Question, Study
 from hearth.studies.study_file import named
 from hearth.studies.study_folder import FILMS
 from hearth.web import play
+from hearth.web.study.places_held import HELD, is_stranger
 from hearth.web.study.study_store import FOLDER, conducted
 from hearth.web.study.study_trial_games import begun, gone_on
 from hearth.web.study.study_turns import UNASKED, check_answers, in_turn, unasked_line
@@ -143,9 +144,29 @@ def agree(visit: Visit) -> Response:
         raise WebError(Code.BAD_ARGUMENT, "agree", "that you agree, or nothing is begun", "no answer")
     if _standing(conduct, visit.person) is None and not conduct.has_room():
         raise WebError(Code.BAD_ARGUMENT, "place", "a free place in the study", "every place is taken", "/study/")
-    in_turn(conduct.study, conduct.join(visit.person), "agree")
+    in_turn(conduct.study, _joined(visit, conduct), "agree")
     conduct.consent(visit.person)
     return visit.go("/study/")
+
+
+def _joined(visit: Visit, conduct: Conduct) -> Standing:
+    """Where a person is who has a place, or gets one.
+
+    Raises:
+        WebError: TOO_FAST: others of the same address hold as many places as it may.
+    """
+    address = visit.request.client.host if visit.request.client else ""
+    if _standing(conduct, visit.person) is not None or not is_stranger(address, visit.web.secure):
+        return conduct.join(visit.person)
+
+    def under_way(person: str) -> bool:
+        standing = _standing(conduct, person)
+        return standing is not None and standing.stage not in (DONE, LEFT) and not conduct.is_silent(standing)
+
+    HELD.check(conduct.study.name, address, len(conduct.slots), under_way)
+    joined = conduct.join(visit.person)
+    HELD.add(conduct.study.name, address, visit.person)
+    return joined
 
 
 def understood(visit: Visit) -> Response:
