@@ -1,4 +1,4 @@
-"""Starting and ending the program of an agent of others: what it is given of the environment, and what ends with it.
+"""Starting and ending the program of an agent of others: its environment, and the processes that end with it.
 
 On Linux all that the program started ends with it, processes in sessions of their own too (`agent_supervisor`). On
 other systems only its group of processes ends: one that leaves the group goes on there.

@@ -201,7 +201,7 @@ class Dataset:
         with TimeLimit(self.connection, self.within) as limit:
             try:
                 yield
-            except Exception as error:  # Arrow has errors of its own for what DuckDB says while rows are read
+            except Exception as error:  # Arrow has errors of its own for DuckDB's while rows are read
                 if limit.over:
                     raise too_slow(limit.seconds) from error
                 if isinstance(error, HearthError):

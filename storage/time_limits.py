@@ -1,4 +1,4 @@
-"""A time limit on what a DuckDB connection does."""
+"""A time limit on the statements of a DuckDB connection."""
 
 from __future__ import annotations
 

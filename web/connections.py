@@ -94,7 +94,7 @@ class Connection(H11Protocol):
             self.transport.close()
 
     def _is_waiting(self, now: float) -> bool:
-        """Whether the server waits for a request; a socket and a request that is answered do not count."""
+        """Return whether the server waits for a request; a socket and a request that is answered do not count."""
         if self.transport.get_protocol() is not self:
             return False
         if self.cycle is not self._seen or (self.cycle is not None and not self.cycle.response_complete):
@@ -110,7 +110,7 @@ class Connection(H11Protocol):
         self.transport.abort()
 
     def _makes_room(self) -> bool:
-        """Whether the connection that has been quiet longest was ended for this one."""
+        """Return whether the connection that has been quiet longest was ended for this one."""
         now = self.loop.time()
         quiet = [each for each in Connection.open if not each.transport.is_closing() and each._is_waiting(now)]
         oldest = min(quiet, key=lambda each: each.quiet_since, default=None)

@@ -1,4 +1,4 @@
-"""How long a request may wait: for a thread, for a lock of this process, for the store. A busy server says so soon."""
+"""Longest waits of a request: for a thread, for a lock of this process, for the store. A busy server says so soon."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 WAITS = 1.5
-"""Seconds that a request or message waits for what others hold, in all."""
+"""Seconds that a request or message waits for locks of others, in all."""
 
 ACTS = 4.0
 """Seconds that a decision in a game waits: a person would rather wait than decide again."""

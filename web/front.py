@@ -77,7 +77,7 @@ def _mine(visit: Visit) -> Response:
 
 
 def _delete(visit: Visit) -> Response:
-    """Delete a session with all that belongs to it, as its person asked, but for what others built on."""
+    """Delete a session with all that belongs to it, as its person asked, except works on which others built."""
     sessions.withdraw(visit.web.store, visit.person, visit.web.keeps)
     visit.web.written()
     answer = visit.go("/")
@@ -86,7 +86,7 @@ def _delete(visit: Visit) -> Response:
 
 
 def _privacy(visit: Visit) -> Response:
-    """The page on what is stored of whom."""
+    """Return the page on stored data of persons."""
     return visit.page("privacy.html")
 
 

@@ -68,7 +68,7 @@ def _nothing(web: Web) -> None:
 
 
 def _keeps_nothing(connection: sql.Connection, person: str, nobody: str) -> int:
-    """What most rooms keep of a person who withdraws."""
+    """Keep the rows of a person who withdraws, as most rooms do."""
     return 0
 
 

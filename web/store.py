@@ -216,7 +216,7 @@ _POSTGRES = {
     "tcp_user_timeout": 3_000,
     "options": "-c statement_timeout=30s -c idle_in_transaction_session_timeout=30s",
 }
-"""How long PostgreSQL may be silent, and how long it lets a statement, or a transaction that does nothing, go on."""
+"""Time limits of PostgreSQL: its silence, a statement, and an idle transaction."""
 
 
 def _shown(url: str) -> str:

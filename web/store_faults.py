@@ -1,4 +1,4 @@
-"""Why the database refused: in words that name no value of anybody, and as codes that handlers and people know."""
+"""Refusals of the database: in words that name no value of anybody, and as codes that handlers and people know."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from hearth.web.web_errors import WebError
 
 
 def is_invited(store: Store, person: str) -> bool:
-    """Whether a session may review, as far as the desk is concerned."""
+    """Return whether the desk lets a session review."""
     return store.scalar(sql.select(REVIEWERS.c.id).where(REVIEWERS.c.session == person)) is not None
 
 

@@ -1,4 +1,4 @@
-"""What stays of a person who withdraws: that on which others built, without the person; and what the desk erases."""
+"""Withdrawal of a person: the works on which others built stay, without the person; the desk can erase the rest."""
 
 from __future__ import annotations
 

@@ -196,7 +196,7 @@ class LiveGame:
             return (self._door.port, self._door.token) if self._door else (0, "")
 
     def wants_program(self) -> bool:
-        """Whether the game goes on, so that its port stays open."""
+        """Return whether the game goes on, so that its port stays open."""
         try:
             with self.lock:
                 return not self.sync().over

@@ -36,7 +36,7 @@ class Waiting(Protocol):
     seen: float
 
     def wants_program(self) -> bool:
-        """Whether it goes on."""
+        """Return whether it goes on."""
 
     def take_program(self, channel: SocketChannel) -> None:
         """Let the program at a channel be the helper."""
@@ -65,7 +65,7 @@ class ProgramDoor:
             threading.Thread(target=run, daemon=True).start()
 
     def _accept(self) -> None:
-        """Take the programs that connect and show the token; who says nothing holds nobody else up."""
+        """Take the programs that connect and show the token; a silent program delays no other."""
         while not self.closed:
             if not self._showing.acquire(timeout=1.0):
                 continue

@@ -1,4 +1,4 @@
-"""What stays of a game of two when one of them withdraws: the game, with nobody in that seat."""
+"""Games of two when one of them withdraws: the game stays, with nobody in that seat."""
 
 from __future__ import annotations
 

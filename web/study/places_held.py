@@ -20,7 +20,7 @@ MOST_ADDRESSES = 10_000
 
 
 class PlacesHeld:
-    """Who took places from which address, since this process started."""
+    """Places taken from each address since this process started."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -31,7 +31,7 @@ class PlacesHeld:
 
         Args:
             study: its name.
-            address: of who asks.
+            address: of the sender.
             places: of the study, in all.
             under_way: whether a session takes part and is neither done nor gone.
 

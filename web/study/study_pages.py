@@ -150,7 +150,7 @@ def agree(visit: Visit) -> Response:
 
 
 def _joined(visit: Visit, conduct: Conduct) -> Standing:
-    """Where a person is who has a place, or gets one.
+    """Return where a person is who has a place, or gets one.
 
     Raises:
         WebError: TOO_FAST: others of the same address hold as many places as it may.
