@@ -108,7 +108,7 @@ COMMANDS_BY_NAME = {name: entry for section in COMMANDS.values() for name, entry
 
 
 def load(name: str) -> Any:
-    """The command of that name; imports its module."""
+    """Return the command of that name; imports its module."""
     import importlib
 
     module, attribute = COMMANDS_BY_NAME[name].place.split(":")
@@ -138,7 +138,7 @@ class Commands(TyperGroup):
         return list(COMMANDS_BY_NAME)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """The command of that name, or None."""
+        """Return the command of that name, or None."""
         return load(cmd_name) if cmd_name in COMMANDS_BY_NAME else None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
@@ -219,7 +219,7 @@ NAMED = (Code.UNKNOWN_HOME, Code.UNKNOWN_ID, Code.UNSUPPORTED_FILE)
 
 
 def _of_the_machine(error: OSError) -> Diagnostic:
-    """The diagnostic of a file that is missing or can't be read, or of a folder that can't be written."""
+    """Return the diagnostic of a file that is missing or can't be read, or of a folder that can't be written."""
     import errno
 
     name = str(error.filename or "")

@@ -42,7 +42,8 @@ class SplitText(NamedTuple):
 
 
 def splits(programs: Sequence[Synthetic], seed: int = 0) -> list[SplitText]:
-    """The part of every description in every split, by number of the program, from 1, and of its description, from 0.
+    """Return the part of every description in every split, by number of the program, from 1, and of its description,
+    from 0.
 
     Args:
         programs: in the order of their numbers.

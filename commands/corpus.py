@@ -268,7 +268,7 @@ def sheet(
 
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
-    """Some valid programs, the same for the same seed."""
+    """Return some valid programs, the same for the same seed."""
     from hearth.analysis import corpus_statistics as numbers
     from hearth.schemas.program import Program
     from hearth.schemas.rng import rng

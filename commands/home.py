@@ -317,7 +317,7 @@ def _homes_in(folder: Path | None) -> list[EnvironmentGraph]:
 
 
 def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
-    """The mean placement distance of each home to all others."""
+    """Return the mean placement distance of each home to all others."""
     from statistics import fmean
 
     from hearth.homes.home_statistics import placement_distance, places

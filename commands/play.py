@@ -105,7 +105,7 @@ FORMS = {"graph": ("graph",), "text": ("text",), "both": ("graph", "text")}
 
 
 def _seats(given: list[str]) -> list[_Seat]:
-    """The agents by number; those between that are not named wait."""
+    """Return the agents by number; those between that are not named wait."""
     found: dict[int, str] = {}
     for each in given:
         number, equals, spec = each.partition("=")

@@ -79,7 +79,7 @@ def program(
 
 
 def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) -> tuple[str, EnvironmentGraph]:
-    """The name and the scene graph of where a program is pictured."""
+    """Return the name and the scene graph of where a program is pictured."""
     from hearth.homes import library
 
     if graph is not None:
@@ -301,7 +301,7 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
-    """Executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
+    """Yield executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
     from itertools import islice
 
     from hearth.analysis.program_home_pairs import pairs

@@ -127,7 +127,7 @@ def _texts(steps: Iterable[Step]) -> list[str]:
 
 
 def _difference(before: list[str], after: list[str], *, every: bool = False) -> Iterator[str]:
-    """Inserted (`+`) and removed (`-`) lines, and with `every` also the others."""
+    """Yield inserted (`+`) and removed (`-`) lines, and with `every` also the others."""
     for line in ndiff(before, after):
         if line[0] in "+-" or (every and line[0] == " "):
             yield line

@@ -66,7 +66,7 @@ def serve(
 
 
 def _hosts(public: str) -> tuple[str, ...]:
-    """The name in a public address.
+    """Return the name in a public address.
 
     Raises:
         HearthError: BAD_ARGUMENT.
@@ -80,7 +80,7 @@ def _hosts(public: str) -> tuple[str, ...]:
 
 
 def _proxy(given: str, public: str) -> str:
-    """The address of the proxy, as sockets have it.
+    """Return the address of the proxy, as sockets have it.
 
     Raises:
         HearthError: BAD_ARGUMENT: it is not an IP address; or people come by a proxy of which none is given, so that

@@ -143,7 +143,7 @@ class Dataset:
 
     @explained
     def sql(self, query: str, **parameters: Any) -> Any:
-        """A query as a DuckDB relation; `$name` in it is the parameter of that name.
+        """Return a query as a DuckDB relation; `$name` in it is the parameter of that name.
 
         Raises:
             HearthError: SYNTAX, with DuckDB's own words, or when the query would change something; BAD_ARGUMENT, where
@@ -230,7 +230,7 @@ class Dataset:
         return int(self.read("SELECT count(*) AS number FROM programs")[0]["number"])
 
     def __iter__(self) -> Iterator[str]:
-        """The ids of all programs, sorted."""
+        """Yield the ids of all programs, sorted."""
         query = "SELECT program_id::VARCHAR AS program_id FROM programs ORDER BY 1"  # a stranger's may be bytes
         yield from (row["program_id"] for row in self.read(query))
 
@@ -238,7 +238,9 @@ class Dataset:
         return any(self._rows("SELECT 1 FROM programs WHERE program_id = $id", name) for name in names_of(program_id))
 
     def __getitem__(self, program_id: str) -> Entry:
-        """A program with its runs, repairs and sketches; ids of the embedded corpus may be those of another version.
+        """Return a program with its runs, repairs and sketches.
+
+        Ids of the embedded corpus may be those of another version.
 
         Raises:
             KeyError: the id is unknown; it names those that are like it.
@@ -285,7 +287,7 @@ class Dataset:
         return "true" if self.failures else "executable"
 
     def home(self, name: str) -> EnvironmentGraph:
-        """The graph of a home, the base of its environments.
+        """Return the graph of a home, the base of its environments.
 
         Raises:
             KeyError: the name is unknown.
@@ -293,7 +295,7 @@ class Dataset:
         return self.stored_home(name).graph
 
     def run_of(self, row: StoredRunRow) -> Run:
-        """The execution of a row."""
+        """Return the execution of a row."""
         return Run(row, self.stored_home, self.folder)
 
     @cached_property
@@ -342,7 +344,7 @@ class Dataset:
         return self.read(query, {"id": value})
 
     def read(self, query: str, asked: dict[str, Any] | None = None, table: str = "") -> list[Any]:
-        """The rows of a query of ours, by name of column.
+        """Return the rows of a query of ours, by name of column.
 
         Args:
             query: the query.

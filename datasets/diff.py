@@ -94,7 +94,7 @@ def _table(connection: Any, table: str, both: tuple[Dataset, Dataset], limit: in
 
 
 def _current(column: str) -> str:
-    """A column, ids as this version has them."""
+    """Return a column, ids as this version has them."""
     is_id = column == "found" or (column.endswith("_id") and column != "activity_id")
     name = identifier(column)
     return f"regexp_replace({name}, '{OURS}', 'written\\1') AS {name}" if is_id else name

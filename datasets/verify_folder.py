@@ -107,7 +107,7 @@ def other_files(folder: Path) -> Iterator[Diagnostic]:
 
 
 def _known_sql(folder: Path) -> str | None:
-    """The SQL that the catalog was made by, if it is ours: that of strangers is never run."""
+    """Return the SQL that the catalog was made by, if it is ours: that of strangers is never run."""
     try:
         text = read_input(folder / SQL).decode()
     except (HearthError, UnicodeDecodeError):

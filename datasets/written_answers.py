@@ -37,7 +37,7 @@ def plain(value: Any) -> Any:
 
 
 def line_of(value: Any) -> Any:
-    """A value for a cell: nested ones as JSON."""
+    """Return a value for a cell: nested ones as JSON."""
     return orjson.dumps(plain(value)).decode() if isinstance(value, list | dict) else value
 
 
@@ -69,7 +69,7 @@ def write_separated(
 
 
 def _each(column: Any, form: Callable[[Any], Any]) -> Any:
-    """The values of a column in a form; what every form leaves as it is, is not looked at one by one."""
+    """Return the values of a column in a form; what every form leaves as it is, is not looked at one by one."""
     import pyarrow.types as kinds
 
     kind, values = column.type, column.to_pylist()
@@ -78,7 +78,7 @@ def _each(column: Any, form: Callable[[Any], Any]) -> Any:
 
 
 def _records(columns: list[str], batch: Any) -> list[dict[str, Any]]:
-    """The rows of a batch as JSON has them."""
+    """Return the rows of a batch as JSON has them."""
     rows = zip(*(_each(column, plain) for column in batch.columns), strict=True)
     return [dict(zip(columns, row, strict=True)) for row in rows]
 

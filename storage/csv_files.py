@@ -30,7 +30,7 @@ _UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if 
 
 
 def safe_cell(text: str) -> str:
-    """The text, with an apostrophe in front if a spreadsheet would read it as a formula."""
+    """Return the text, with an apostrophe in front if a spreadsheet would read it as a formula."""
     return f"'{text}" if text.startswith((*_RUNS, "'")) else text
 
 
@@ -78,7 +78,7 @@ class CsvTable:
             raise self._fault(f"the table lacks the column {', '.join(missing)}", 1)
 
     def rows(self) -> Iterator[tuple[int, tuple[str, ...]]]:
-        """The line in which each row ends, and its cells in the order of `columns`; a row at a time is in memory.
+        """Yield the line in which each row ends, and its cells in the order of `columns`; a row at a time is in memory.
 
         Raises:
             HearthError: BAD_TABLE with the line: a quote that is not closed, or a cell that is too long.

@@ -61,7 +61,7 @@ def application(
     rooms: Sequence[Room] = ROOMS,
     rates: Mapping[str, Rate] | None = None,
 ) -> ASGIApp:
-    """The server.
+    """Return the server.
 
     Args:
         store: the database.
@@ -155,7 +155,7 @@ def _answer(web: Web, address: Address, request: Request, session: Session | Non
 
 
 def _form(body: bytes) -> dict[str, str]:
-    """The fields of a form; of several of one name, the last.
+    """Return the fields of a form; of several of one name, the last.
 
     Raises:
         WebError: BAD_ARGUMENT: there are too many.
@@ -167,7 +167,10 @@ def _form(body: bytes) -> dict[str, str]:
 
 
 def token_of(asked: HTTPConnection) -> str:
-    """The token of a session that came with a request: a cookie, or `Authorization: Bearer TOKEN` of programs."""
+    """Return the token of a session that came with a request.
+
+    A cookie, or `Authorization: Bearer TOKEN` of programs.
+    """
     kind, _, given = asked.headers.get("authorization", "").partition(" ")
     return given if kind.lower() == "bearer" else asked.cookies.get(sessions.COOKIE, "")
 
@@ -230,7 +233,7 @@ def _fault_of(error: Exception) -> WebError:
 
 
 async def _refused(web: Web, asked: Request, error: Exception) -> Response:
-    """The answer to a request that is refused: a page for browsers, else JSON."""
+    """Return the answer to a request that is refused: a page for browsers, else JSON."""
     fault = _fault_of(error)
     if isinstance(error, OSError) and fault.code is Code.INTERNAL_ERROR:
         raise error  # it is ours, and the log is to say where

@@ -122,13 +122,13 @@ def _sender(visit: Visit) -> str:
 
 
 def base_of(visit: Visit) -> str:
-    """The address of this server as its people have it: by https where they come by a public name."""
+    """Return the address of this server as its people have it: by https where they come by a public name."""
     host = visit.request.headers.get("host", "")
     return f"{scheme_of(host)}://{host}"
 
 
 def _own_address(wanted: str) -> str:
-    """An address of this server; another server's becomes the start page."""
+    """Return an address of this server; another server's becomes the start page."""
     plain = wanted.isascii() and wanted.isprintable() and "\\" not in wanted
     return wanted if plain and wanted.startswith("/") and not wanted.startswith("//") else "/"
 

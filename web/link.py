@@ -31,7 +31,10 @@ class Link:
         self._inbox = Inbox()
 
     async def receive(self) -> dict[str, Any] | None:
-        """The next message that is in order; each that is not gets a fault as its answer. None once it is closed."""
+        """Return the next message that is in order.
+
+        Each that is not gets a fault as its answer. None once it is closed.
+        """
         while True:
             try:
                 # A page says hello at once; later a person may think for as long as the socket answers pings.

@@ -59,11 +59,11 @@ class Security:
             await json_answer(fault.as_json(), fault.status)(scope, receive, _with_headers(send))
 
     def _more(self, scope: Scope) -> Mapping[str, str]:
-        """The headers of answers by the public name: browsers ask for it by https alone from then on."""
+        """Return the headers of answers by the public name: browsers ask for it by https alone from then on."""
         return SECURE if scheme_of(Headers(scope=scope).get("host", "")) == "https" else {}
 
     def _fault(self, scope: Scope) -> WebError | None:
-        """A page of another server may not use this server's cookies, under whatever name it asks for it."""
+        """Return a page of another server may not use this server's cookies, under whatever name it asks for it."""
         headers = Headers(scope=scope)
         host = headers.get("host", "")
         if _name(f"//{host}") not in self._hosts:
@@ -79,12 +79,12 @@ class Security:
 
 
 def scheme_of(host: str) -> str:
-    """The scheme by which people ask for a host: https where it is not this machine's own name."""
+    """Return the scheme by which people ask for a host: https where it is not this machine's own name."""
     return "http" if _name(f"//{host}") in OWN else "https"
 
 
 def _name(address: str) -> str:
-    """The host of an address, without its port; "" where it is not one."""
+    """Return the host of an address, without its port; "" where it is not one."""
     try:
         netloc = urlsplit(address).netloc
     except ValueError:

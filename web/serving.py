@@ -32,7 +32,7 @@ class _Server(uvicorn.Server):
 
 
 def listening(port: int) -> socket.socket:
-    """A socket on 127.0.0.1 that listens; on any free port if `port` is 0.
+    """Return a socket on 127.0.0.1 that listens; on any free port if `port` is 0.
 
     Raises:
         HearthError: UNWRITABLE, if the port is taken.

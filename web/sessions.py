@@ -37,7 +37,7 @@ def digest(token: str) -> str:
 
 
 def start(store: Store) -> Session:
-    """A new session, stored."""
+    """Return a new session, stored."""
     made = Session(secrets.token_hex(8), secrets.token_urlsafe(32))
     row = {"id": made.id, "token": digest(made.token), "created": time.time()}
     store.write(lambda connection: connection.execute(sql.insert(SESSIONS).values(row)))
@@ -45,7 +45,7 @@ def start(store: Store) -> Session:
 
 
 def find(store: Store, token: str) -> Session | None:
-    """The session of a token, or None."""
+    """Return the session of a token, or None."""
     if not token or len(token) > 100:
         return None
     query = sql.select(SESSIONS.c.id).where(SESSIONS.c.token == digest(token))

@@ -71,15 +71,15 @@ class Store:
         return _transaction(self.engine, options)
 
     def rows(self, query: sql.Select[Any]) -> list[Row]:
-        """The rows of a query by the names of its columns."""
+        """Return the rows of a query by the names of its columns."""
         return self.read(lambda connection: [dict(row) for row in connection.execute(query).mappings()])
 
     def row(self, query: sql.Select[Any]) -> Row | None:
-        """The first row of a query, or None."""
+        """Return the first row of a query, or None."""
         return next(iter(self.rows(query)), None)
 
     def scalar(self, query: sql.Select[Any]) -> Any:
-        """The first value of the first row of a query, or None."""
+        """Return the first value of the first row of a query, or None."""
         return self.read(lambda connection: connection.execute(query).scalar())
 
     def write(self, work: Callable[[sql.Connection], T]) -> T:
@@ -150,18 +150,18 @@ def usable(place: str, message: str) -> Iterator[None]:
 
 
 def default_url(out: Path) -> str:
-    """The address of the embedded store of a folder, which is made."""
+    """Return the address of the embedded store of a folder, which is made."""
     private(out)
     return f"sqlite:///{embedded(out).resolve()}"
 
 
 def embedded(out: Path) -> Path:
-    """The file of a folder's embedded store, which may not be there."""
+    """Return the file of a folder's embedded store, which may not be there."""
     return out / SERVED / "store.sqlite"
 
 
 def private(out: Path) -> Path:
-    """The folder within a server's own for its own files; `build` reads no hidden folder.
+    """Return the folder within a server's own for its own files; `build` reads no hidden folder.
 
     Raises:
         HearthError: BAD_ARGUMENT: it is a link, which would lead the server's files elsewhere.
@@ -233,7 +233,7 @@ def _set_up_sqlite(connection: Any, record: object) -> None:
 
 
 def _wait(connection: sql.Connection) -> int:
-    """The milliseconds that a transaction may wait for a lock."""
+    """Return the milliseconds that a transaction may wait for a lock."""
     until: float = connection.get_execution_options().get("hearth_until", 0.0)
     return max(50, round(1000 * (until - time.monotonic())))
 

@@ -35,7 +35,7 @@ DuckDB sets its folder for temporary files next to the database, and gives no ot
 
 
 def statements(root: str = "") -> str:
-    """The SQL of the catalog; `root` is the prefix of every path, by default found when it is opened."""
+    """Return the SQL of the catalog; `root` is the prefix of every path, by default found when it is opened."""
     text = (files("hearth.datasets.format") / "catalog.sql").read_text("utf-8")
     return text.format(folder=quoted(root) if root else _BESIDE)
 
@@ -54,7 +54,7 @@ def comments() -> Iterator[str]:
 
 
 def published() -> str:
-    """The SQL of a dataset's catalog."""
+    """Return the SQL of a dataset's catalog."""
     return "\n".join((statements(), "".join(comments())))
 
 
@@ -127,7 +127,7 @@ def make_catalog(path: Path, folder: Path, sql: str) -> None:
 
 
 def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remembers: bool = True) -> Any:
-    """A connection with the dataset's views, limited to this folder.
+    """Return a connection with the dataset's views, limited to this folder.
 
     DuckDB cannot forbid writing: queries of strangers go through `check_question` first.
 
@@ -167,7 +167,7 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
 
 
 def _qualified(text: str, database: str) -> str:
-    """The SQL of the catalog with its tables, views and macros as those of a database."""
+    """Return the SQL of the catalog with its tables, views and macros as those of a database."""
     from hearth.schemas.tables import TABLES
 
     place = f"{identifier(database)}.main."
@@ -203,7 +203,7 @@ def define_as(connection: Any, name: str, folder: Path, absent: Sequence[str] = 
 
 
 def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
-    """The tables that a dataset never had, because an earlier version wrote it.
+    """Return the tables that a dataset never had, because an earlier version wrote it.
 
     Raises:
         HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
@@ -225,7 +225,10 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
 
 
 def without_zones(relation: Any) -> Any:
-    """A relation whose times in a zone are text: DuckDB gives them to Python by a library that is not needed else."""
+    """Return a relation whose times in a zone are text.
+
+    DuckDB gives them to Python by a library that is not needed else.
+    """
     zoned = ["WITH TIME ZONE" in str(kind) for kind in relation.types]
     if not any(zoned):
         return relation

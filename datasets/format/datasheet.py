@@ -21,7 +21,7 @@ def datasheet(folder: Path, strength_used: str = MILD) -> dict[str, str]:
 
 
 def _origins(folder: Path) -> set[str]:
-    """The origins of programs and descriptions; that of the embedded corpus was `crowd` in 0.1."""
+    """Return the origins of programs and descriptions; that of the embedded corpus was `crowd` in 0.1."""
     found: set[str] = set()
     with open_database() as connection:
         for table, key in (("programs", "program_id"), ("descriptions", "description_id")):

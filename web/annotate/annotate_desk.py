@@ -53,7 +53,7 @@ def erase(visit: Visit) -> Response:
 
 
 def counts(store: Store) -> dict[str, int]:
-    """The number of rows of each kind."""
+    """Return the number of rows of each kind."""
 
     def read(connection: sql.Connection) -> dict[str, int]:
         groups = ((PROGRAMS, PROGRAMS.c.state, "programs: {}"), (REVIEWS, REVIEWS.c.verdict, "reviews: {}"),
@@ -68,7 +68,7 @@ def counts(store: Store) -> dict[str, int]:
 
 
 def special_texts(store: Store) -> list[tuple[str, int, bool]]:
-    """The texts of special blocks in programs that were handed in, most frequent first (thesis 3.3).
+    """Return the texts of special blocks in programs that were handed in, most frequent first (thesis 3.3).
 
     Returns:
         The text in lower case, its number, and whether the special-blocks file has steps for it.

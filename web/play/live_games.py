@@ -80,7 +80,7 @@ class LiveGame:
         return presence(self.signs.get(1 - number)) if len(people) > 1 else ""
 
     def drawn(self, knowledge: Knowledge, number: int) -> DrawnGame:
-        """The game's scene for the eyes of a character. Hold the lock."""
+        """Return the game's scene for the eyes of a character. Hold the lock."""
         if number not in self._drawn:
             from hearth.web.play.drawn_games import DrawnGame
 
@@ -88,7 +88,7 @@ class LiveGame:
         return self._drawn[number]
 
     def sync(self) -> Game:
-        """The game with every tick that the store has. Hold the lock."""
+        """Return the game with every tick that the store has. Hold the lock."""
         game = self.game
         found, row, self.signs = self.store.read(
             lambda connection: (
@@ -107,7 +107,7 @@ class LiveGame:
         return game
 
     def seconds_left(self) -> float | None:
-        """The seconds until the game's time is over; None where it has no limit."""
+        """Return the seconds until the game's time is over; None where it has no limit."""
         left = self.stored.deadline - time.time()
         return None if left == math.inf else max(0.0, left)
 
@@ -236,7 +236,7 @@ class Games:
         self._lock = BoundedLock("the room")
 
     def find(self, game: str, session: str) -> tuple[LiveGame, int]:
-        """A game of a session, and the character that it plays.
+        """Return a game of a session, and the character that it plays.
 
         Raises:
             WebError: UNKNOWN_ID: it has none of that id.
@@ -265,5 +265,5 @@ _GAMES: WeakKeyDictionary[Store, Games] = WeakKeyDictionary()
 
 
 def games(store: Store, knowledge: Knowledge) -> Games:
-    """The games of a store that this process keeps."""
+    """Return the games of a store that this process keeps."""
     return _GAMES.setdefault(store, Games(store, knowledge))

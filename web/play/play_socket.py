@@ -98,7 +98,7 @@ class Page:
             }
 
     def _unnamed(self) -> dict[str, str]:
-        """The helper of a study's trial, without its name."""
+        """Return the helper of a study's trial, without its name."""
         helped = "somebody" if self.live.stored.trial.helped else "none"
         return {"helper": helped} if self.live.stored.blind else {}
 
