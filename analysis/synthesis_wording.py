@@ -188,7 +188,7 @@ class Speaker:
         return f"{whose} {like}{noun}"
 
     def sentences(self, clauses: Sequence[str], aims: Sequence[str], join: float) -> list[str]:
-        """Return the clauses as sentences, some joined, some in the other order, with a purpose or time here and there."""
+        """Return the clauses as sentences, some joined, some in the other order, some with a purpose or time."""
         chance, rest = self.chance, list(clauses)
         found: list[str] = []
         aim = chance.randrange(len(rest)) if chance.random() < PURPOSE else -1

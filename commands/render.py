@@ -301,7 +301,7 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
-    """Yield executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
+    """Yield executable programs drawn by the seed, each in the next of our homes, with its objects' visibility."""
     from itertools import islice
 
     from hearth.analysis.program_home_pairs import pairs

@@ -107,7 +107,7 @@ class Program:
         return self.numbered().bound({})
 
     def numbered(self) -> Program:
-        """Return the program with an instance for each object that only a node names, so that it may get other nodes."""
+        """Return the program with an instance for each object that only a node names, so it can get other nodes."""
         if all(ref.instance for step in self.steps for ref in step.objects):
             return self
         taken = {ref.key for ref in self.objects() if ref.instance}

@@ -33,7 +33,7 @@ def drape(w: float, h: float, d: float, paint: Paint, edge: Paint) -> Mesh:
 
 
 def _part(w: float, h: float, d: float, start: float, end: float, more: float, paint: Paint) -> Mesh:
-    """Return the part of a blanket between two lines across it, `more` metres higher, with sides down to the mattress."""
+    """Return a part of a blanket between two lines `more` metres higher, its sides down to the mattress."""
     x, z = _ticks(-w / 2 - more / 2, w / 2 + more / 2), _ticks(start - more / 2, end)
     across, along = np.meshgrid(x, z)
     filled = min(max((h - EMPTY) / (OVER_FEET - EMPTY), 0.0), 1.0)

@@ -199,7 +199,7 @@ def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float, reac
 
 
 def slowed(move: Movement, reach: float = 0.0) -> Movement:
-    """Return the same movement, slower where the body turns faster than `CORNERING`, or hands at `reach` than `SWUNG`."""
+    """Return the movement, slower where the body turns faster than `CORNERING` or hands at `reach` than `SWUNG`."""
     most = min(CORNERING, degrees(SWUNG / max(reach, 1e-6)))
     count = max(1, ceil(move.seconds / LOOKED))
     times = [move.seconds * k / count for k in range(count + 1)]

@@ -49,7 +49,7 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
 
 
 def _stooped(aim: Aim, actor: Actor, acting: Aims) -> Aim:
-    """Return the aim of a hand that carries something, which sinks with the shoulders as the other hand reaches down."""
+    """Return the aim of a hand that carries a thing, which sinks with the shoulders as the other hand reaches down."""
     if not acting:
         return aim
     up, down = (
