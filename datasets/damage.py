@@ -55,6 +55,10 @@ _UNKNOWN = re.compile(
 """Messages of DuckDB for a column, table or function that does not exist."""
 
 
+_OF_FILES = frozenset({"InvalidInputException", "ConversionException"})
+"""Errors of DuckDB that are about a file, where they name one: it is damaged, or its columns have other types."""
+
+
 def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) -> HearthError:
     """Return the error of a question that DuckDB did not answer: it, or a table of the folder, is at fault.
 
@@ -66,7 +70,7 @@ def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) 
     message = str(error).split("\n\n", 1)[0]
     if isinstance(error, MemoryError) or type(error).__name__ == "OutOfMemoryException":
         return too_big(message)
-    if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
+    if "arquet" in message and str(folder) in message and type(error).__name__ in _OF_FILES:
         return unreadable(error, folder)
     unbound = type(error).__name__ in ("BinderException", "CatalogException")
     if unbound and (found := _UNKNOWN.search(message.split("\n", 1)[0].rstrip("!"))):
