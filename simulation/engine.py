@@ -133,7 +133,7 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
 def _in_place(before: World, done: World, instruction: Step, o: int, s: int) -> World | Failure:
     """The world after an instruction, with its character's place and what its modifiers ask for."""
     if before.agents[instruction.agent].pose is not None:
-        done = followed(done, instruction.agent, instruction.action, o)
+        done = followed(before, done, instruction.agent, instruction.action, o)
     return modified(before, done, instruction, o, s) if instruction.modifiers else done
 
 

@@ -30,6 +30,8 @@ class Rules(NamedTuple):
             opened, and one's body parts; nothing after a walk into a room.
         near_hands: one's body parts make near only what is in the room that one is in. By the rules of the release and
             of `evolving_graph` hands that are CLOSE to a sink make it near from any room.
+        leaves_seat: who stands up, or changes to another seat, is no longer ON the one before, so that it is free; and
+            nobody takes a seat that someone rests on. In the release one stays ON every seat ever sat on.
     """
 
     origin: Origin = "sensible"
@@ -40,9 +42,10 @@ class Rules(NamedTuple):
     made_bed: bool = False
     near: Near = "release"
     near_hands: bool = False
+    leaves_seat: bool = False
 
 
-DEFAULT = Rules(made_bed=True, near_hands=True)
+DEFAULT = Rules(made_bed=True, near_hands=True, leaves_seat=True)
 """For inference, sampling, augmenting and people's own programs."""
 
 REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
@@ -58,18 +61,28 @@ checks no doors either.
 WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
 """For programs that watch what they themselves keep off (see `suited`)."""
 
+_BEFORE = ("leaves_seat", "near_hands", "made_bed")
+"""The switches that came later, the last first: a dataset from before one of them has none of those before it here."""
+
+
+def _without(rules: Rules, *switches: str) -> Rules:
+    return rules._replace(**dict.fromkeys(switches, False))
+
+
 RULES: dict[str, Rules] = {
-    "near_hands": DEFAULT,
-    "near_hands_watching_off": WATCHING_OFF,
+    "leaves_seat": DEFAULT,
+    "leaves_seat_watching_off": WATCHING_OFF,
     "replay": REPLAY,
     "evolving_graph": EVOLVING_GRAPH,
-    "made_bed": DEFAULT._replace(near_hands=False),
-    "made_bed_watching_off": WATCHING_OFF._replace(near_hands=False),
-    "default": DEFAULT._replace(near_hands=False, made_bed=False),
-    "watching_off": WATCHING_OFF._replace(near_hands=False, made_bed=False),
+    "near_hands": _without(DEFAULT, *_BEFORE[:1]),
+    "near_hands_watching_off": _without(WATCHING_OFF, *_BEFORE[:1]),
+    "made_bed": _without(DEFAULT, *_BEFORE[:2]),
+    "made_bed_watching_off": _without(WATCHING_OFF, *_BEFORE[:2]),
+    "default": _without(DEFAULT, *_BEFORE),
+    "watching_off": _without(WATCHING_OFF, *_BEFORE),
 }
-"""The options by the names that published executions give them. The last four are of datasets from before `near_hands`,
-two of them from before `made_bed`; what a name stands for never changes."""
+"""The options by the names that published executions give them. The last six are of datasets from before `leaves_seat`,
+four of them from before `near_hands`, two from before `made_bed`; what a name stands for never changes."""
 
 CHOICES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY, "evolving_graph": EVOLVING_GRAPH}
 """What `--rules` of a command chooses from: ours of today, the release of 2018, and VirtualHome 2.x."""

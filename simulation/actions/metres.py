@@ -148,9 +148,9 @@ ACTIONS = (
 )
 
 
-def followed(world: World, number: int, action: str, o: int) -> World:
+def followed(before: World, world: World, number: int, action: str, o: int) -> World:
     """The world after an action that was done, its character turned to what it looks at, on what it rests on, or
-    beside what it has got up from.
+    beside what it was on before and has got up from.
     """
     agent = world.agents[number]
     pose = agent.pose
@@ -162,7 +162,7 @@ def followed(world: World, number: int, action: str, o: int) -> World:
     elif action in known.group("rests") and o >= 0:
         there = positions.resting(world, pose, o)
     elif action in known.group("rises"):
-        there = positions.risen(world, number, pose)
+        there = positions.risen(before, number, pose)
     else:
         return world
     if there == pose:

@@ -155,7 +155,7 @@ def resting(world: World, pose: Pose, seat: int) -> Pose:
 
 
 def risen(world: World, number: int, pose: Pose) -> Pose:
-    """Beside what one has got up from."""
+    """Beside what one gets up from, by the world before."""
     seats = world.agents[number].on
     return beside(world, pose, lowest(seats))._replace(yaw=pose.yaw) if seats else pose
 

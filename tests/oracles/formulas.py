@@ -88,9 +88,11 @@ def first_failure(
     return None
 
 
-def changes(knowledge: Knowledge, view: View, action: Action, binding: Binding) -> Changes:
-    """What the action changes in this world, whether or not its preconditions hold."""
-    reading = _Reading(knowledge, view, action)
+def changes(
+    knowledge: Knowledge, view: View, action: Action, binding: Binding, options: frozenset[str] = frozenset()
+) -> Changes:
+    """What the action changes in this world, by these options, whether or not its preconditions hold."""
+    reading = _Reading(knowledge, view, action, options)
     draft = _Draft(reading)
     for effect in action.effects:
         for bound in reading.solutions(effect, dict(binding)):
