@@ -57,7 +57,8 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
 def milestones(execution: Execution) -> Postconditions:
     """Effects that were undone again, but not before something was done meanwhile: the stove that was on while cooking.
 
-    Only what is switched on and what is put somewhere counts; what is held or open is so for another step's sake.
+    Only what is switched on, what is put somewhere and where one sat or lay counts; what is held or open is so for
+    another step's sake.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
@@ -79,9 +80,13 @@ def milestones(execution: Execution) -> Postconditions:
 
 
 def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
-    """What is switched on, and what is ON or INSIDE what, characters left out."""
+    """What is switched on, what is ON or INSIDE what, and what characters are ON."""
     found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
-    return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]
+    return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0]) or _seated(f)]
+
+
+def _seated(fact: Literal[Key]) -> bool:
+    return fact.name == "ON" and fact.subject[0] == CHARACTER_CLASS
 
 
 def _used_after(program: Program, action: str, key: Key, preparation: frozenset[str]) -> bool:
