@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.groups import groups, relation_of, state_of, tool_of
-from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
+from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Process, Repair, StateGroup
 from hearth.kb.spelling import key_of, near_names
 from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code
@@ -41,6 +41,7 @@ class Knowledge:
         kinds: the kinds above the classes.
         associations: what goes with what in use.
         repairs: what to do about a failure, by name; the first that fits is the one to try.
+        processes: changes that come by themselves in action set 3, by name.
     """
 
     actions: Mapping[str, Action]
@@ -53,6 +54,7 @@ class Knowledge:
     kinds: Mapping[str, Kind]
     associations: tuple[Association, ...]
     repairs: Mapping[str, Repair]
+    processes: Mapping[str, Process]
     _action_names: Mapping[str, Action] = field(repr=False)
     _object_names: Mapping[str, ObjectClass] = field(repr=False)
     _aliases: Mapping[str, tuple[str, ...]] = field(repr=False)

@@ -8,10 +8,12 @@ from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
+from hearth.simulation.actions.consequences import actions
 from hearth.simulation.actions.metres import followed
 from hearth.simulation.actions.modified import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
 from hearth.simulation.motion.positions import placed
+from hearth.simulation.processes import advanced, widened
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
@@ -57,7 +59,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
         >>> execution.executable, len(execution.worlds), execution.final.holding()
         (True, 4, {0: (142,)})
     """
-    world = ready(world, program)
+    world = ready(world, program, rules)
     worlds = [world]
     failure: Failure | None = None
     for number, steps in enumerate(_ticks(program)):
@@ -65,24 +67,28 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
         if isinstance(result, Failure):
             failure = replace(result, tick=number)
             break
-        world = result
+        world = advanced(world, result, rules) if rules.consequences else result
         worlds.append(world)
     return Execution(program, tuple(worlds), failure, rules)
 
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
     """Only the end of a run, for who needs no trace."""
-    world = ready(world, program)
+    world = ready(world, program, rules)
     for number, steps in enumerate(_ticks(program)):
         result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             return replace(result, tick=number)
-        world = result
+        world = advanced(world, result, rules) if rules.consequences else result
     return world
 
 
-def ready(world: World, program: Program) -> World:
-    """The world with its characters at places if a program moves them by metres or says where they stand."""
+def ready(world: World, program: Program, rules: Rules = DEFAULT) -> World:
+    """The world with its characters at places if a program moves them by metres or says where they stand, and by action
+    set 3 with its further states.
+    """
+    if rules.consequences:
+        world = widened(world)
     steps = program.steps
     if MOVES.keys().isdisjoint(map(_ACTION, steps)) and not any(map(_MODIFIERS, steps)):
         return world
@@ -106,10 +112,14 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
     if not 0 <= number < len(agents):
         return _refused(world, instruction)
     placed_there = agents[number].pose is not None
-    action = (EVERY if placed_there else ACTIONS).get(name)
+    home, count = world.home, len(objects)
+    if rules.consequences:
+        world = widened(world)
+        action = actions(home.knowledge, placed_there).get(name)
+    else:
+        action = (EVERY if placed_there else ACTIONS).get(name)
     if action is None:
         return _refused(world, instruction)
-    home, count = world.home, len(objects)
     arity = home.knowledge.arity[name]
     if count != arity:
         return _miscounted(instruction, arity)
@@ -162,7 +172,7 @@ def tick(
         The world after the instructions that could be done, and the failures of the others.
     """
     failures: dict[int, Failure] = {}
-    now = world
+    now = world = widened(world) if rules.consequences else world
     for agent, instruction in sorted(instructions.items()):
         if instruction is None:
             continue

@@ -32,6 +32,8 @@ class Rules(NamedTuple):
             of `evolving_graph` hands that are CLOSE to a sink make it near from any room.
         leaves_seat: who stands up, or changes to another seat, is no longer ON the one before, so that it is free; and
             nobody takes a seat that someone rests on. In the release one stays ON every seat ever sat on.
+        consequences: action set 3 (`version.ACTION_SETS`): acts change temperature, cleanliness, wholeness and more,
+            every action is executed, and what is heated, washed or dried becomes so in time (`processes`).
     """
 
     origin: Origin = "sensible"
@@ -43,6 +45,7 @@ class Rules(NamedTuple):
     near: Near = "release"
     near_hands: bool = False
     leaves_seat: bool = False
+    consequences: bool = False
 
 
 DEFAULT = Rules(made_bed=True, near_hands=True, leaves_seat=True)
@@ -69,7 +72,12 @@ def _without(rules: Rules, *switches: str) -> Rules:
     return rules._replace(**dict.fromkeys(switches, False))
 
 
+CONSEQUENCES = DEFAULT._replace(consequences=True)
+"""Action set 3."""
+
 RULES: dict[str, Rules] = {
+    "consequences": CONSEQUENCES,
+    "consequences_watching_off": CONSEQUENCES._replace(watch_needs_on=False),
     "leaves_seat": DEFAULT,
     "leaves_seat_watching_off": WATCHING_OFF,
     "replay": REPLAY,
@@ -84,8 +92,13 @@ RULES: dict[str, Rules] = {
 """The options by the names that published executions give them. The last six are of datasets from before `leaves_seat`,
 four of them from before `near_hands`, two from before `made_bed`; what a name stands for never changes."""
 
-CHOICES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY, "evolving_graph": EVOLVING_GRAPH}
-"""What `--rules` of a command chooses from: ours of today, the release of 2018, and VirtualHome 2.x."""
+CHOICES: dict[str, Rules] = {
+    "default": DEFAULT,
+    "replay": REPLAY,
+    "evolving_graph": EVOLVING_GRAPH,
+    "consequences": CONSEQUENCES,
+}
+"""What `--rules` of a command chooses from: ours of today, the release of 2018, VirtualHome 2.x, and action set 3."""
 
 
 def read(given: Mapping[str, Any]) -> Rules:

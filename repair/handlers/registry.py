@@ -30,6 +30,7 @@ HANDLERS: dict[Code, Handler] = {
     Code.NO_ORIGIN: hands.no_origin,
     Code.OCCUPIED: posture.occupied,
     Code.SITTING: posture.sitting,
+    Code.WRONG_STATE: leaving_out("already_so"),
 }
 """Handlers by failure code; all that table A.4 names, and what it leaves out."""
 

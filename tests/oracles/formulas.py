@@ -70,6 +70,7 @@ class Changes:
     removed: frozenset[Fact]
     added: frozenset[Fact]
     remembered: Mapping[int, Memory | None] = field(default_factory=dict)
+    gone: frozenset[int] = frozenset()
 
 
 def first_failure(
@@ -97,7 +98,8 @@ def changes(
     for effect in action.effects:
         for bound in reading.solutions(effect, dict(binding)):
             draft.note(effect, bound)
-    return Changes(frozenset(draft.removed - draft.added), frozenset(draft.added), draft.remembered)
+    gone = frozenset(draft.gone)
+    return Changes(frozenset(draft.removed - draft.added), frozenset(draft.added), draft.remembered, gone)
 
 
 def holds(knowledge: Knowledge, view: View, formula: Formula, binding: Binding, action: Action | None = None) -> bool:
@@ -113,6 +115,7 @@ class _Draft:
         self.removed: set[Fact] = set()
         self.added: set[Fact] = set()
         self.remembered: dict[int, Memory | None] = {}
+        self.gone: set[int] = set()
 
     def note(self, effect: Effect, bound: Mapping[str, int]) -> None:
         """Add what one effect changes under one binding."""
@@ -120,7 +123,9 @@ class _Draft:
         first = self.reading.thing(terms[0], bound)
         if first is None:
             return
-        if name == "REMEMBERS":
+        if name == "gone":
+            self.gone.add(first)
+        elif name == "REMEMBERS":
             self.remembered[first] = None if delete else self.reading.view.place(first)
         elif name == "state":
             self._state(first, terms[1].name, delete)
