@@ -8,6 +8,7 @@ from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
+from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.consequences import actions
 from hearth.simulation.actions.metres import followed
 from hearth.simulation.actions.modified import PLACED, modified
@@ -63,11 +64,11 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
     worlds = [world]
     failure: Failure | None = None
     for number, steps in enumerate(_ticks(program)):
-        result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
+        result = alone(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             failure = replace(result, tick=number)
             break
-        world = advanced(world, result, rules) if rules.consequences else result
+        world = result
         worlds.append(world)
     return Execution(program, tuple(worlds), failure, rules)
 
@@ -76,10 +77,10 @@ def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Fai
     """Only the end of a run, for who needs no trace."""
     world = ready(world, program, rules)
     for number, steps in enumerate(_ticks(program)):
-        result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
+        result = alone(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             return replace(result, tick=number)
-        world = advanced(world, result, rules) if rules.consequences else result
+        world = result
     return world
 
 
@@ -105,6 +106,12 @@ def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = D
     return failures[min(failures)] if failures else now
 
 
+def alone(world: World, instruction: Step, rules: Rules) -> World | Failure:
+    """A tick in which one agent does something: the instruction, and by action set 3 what comes by itself."""
+    result = act(world, instruction, rules)
+    return advanced(world, result) if rules.consequences and type(result) is World else result
+
+
 def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Failure:
     """One instruction of one agent."""
     number, name, objects = instruction.agent, instruction.action, instruction.objects
@@ -114,7 +121,8 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
     placed_there = agents[number].pose is not None
     home, count = world.home, len(objects)
     if rules.consequences:
-        world = widened(world)
+        if len(world.states) == len(STATES):
+            world = widened(world)
         action = actions(home.knowledge, placed_there).get(name)
     else:
         action = (EVERY if placed_there else ACTIONS).get(name)
@@ -185,7 +193,7 @@ def tick(
             failures[agent] = result
         else:
             now = result
-    return now, failures
+    return advanced(world, now) if rules.consequences else now, failures
 
 
 def _only_moves(instruction: Step, before: World, now: World) -> bool:

@@ -8,21 +8,20 @@ changed that could start something, a tick costs a comparison.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hearth.kb.formula import TRUE, And, Formula, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Process
 from hearth.schemas.literals import Literal
-from hearth.schemas.vocabulary import EVERY_STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID, STATES
 from hearth.simulation.actions.literal_effects import made
+from hearth.simulation.actions.readings import kind_of
 from hearth.simulation.observation import reach
-from hearth.simulation.rules import Rules
-from hearth.simulation.world.affordance import of_kind
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.further import WIDTH, is_wide
+from hearth.simulation.world.further import WIDTH
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -36,11 +35,7 @@ class _Kind(NamedTuple):
 
     def mask(self, home: Home, states: tuple[int, ...]) -> int:
         """The nodes that are so."""
-        key = ("kind", str(self.formula))
-        found = home.kinds.get(key)
-        if found is None:
-            found = of_kind(self.formula, home.properties, home.by_class, home.everything)
-            home.kinds[key] = found
+        found = kind_of(home, self.formula)
         for number in self.has:
             found &= states[number]
         for number in self.lacks:
@@ -59,7 +54,7 @@ class Running(NamedTuple):
         process: the row.
         thing, device: who is in it; the device is None where there is none.
         beside: the things in, or on, some devices.
-        first, bits: the rows of its counts.
+        first, bits: its rows among the counts.
         kept: what keeps up the state that it ends: thing, device and relation of other processes.
     """
 
@@ -80,18 +75,16 @@ class Running(NamedTuple):
 
 
 def _taking_part(world: World, thing: _Kind, device: _Kind | None, beside: Callable[[World, int], int]) -> int:
-    things = thing.mask(world.home, world.states)
-    if device is None or not things:
-        return things
-    devices = device.mask(world.home, world.states)
-    return things & beside(world, devices) if devices else 0
+    devices = -1 if device is None else device.mask(world.home, world.states)
+    things = thing.mask(world.home, world.states) if devices else 0
+    return things & beside(world, devices) if things and device is not None else things
 
 
 @lru_cache(maxsize=8)
 def running(knowledge: Knowledge) -> tuple[Running, ...]:
     """The processes of the knowledge."""
     found: list[Running] = []
-    first = WIDTH
+    first = 0
     for process in knowledge.processes.values():
         bits = process.after.bit_length()
         found.append(_running(process, first, bits))
@@ -132,51 +125,85 @@ def _keeping(ending: Running, every: Iterable[Running]) -> Iterable[tuple[_Kind,
 
 def widened(world: World) -> World:
     """The world with the further states, and counts at 0."""
-    if is_wide(world):
+    if len(world.states) > len(STATES):
         return world
     processes = running(world.home.knowledge)
-    counts = processes[-1].first + processes[-1].bits - WIDTH if processes else 0
-    return World(world.home, world.states + world.home.further + (0,) * counts, world.agents, world.moved)
+    counts = processes[-1].first + processes[-1].bits if processes else 0
+    rows: tuple[Any, ...] = (*world.states, *world.home.further, (0,) * counts)
+    wide = World(world.home, rows, world.agents, world.moved)
+    wide.idle = not _may_start(wide)
+    return wide
 
 
-def advanced(before: World, world: World, rules: Rules) -> World:
+def advanced(before: World, world: World) -> World:
     """The world one tick later: after what the characters did in it, what comes by itself.
 
     Args:
         before: at the start of the tick; where nothing ran in it, and nothing changed since, nothing does.
         world: after the tick's acts.
-        rules: of the engine.
     """
-    world = widened(world)
-    still = before.states is world.states and before.moved is world.moved and before.home is world.home
-    if still and getattr(before, "idle", False):
+    if len(world.states) == len(STATES):
+        world = widened(world)
+    if getattr(before, "idle", False) and (_same(before, world) or not _may_start(world)):
         world.idle = True
         return world
-    states: list[int] | None = None
+    counts: list[int] | None = None
+    known: tuple[int, ...] = world.states[WIDTH]  # type: ignore[assignment] # see `further`
     ready: list[tuple[Running, int]] = []
     for each in running(world.home.knowledge):
         now = each.now(world)
-        if not now and not any(world.states[each.first : each.first + each.bits]):
+        if not now and not any(known[each.first : each.first + each.bits]):
             continue
-        states = list(world.states) if states is None else states
-        over = _counted(states, each, now)
+        counts = list(known) if counts is None else counts
+        over = _counted(counts, each, now)
         if over:
             ready.append((each, over))
-    if states is None:
+    if counts is None:
         world.idle = True
         return world
-    return _ended(World(world.home, tuple(states), world.agents, world.moved), ready)
+    rows: tuple[Any, ...] = (*world.states[:WIDTH], tuple(counts))
+    return _ended(World(world.home, rows, world.agents, world.moved), ready)
 
 
-def _counted(states: list[int], process: Running, now: int) -> int:
+def _same(before: World, world: World) -> bool:
+    return before.states is world.states and before.moved is world.moved and before.home is world.home
+
+
+def _may_start(world: World) -> bool:
+    """Whether a thing or device of a process is in a state without which the process does not go on."""
+    home, states = world.home, world.states
+    known = home.kinds.get(_TRIGGERS)
+    if known is None:
+        known = home.kinds[_TRIGGERS] = (None, tuple(_triggers(home)))
+    for number, kind in known[1]:  # noqa: SIM110 - `any` takes twice as long, and every tick asks
+        if kind & states[number]:
+            return True
+    return False
+
+
+_TRIGGERS = -1
+"""The place of a home's triggers among its `kinds`; no identity is below 0."""
+
+
+def _triggers(home: Home) -> Iterator[tuple[int, int]]:
+    """For each state the nodes that have to be in it for some process: its devices, else its things."""
+    found: dict[int, int] = {}
+    for each in running(home.knowledge):
+        kind = each.device if each.device is not None and each.device.has else each.thing
+        number = kind.has[0]
+        found[number] = found.get(number, 0) | kind_of(home, kind.formula)
+    yield from found.items()
+
+
+def _counted(counts: list[int], process: Running, now: int) -> int:
     """Count one more for the things in a process, and from the start again for others; those that are done."""
     carry, over = now, now
     for k in range(process.bits):
-        row = states[process.first + k] & now
-        states[process.first + k], carry = row ^ carry, row & carry
-        over &= states[process.first + k] if process.process.after >> k & 1 else ~states[process.first + k]
+        row = counts[process.first + k] & now
+        counts[process.first + k], carry = row ^ carry, row & carry
+        over &= counts[process.first + k] if process.process.after >> k & 1 else ~counts[process.first + k]
     for k in range(process.bits if over else 0):
-        states[process.first + k] &= ~over
+        counts[process.first + k] &= ~over
     return over
 
 

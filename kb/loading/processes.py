@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import permutations
 
-from hearth.kb.formula import GONE, TRUE, And, Effect, Formula, free, parse_effect, parse_formula
+from hearth.kb.formula import GONE, TRUE, And, Effect, Formula, Term, free, parse_effect, parse_formula
 from hearth.kb.loading.entry_shapes import LIST, TEXT, parts
 from hearth.kb.loading.formula_checks import Derived, check_effect, check_formula
 from hearth.kb.loading.layers import Layers, parsed, yaml_entries
@@ -81,13 +81,15 @@ def _check(
         faults.at(entry, f"`{condition}` is more than literals joined by `&`", "one row for each case")
     if "x" not in free(condition) or len(joins) != ("d" in free(condition)):
         faults.at(entry, f"`{condition}` does not say which x", "with a device d, one `INSIDE(x, d)` or `ON(x, d)`")
+    if not any(each.name == "state" and not each.negated for each in asked):
+        faults.at(entry, f"nothing starts `{name}`", "ask for a state that x or d has to be in, such as `state(d, ON)`")
     for effect in effects:
         check_effect(effect, {"x"}, name, derived, entry, faults)
         if effect.condition != TRUE or effect.variables or effect.literal.name not in ("state", GONE):
             faults.at(entry, f"`{effect}` is not a state that x enters", "`state(x, HOT)`, `gone(x)`")
 
 
-def literals(condition: Formula) -> Iterator[Literal]:
+def literals(condition: Formula) -> Iterator[Literal[Term]]:
     """The literals of a condition."""
     return (part for part in _parts(condition) if isinstance(part, Literal))
 

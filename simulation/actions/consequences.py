@@ -50,9 +50,11 @@ def _followed(action: Action, later: Consequence) -> Action:
     if not later.effects:
         return action
 
+    steps_down = all(str(effect.literal) == "not ON(a, x)" for effect in later.effects)
+
     def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
         result = action.rule(world, number, o, s, rules)
-        if isinstance(result, Failure):
+        if isinstance(result, Failure) or (steps_down and not world.agents[number].on):
             return result
         return _after(world, result, number, (o, s), later, rules)
 

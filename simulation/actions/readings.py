@@ -19,6 +19,7 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.affordance import of_kind
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 Bound = Mapping[str, int]
@@ -83,13 +84,14 @@ class Reading(NamedTuple):
 
     def _worth(self, variable: str, parts: Iterable[Formula], bound: Bound) -> int:
         """The nodes worth trying for a variable, by what is joined by `and`."""
-        home = self.world.home
-        found = home.everything
-        for part in _flat(parts):
+        found = self.world.home.everything
+        every = list(_flat(parts))
+        for part in every:
             if isinstance(part, Literal) and not part.negated and part.name in _NEAR:
                 found &= _NEAR[part.name](self, part, variable, bound)
-            elif free(part) == {variable} and _is_of_kind(part):
-                found &= of_kind(part, home.properties, home.by_class, home.everything)
+        for part in every if found else ():
+            if _is_of_kind(part) and free(part) == {variable}:
+                found &= kind_of(self.world.home, part)
         return found
 
     def _atom(self, atom: Literal[Term], bound: Bound) -> bool:
@@ -116,6 +118,16 @@ def _flat(parts: Iterable[Formula]) -> Iterator[Formula]:
             yield from _flat(part.parts)
         else:
             yield part
+
+
+def kind_of(home: Home, formula: Formula) -> int:
+    """The nodes of a kind; found once for a home and a formula, which is kept with them, so that its identity is."""
+    known = home.kinds.get(id(formula))
+    if known is not None:
+        return known[1]
+    found = of_kind(formula, home.properties, home.by_class, home.everything)
+    home.kinds[id(formula)] = (formula, found)
+    return found
 
 
 def _is_of_kind(formula: Formula) -> bool:

@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 from hearth.schemas.vocabulary import EVERY_STATE, STATES
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.further import rows_at_start
+from hearth.simulation.world.further import counts_of, rows_at_start
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import CLOSE
 from hearth.simulation.world.world import World
@@ -40,7 +40,7 @@ def digest(world: World) -> str:
     for name, before, now in zip(EVERY_STATE, rows_at_start(world), world.states, strict=False):
         if before != now:
             total += _states(ids, name, now & ~before) - _states(ids, name, before & ~now)
-    total += sum(_states(ids, f"ticks {k}", row) for k, row in enumerate(world.states[len(EVERY_STATE) :]))
+    total += sum(_states(ids, f"ticks {k}", row) for k, row in enumerate(counts_of(world)))
     return blake2b((total % (1 << _BITS)).to_bytes(_BITS // 8, "little"), digest_size=16).hexdigest()
 
 

@@ -1,6 +1,7 @@
-"""Worlds of action set 3: further states, and rows in which processes count their ticks, behind the ten of all worlds.
+"""Worlds of action set 3: further states, and the rows in which processes count their ticks, behind the ten of all.
 
-The rows stand behind the others in `World.states`, so that every action hands them on without knowing them.
+They stand in `World.states`, so that every action hands them on without knowing them: a row for each further state, and
+one tuple with all rows of counts, which few acts copy.
 """
 
 from hearth.schemas.vocabulary import EVERY_STATE, STATES
@@ -23,4 +24,9 @@ def rows_at_start(world: WorldState) -> tuple[int, ...]:
 
 
 WIDTH = len(EVERY_STATE)
-"""The rows of states; those of counters follow."""
+"""The rows of states; the counts follow."""
+
+
+def counts_of(world: WorldState) -> tuple[int, ...]:
+    """The rows in which processes count (see `processes`); none of a world of another set."""
+    return world.states[WIDTH] if is_wide(world) else ()  # type: ignore[return-value]

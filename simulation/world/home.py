@@ -183,8 +183,8 @@ class Home:
         return tuple(found.values())
 
     @cached_property
-    def kinds(self) -> dict[tuple[str, str], int]:
-        """A place for sets of nodes of a kind that somebody has asked for (see `processes`)."""
+    def kinds(self) -> dict[int, tuple[Any, Any]]:
+        """Formulas about a kind of things that somebody has asked for, with the nodes, by the formula's identity."""
         return {}
 
     def able(self, action: str, position: int = 0) -> int:
