@@ -63,7 +63,7 @@ def check_effect(effect: Effect, bound: set[str], whose: str, derived: Derived, 
     if literal.name != GONE:
         check_formula(literal.atom, variables, whose, derived, at, faults)
     elif len(literal.terms) != 1 or literal.negated or not {literal.terms[0].name} <= variables:
-        faults.at(at, f"`{effect}` is no effect", "one thing is gone, and for ever: `gone(o)`")
+        faults.at(at, f"`{effect}` is not an effect", "one thing is gone, and for ever: `gone(o)`")
     if literal.name == "state" and len(literal.terms) == 2 and literal.terms[1].name not in EVERY_STATE:
         faults.at(at, f"`{literal}`: nothing can be brought into that state", f"one of {', '.join(EVERY_STATE)}")
 

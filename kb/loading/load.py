@@ -16,7 +16,7 @@ from hearth.kb.loading.objects import (
     load_placements,
     load_stand_ins,
 )
-from hearth.kb.loading.processes import load_processes
+from hearth.kb.loading.process_rows import load_processes
 from hearth.kb.loading.small_tables import load_limits, load_rooms, load_tables
 from hearth.kb.loading.source_files import Faults, check_extent
 from hearth.kb.records import Action, ObjectClass, Placement

@@ -49,7 +49,7 @@ def _process(name: str, number: int, entry: Entry, derived: Derived, groups: Gro
     fields = parts(entry.value, _SHAPES, name, entry, faults)
     for key in sorted(fields.keys() - {*_KEYS}):
         faults.at(entry, f"`{key}` is not part of a process", f"parts are {', '.join(_KEYS)}")
-    missing = [key for key in ("while", "after", "becomes") if not fields.get(key)]
+    missing = [key for key in ("while", "after", "becomes") if fields.get(key) in (None, "", [])]
     if missing:
         faults.at(entry, f"the process `{name}` lacks `{missing[0]}`", "while, after and becomes")
         return None
