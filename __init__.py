@@ -9,7 +9,8 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from hearth.schemas.explained import explained
+from hearth.old_names import install
+from hearth.schemas.explained_calls import explained
 from hearth.version import VERSION
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
 
 __version__ = VERSION
+install()
 
 
 @lru_cache(maxsize=1)

@@ -6,9 +6,9 @@ from hearth.datasets.export.formats import export as export
 from hearth.datasets.verify import verify as verify
 from hearth.grounding.binding import bind as bind
 from hearth.grounding.environments.sampling import sample as sample
-from hearth.grounding.preconditions.infer import infer as infer
+from hearth.grounding.preconditions.precondition_inference import infer as infer
 from hearth.homes.library import load_graph as load_graph
-from hearth.homes.procedural.generate import generate as generate
+from hearth.homes.procedural.home_generator import generate as generate
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.understanding import understand as understand
 from hearth.kb.tools.find import Query as Query
@@ -17,9 +17,9 @@ from hearth.pipelines.build import build as build
 from hearth.rendering.film.snapshots import trajectory_of as trajectory_of
 from hearth.rendering.film.video import record as record
 from hearth.rendering.modalities import render as render
-from hearth.rendering.scene.prepared import scene_of as scene_of
+from hearth.rendering.scene.scene_preparation import scene_of as scene_of
+from hearth.repair.augmentation import augment as augment
 from hearth.repair.sketch import sketch as sketch
-from hearth.repair.variants import augment as augment
 from hearth.schemas.diagnostics import HearthError as HearthError
 from hearth.schemas.goals import Goal as Goal
 from hearth.schemas.literals import Literal as Literal

@@ -1,4 +1,4 @@
-"""The command line: `python cli.py COMMAND`, or `hearth COMMAND` once installed.
+"""The command line: `python cli.py COMMAND` in a checkout, or `hearth COMMAND` once installed.
 
 Each command is a function of `hearth.commands`; its module is imported when it is called, so that `--help` is quick.
 Bad input becomes a message and an exit status here, for all commands.
@@ -190,7 +190,7 @@ class Terminated(KeyboardInterrupt):
 
 
 def _is_of_typer(error: Exception) -> bool:
-    """Whether Typer prints the error itself: wrong usage, an invalid option."""
+    """Return whether Typer prints the error itself: wrong usage, an invalid option."""
     return hasattr(error, "format_message")
 
 
@@ -260,9 +260,9 @@ def _options(
 
     \b
     Examples:
-      python cli.py check morning.txt        underline the faults of a program
-      python cli.py build --out data_out     make a dataset of the starter corpus
-      python cli.py COMMAND --help           the options of a command, with an example
+      hearth check morning.txt        underline the faults of a program
+      hearth build --out data_out     make a dataset of the starter corpus
+      hearth COMMAND --help           the options of a command, with an example
     """
 
 

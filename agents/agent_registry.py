@@ -6,14 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+from hearth.agents.communication import Answering
 from hearth.agents.goal_space import GoalsIn
-from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
+from hearth.agents.hierarchical_helper import HELPING, Hierarchical, Partner
 from hearth.agents.human_like import Habits, HumanLike
-from hearth.agents.learned import Hybrid, Learned
-from hearth.agents.population import PEOPLE
+from hearth.agents.human_population import PEOPLE
+from hearth.agents.learned_helpers import Hybrid, Learned
 from hearth.agents.protocol import Agent
 from hearth.agents.random_helper import RandomHelper
-from hearth.agents.talking import Answering
 
 
 class MainAgent(Agent, Partner, Protocol):

@@ -42,7 +42,7 @@ class Place(NamedTuple):
 
 
 def place_of(world: World, thing: int) -> Place:
-    """Where a thing is in a world: who holds it, what it is in or on, or else its room."""
+    """Return where a thing is in a world: who holds it, what it is in or on, or else its room."""
     for agent in world.agents:
         if agent.held >> thing & 1:
             return Place(HOLDS, agent.index)
@@ -151,8 +151,10 @@ class Belief:
         self._draw(thing, 0)
 
     def _refuted(self, place: Place) -> bool:
-        """Whether a thing that is out of view can't be there: one would see it in this room, on what is in view or in
-        what is in view and not closed (a sink never is); who held it is not asked.
+        """Return whether an unseen thing can't be at a place, because the agent would see it there.
+
+        The agent sees this room, and the things on or in visible objects that are not closed (a sink never is).
+        Holders are not considered.
         """
         if place.relation == HOLDS:
             return True
@@ -179,7 +181,7 @@ class Belief:
         return place.node if self.states[CLOSED] >> place.node & 1 else -1
 
     def probabilities(self, thing: int) -> dict[int, float]:
-        """Where a thing may be: the believed probability by index of the room, container, surface or holder."""
+        """Return where a thing may be: the believed probability by index of the room, container, surface or holder."""
         if self.known >> thing & 1:
             return {self.where[thing].node: 1.0}
         possible = self._possible[thing]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from hearth.agents.goal_space import Edge, GoalsIn
-from hearth.agents.online import OnlineHelper
+from hearth.agents.online_helper import OnlineHelper
 from hearth.simulation.observation.views import View
 
 

@@ -152,7 +152,7 @@ class GoalSpace:
         return {Edge(self.relations[r], thing, int(self.targets[r])): r for thing, rows in pairs for r in rows}
 
     def counts_at(self, row: int, relation: str, node: int) -> bool:
-        """Whether a thing that fits a predicate counts for it in some place."""
+        """Return whether a thing that fits a predicate counts for it in some place."""
         return bool(self.targets[row] == node) and self.relations[row] == relation
 
     def places(self, world: World) -> Places:

@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 
 from hearth.agents.belief import Place
 from hearth.agents.goal_space import Counts, Edge, GoalSpace, Scene
-from hearth.agents.prospects import Prospect
+from hearth.agents.partner_plans import Prospect
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
 
@@ -62,7 +62,7 @@ class Helper(Protocol):
         """The set of what the partner holds."""
 
     def arrivals(self, view: View, stops: Iterable[tuple[int, int]]) -> list[float]:
-        """Ticks until each of some stops is done (see `online.OnlineHelper`)."""
+        """Ticks until each of some stops is done (see `online_helper.OnlineHelper`)."""
 
     def taking(self, place: Place) -> tuple[int, int]:
         """The stop at which something is taken."""
@@ -130,7 +130,7 @@ class HelpingPlans:
                 self._passing[edge] += share
 
     def _lacking(self, prospects: Sequence[tuple[float, Counts, Prospect]]) -> None:
-        """How probably a goal lacks one, two, ... of each predicate beside what the partner carries."""
+        """Return how probably a goal lacks one, two, ... of each predicate beside what the partner carries."""
         space = self._helper.space
         there = space.counted(self._helper.scene.places).sum(axis=1).tolist()
         carried = [rows for thing, rows in zip(space.things, space.rows_of, strict=True) if self._theirs >> thing & 1]

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from random import Random
 
 from hearth.agents.belief import Belief, Extent
-from hearth.agents.distances import Distances
 from hearth.agents.mcts import PUBLISHED, Search, Tree
-from hearth.agents.regression import Regression
+from hearth.agents.regression_planning import Regression
 from hearth.agents.subgoals import HELD, Aims, Missing, Subgoal
+from hearth.agents.walk_distances import Distances
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, Literal
 from hearth.schemas.program import Step
@@ -146,7 +146,7 @@ class HumanLike:
         return self.distances.ticks(metres), end
 
     def _failed(self, view: View) -> bool:
-        """Whether its last instruction failed, so that another subgoal may be better."""
+        """Return whether its last instruction failed, so that another subgoal may be better."""
         return view.me.last is not None and view.me.last.failure is not None
 
     def _needed(self, missing: Missing, held: int) -> int:
@@ -194,5 +194,5 @@ class HumanLike:
         return search.first(Literal("CLOSED", (container,))) if container >= 0 else None
 
     def _leaves(self, search: Regression, step: Step | None) -> bool:
-        """Whether an instruction ends what there was to do here."""
+        """Return whether an instruction ends what there was to do here."""
         return step is None or step.action in search.home.knowledge.group("goes")

@@ -6,12 +6,12 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import Literal as Choice
 
+from hearth.agents.goal_posterior import USUAL_MODEL, ActionModel
 from hearth.agents.goal_space import Counts, Edge, GoalsIn
 from hearth.agents.helping_plans import USUAL_WEIGHTS, HelpingPlans, Weights
 from hearth.agents.network_proposals import NetworkProposals
-from hearth.agents.online import OnlineHelper
-from hearth.agents.posterior import USUAL_MODEL, ActionModel
-from hearth.agents.prospects import Planner, Prospect
+from hearth.agents.online_helper import OnlineHelper
+from hearth.agents.partner_plans import Planner, Prospect
 from hearth.schemas.goals import Goal
 from hearth.simulation.observation.views import View
 

@@ -37,7 +37,7 @@ class StateChanges:
 
     @property
     def size(self) -> int:
-        """How many predicates there are."""
+        """Return how many predicates there are."""
         return len(self.space.targets) + ELSEWHERE * len(set(self.space.classes))
 
     def _counts(self, places: Places) -> Numbers:

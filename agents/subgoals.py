@@ -99,7 +99,7 @@ class Aims:
         return Wanted(part, found.needed(count), found, last)
 
     def _mine(self, wanted: Wanted) -> bool:
-        """Whether it is the agent's to do: not where another character is to sit."""
+        """Return whether it is the agent's to do: not where another character is to sit."""
         if not wanted.candidates.by_target or wanted.candidates.subjects >> self._me & 1:
             return True
         return self._gives and wanted.last == HELD
@@ -130,7 +130,7 @@ class Aims:
         return self._handed & wanted.counted
 
     def _by_others(self, wanted: Wanted) -> bool:
-        """Whether it is another character that is to hold something."""
+        """Return whether it is another character that is to hold something."""
         return wanted.last == HELD and not wanted.candidates.subjects >> self._me & 1
 
     def missing(self, belief: Belief, view: View) -> Missing:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from hearth.agents.belief import Belief
 from hearth.agents.subgoals import Aims
-from hearth.analysis.distribution import heat_map
+from hearth.analysis.object_distribution import heat_map
 from hearth.challenges.tasks import Task
 from hearth.schemas.rng import rng
 from hearth.simulation.env import Tick

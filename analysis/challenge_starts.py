@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import NamedTuple
 
-from hearth.analysis.distribution import Counts
-from hearth.challenges.definition import challenge
+from hearth.analysis.object_distribution import Counts
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.goal_grammar import wanted_things
 from hearth.challenges.task_files import Suite
 from hearth.kb.knowledge import Knowledge

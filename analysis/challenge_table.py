@@ -10,9 +10,9 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from hearth.agents.agent_registry import HELPERS
-from hearth.agents.online_registry import ONLINE
+from hearth.agents.online_helper_registry import ONLINE
+from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Known
-from hearth.challenges.lineup import NOBODY, Lineup
 from hearth.challenges.metrics import mean, of_tasks, paired, speedups, summary
 from hearth.challenges.result_files import Results
 from hearth.challenges.suite_runs import run
@@ -82,7 +82,7 @@ def methods(
 
 
 def _ready(helper: str) -> bool:
-    """Whether the libraries and the network are there that a helper needs."""
+    """Return whether the libraries and the network are there that a helper needs."""
     from hearth.models.model_registry import trained_names
 
     network = ONLINE[helper].network if helper in ONLINE else ""

@@ -17,7 +17,7 @@ from hearth.schemas.rng import derive
 from hearth.schemas.syntax import print_step
 from hearth.scoring.baselines import Example, nearest_description
 from hearth.scoring.bootstrap import intervals
-from hearth.scoring.lines import read, steps_of
+from hearth.scoring.line_sequences import read, steps_of
 from hearth.scoring.metrics import lcs
 
 SCORES = ("action", "object", "step", "mean")

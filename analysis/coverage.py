@@ -18,7 +18,7 @@ from hearth.datasets.format.cases import environment_of
 from hearth.datasets.format.codecs import program_of
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample, unplaceable
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import ingest, validate
 from hearth.pipelines.engine.build_homes import Homes

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Record, replayed, start_of
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
-from hearth.homes.drawing import Trail
+from hearth.homes.floor_plan_drawing import Trail
 from hearth.homes.plan_panels import Panel
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
@@ -98,7 +98,7 @@ def furniture(task: Task, world: World) -> set[str]:
 
 
 def _handles(tick: Tick, number: int) -> bool:
-    """Whether an agent did something with things other than walking to them."""
+    """Return whether an agent did something with things other than walking to them."""
     step = tick.instructions.get(number)
     if step is None or number in tick.failures or not step.objects:
         return False

@@ -14,13 +14,13 @@ from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
-from hearth.models.data import requests
 from hearth.models.interface import Request
-from hearth.models.showing import Beside, side_by_side
+from hearth.models.prediction_stages import Beside, side_by_side
+from hearth.models.text_examples import requests
 from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import print_step
 from hearth.scoring.evaluate import METRICS, Scored
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
 
@@ -137,7 +137,7 @@ def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[t
     from hearth.analysis.step_gallery import picture_of
     from hearth.rendering.film.png import encode
     from hearth.rendering.film.snapshots import trajectory_of
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.home_geometry import with_geometry
 
     # Not the run's start graph: what the environment moves would be drawn where the home has it.
     graph = with_geometry(dataset.home(home), home, dataset.knowledge).graph

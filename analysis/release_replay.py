@@ -45,12 +45,12 @@ class Replayed:
 
     @property
     def executed(self) -> bool:
-        """Whether it was read and ran to its end."""
+        """Return whether it was read and ran to its end."""
         return not self.faults and self.failure is None
 
     @property
     def exact(self) -> bool:
-        """Whether it was executed and reached every state and relation of the stored end."""
+        """Return whether it was executed and reached every state and relation of the stored end."""
         return self.executed and not self.difference
 
 

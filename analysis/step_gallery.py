@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from itertools import cycle, islice
 from typing import NamedTuple
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
-from hearth.homes.procedural.generate import generate
+from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.arrays import Image
@@ -19,7 +19,7 @@ from hearth.rendering.cameras.visibility import seen_as
 from hearth.rendering.film.snapshots import Keyframe, Trajectory, named_nodes, trajectory_of
 from hearth.rendering.modalities import pictures_of
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.rays.camera_shot import shoot
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
@@ -120,7 +120,7 @@ def _pictured(
 
 
 def _rank(step: Step, done: Counter[str]) -> tuple[int, bool]:
-    """How little a step adds to a gallery: its action was shown, or moves no hand."""
+    """Return how little a step adds to a gallery: its action was shown, or moves no hand."""
     gesture = gesture_of(step)
     return done[step.action], not (gesture.hand or gesture.rests)
 

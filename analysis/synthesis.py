@@ -310,7 +310,7 @@ def _steps(parts: Sequence[ChosenPart], known: Knowledge) -> list[tuple[str, tup
 def _possible(
     action: str, names: tuple[str, ...], made: dict[tuple[str, str], str], held: set[str], known: Knowledge
 ) -> bool:
-    """Whether a step can follow the others; records its effect on objects and hands."""
+    """Return whether a step can follow the others; records its effect on objects and hands."""
     state = known.state_of(action) if action in known.group("operates") & known.group("animated") else ""
     if (action == "Grab" or state in ("OPEN", "ON", "OFF")) and len(held) >= _HANDS:
         return False

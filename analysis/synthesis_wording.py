@@ -71,7 +71,7 @@ class Wording:
         return text
 
     def fault(self, text: object, slots: Collection[str]) -> str:
-        """Why a text of a grammar can't be said; "" if it can: it names lists and slots that there are."""
+        """Return why a text of a grammar can't be said; "" if it can: it names lists and slots that there are."""
         if not isinstance(text, str):
             return "is not a text"
         unknown = {*_SLOT.findall(text)} - {*slots} | {*_LIST.findall(text)} - self.lists.keys()
@@ -126,7 +126,7 @@ def plain(name: str) -> str:
 
 
 def is_held_out(paraphrase: str) -> bool:
-    """Whether a paraphrase is held out; the same for every seed, so that no corpus has it in training."""
+    """Return whether a paraphrase is held out; the same for every seed, so that no corpus has it in training."""
     return derive(0, "paraphrase", paraphrase) % HELD_OUT == 0
 
 

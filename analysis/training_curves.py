@@ -31,7 +31,7 @@ class Run:
     scores: dict[str, list[float]]
 
     def row(self) -> dict[str, Any]:
-        """Where each phase began and ended."""
+        """Return where each phase began and ended."""
         found: dict[str, Any] = {"model": self.name, "seed": self.seed}
         for phase, scores in self.scores.items():
             found |= {f"{phase}_first": scores[0], f"{phase}_best": max(scores), f"{phase}_last": scores[-1]}

@@ -11,12 +11,12 @@ from collections.abc import Callable
 from statistics import mean
 from time import process_time
 
-from measuring import Figure, as_line, finish, parser
+from measurement import Figure, as_line, finish, parser
 
 from hearth.agents.agent_registry import HELPERS, MAIN
 from hearth.agents.protocol import Agent
-from hearth.challenges.definition import challenge
-from hearth.challenges.play import Player, play
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.tasks import task
 from hearth.kb.loading.load import default
 from hearth.schemas.goals import Goal

@@ -14,16 +14,16 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-import plain
-from measuring import Figure, Passes, as_line, finish, parser, passes, rate
+import plain_reference
+from measurement import Figure, Passes, as_line, finish, parser, passes, rate
 
-from hearth.analysis.augment_figures import GIVEN_UP
+from hearth.analysis.augmentation_results import GIVEN_UP
 from hearth.analysis.coverage import Script, scripts
 from hearth.grounding.environments.default_state import prepared
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.pipelines.build import corpus
-from hearth.repair.variants import Options, augment
+from hearth.repair.augmentation import Options, augment
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.world.home import Home
 from hearth.storage.rejects import Reject
@@ -65,7 +65,7 @@ def report(name: str, programs: Sequence[Script], homes: Sequence[Home], pairs: 
     print(f"{name}: {len(programs)} programs, {sampled.total()} pairs; new programs {sampled['']}; {counts or '-'}")
     return [
         rate(f"{name}: pairs placed, perturbed, run, repaired", sampled.total(), taken, "pairs/s", GOAL,
-             plain.sampled_runs().ratio(sampled.total(), taken)),
+             plain_reference.sampled_runs().ratio(sampled.total(), taken)),
         Figure(f"{name}: repaired of those that need it", 100 * repaired / max(1, needed), "%", 98),
     ]  # fmt: skip
 

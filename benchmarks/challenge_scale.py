@@ -11,8 +11,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from measuring import Figure, as_line, finish
-from scale import Watch, growth, place, run
+from build_scale import Watch, growth, place, run
+from measurement import Figure, as_line, finish
 
 from hearth.challenges.task_files import suite
 

@@ -11,9 +11,9 @@ import tempfile
 from pathlib import Path
 from time import process_time
 
-from measuring import RUNS, Figure, as_line, finish, parser, rate, spread
+from measurement import RUNS, Figure, as_line, finish, parser, rate, spread
 
-from hearth.challenges.lineup import Lineup
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.result_files import read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite

@@ -16,8 +16,8 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from random import Random
 
-import plain
-from measuring import Figure, as_line, finish, parser, passes, rate, runs, seconds
+import plain_reference
+from measurement import Figure, as_line, finish, parser, passes, rate, runs, seconds
 
 from hearth.analysis import corpus_statistics, synthesis
 from hearth.kb.language import numbered_steps
@@ -132,7 +132,7 @@ def whole_ingest(folder: Path, programs: int) -> Iterator[Figure]:
     file = folder / "plain.txt"
     with file.open("w") as out:
         out.writelines(as_text(programs))
-    yardstick = plain.read_text(list(as_text(2_000)), folder / "plain.jsonl")
+    yardstick = plain_reference.read_text(list(as_text(2_000)), folder / "plain.jsonl")
     taken = [ingested(file)[1] for _ in range(3)]
     yield rate(
         "programs of text ingested, read to Parquet", programs, taken, "a second", 20_000,
@@ -162,11 +162,11 @@ def others() -> Iterator[Figure]:
     known = default()
     grammar = synthesis.load(synthesis.FILE, known)
     words = "".join(as_words(1))
-    split = plain.split_words([words] * 1_000)
+    split = plain_reference.split_words([words] * 1_000)
     parsed = runs(lambda: [numbered_steps.parse_steps(words, 0, "", known) for _ in range(1_000)])
     yield rate("programs in words understood", 1_000, parsed, "a second", ratio=split.ratio(1_000, parsed))
     drawn = passes(lambda seed: list(synthesis.synthesize(SLICE, seed, grammar)), range(13))
-    ratio = plain.drawn_steps().ratio(13 * SLICE, drawn)
+    ratio = plain_reference.drawn_steps().ratio(13 * SLICE, drawn)
     yield rate("programs drawn", 13 * SLICE, drawn, "a second", 5_000, ratio)
     some = list(synthesis.synthesize(5_000, 0, grammar))
     steps = [tuple(Step(action, tuple(map(ObjectRef, names))) for action, names in one.steps) for one in some]
@@ -174,7 +174,7 @@ def others() -> Iterator[Figure]:
         programs=[corpus_statistics.Written(str(n), some[n].title, "", each) for n, each in enumerate(steps)]
     )
     taken = runs(lambda: corpus_statistics.similarities(many, workers=1), 9)
-    ratio = plain.textbook_lcs(steps).ratio(len(steps) ** 2, taken)
+    ratio = plain_reference.textbook_lcs(steps).ratio(len(steps) ** 2, taken)
     yield seconds("all pairs of 5,000 programs compared and sorted", taken, "s", 2.0, ratio)
 
 

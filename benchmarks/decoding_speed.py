@@ -12,7 +12,7 @@ from statistics import median
 from time import process_time
 from typing import Any
 
-from measuring import Figure, as_line, finish, parser
+from measurement import Figure, as_line, finish, parser
 
 from hearth.homes import library
 from hearth.kb.loading.load import default

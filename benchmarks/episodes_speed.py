@@ -17,8 +17,8 @@ from itertools import accumulate
 from pathlib import Path
 from time import process_time
 
-from measuring import Figure, as_line, finish, parser, passes, rate, runs
-from plain import Yardstick, strides_by_search
+from measurement import Figure, as_line, finish, parser, passes, rate, runs
+from plain_reference import Yardstick, strides_by_search
 
 from hearth.homes import library
 from hearth.kb.loading.load import default

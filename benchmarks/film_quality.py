@@ -18,18 +18,18 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
-from measuring import Figure, as_line, finish, parser
+from measurement import Figure, as_line, finish, parser
 
 from hearth.analysis.episode_drawing import ticks_of
-from hearth.analysis.filmed_pairs import FilmedPair, pairs
+from hearth.analysis.program_home_pairs import FilmedPair, pairs
 from hearth.challenges.episode_films import execution_of
 from hearth.challenges.result_files import read
 from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default
 from hearth.pipelines.build import corpus
-from hearth.rendering.film.quality import FilmQuality, film_quality
+from hearth.rendering.film.film_measures import FilmQuality, film_quality
+from hearth.rendering.film.film_walks import Walk, walks
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.film.walks import Walk, walks
 from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import print_step
 

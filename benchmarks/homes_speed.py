@@ -13,15 +13,15 @@ from itertools import islice
 from pathlib import Path
 from time import process_time
 
-import plain
-from measuring import Figure, as_line, finish, parser, passes, rate, runs, seconds, stalls
+import plain_reference
+from measurement import Figure, as_line, finish, parser, passes, rate, runs, seconds, stalls
 
 from hearth.analysis.coverage import Script, scripts
 from hearth.grounding.environments.sampling import Size, sample
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library
 from hearth.homes.from_graph.graph_layout import lay_out
-from hearth.homes.procedural.generate import generate
+from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default
 from hearth.pipelines.engine.build_homes import Homes
@@ -43,7 +43,7 @@ def loading() -> Figure:
 
     names = library.names()
     taken = [s / len(names) for s in runs(load, 3)]
-    ratio = plain.written_home().ratio(1, taken)
+    ratio = plain_reference.written_home().ratio(1, taken)
     return seconds(f"one of {len(names)} designed homes, read and built", taken, "ms", ratio=ratio)
 
 
@@ -51,7 +51,7 @@ def drawing_up(count: int = 21) -> Figure:
     """Procedural homes of 3 to 9 rooms generated per second, including their graphs."""
 
     taken = passes(lambda seed: scene(generate(3 + seed % 7, seed, default()), default()), range(count))
-    ratio = plain.written_home().ratio(count, taken)
+    ratio = plain_reference.written_home().ratio(count, taken)
     return rate("procedural homes drawn up, with their graphs", count, taken, "homes/s", 20.0, ratio)
 
 
@@ -79,7 +79,7 @@ def sampling(programs: list[Script], homes: Homes, label: str, size: Size, times
 
     taken = passes(everywhere, programs, times)
     count = sum(done.values())
-    ratio = plain.sampled_runs().ratio(count, taken)
+    ratio = plain_reference.sampled_runs().ratio(count, taken)
     return rate(f"environments {label}, sampled and checked ({count:,})", count, taken, "environments/s", 1000.0, ratio)
 
 

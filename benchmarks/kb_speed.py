@@ -7,8 +7,8 @@ import sys
 import timeit
 from pathlib import Path
 
-import plain
-from measuring import Figure, as_line, finish, parser, seconds
+import plain_reference
+from measurement import Figure, as_line, finish, parser, seconds
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import default
@@ -46,7 +46,7 @@ def lookups(knowledge: Knowledge, number: int = 20_000) -> list[Figure]:
         'affords("Grab", 0, "cup")': lambda: knowledge.affords("Grab", 0, "cup"),
         'default_states("fridge")': lambda: knowledge.default_states("fridge"),
     }
-    scan = plain.found_by_scanning(knowledge.objects)
+    scan = plain_reference.found_by_scanning(knowledge.objects)
     taken = {
         name: [each / number for each in timeit.repeat(case, number=number, repeat=5)] for name, case in cases.items()
     }
@@ -57,7 +57,7 @@ def main() -> None:
     """Measure and print."""
     asked = parser(__doc__).parse_args()
     loads = cold_loads()
-    ratio = plain.read_yaml(KB).ratio(1, loads)
+    ratio = plain_reference.read_yaml(KB).ratio(1, loads)
     found = [seconds("load the knowledge, importing included", loads, "ms", LOAD, ratio), *lookups(default())]
     for figure in found:
         print(as_line(figure))

@@ -40,7 +40,7 @@ MUTATIONS = (
              'context.does("SwitchOn", context.object())', "tests/repair"),
     Mutation("repair/handlers/appliances.py", 'return walked_to(context, "inside_closed", container, opened)',
              'return walked_to(context, "inside_closed", container)', "tests/repair"),
-    Mutation("repair/trim.py", 'return _last_walk(steps, number, walks) == step.objects and',
+    Mutation("repair/repair_trimming.py", 'return _last_walk(steps, number, walks) == step.objects and',
              "return False and", "tests/repair"),
     Mutation("scoring/metrics/lcs.py", "longest = max(len(a), len(b))",
              "longest = min(len(a), len(b))", "tests/scoring"),

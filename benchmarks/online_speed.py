@@ -10,14 +10,14 @@ from __future__ import annotations
 from time import process_time
 
 from agents_speed import Timed, figures
-from measuring import as_line, finish, parser
+from measurement import as_line, finish, parser
 
 from hearth.agents.agent_registry import MAIN
+from hearth.agents.goal_posterior import Posterior
 from hearth.agents.goal_space import Scene
-from hearth.agents.online_registry import ONLINE
-from hearth.agents.posterior import Posterior
-from hearth.challenges.definition import challenge
-from hearth.challenges.play import Player, play
+from hearth.agents.online_helper_registry import ONLINE
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.tasks import task
 from hearth.kb.loading.load import default
 from hearth.simulation.observation.views import Pose
@@ -54,14 +54,14 @@ def measure(number: int, helper: str) -> list[float]:
 
 def main() -> None:
     """Measure."""
-    from hearth.agents import online
+    from hearth.agents import online_helper
 
     options = parser(__doc__)
     options.add_argument("--tasks", type=int, default=20)
     asked = options.parse_args()
     measure(asked.tasks, "nopa")
     nopa, expected = measure(asked.tasks, "nopa"), measure(asked.tasks, "expected_time")
-    online.Posterior = TimedPosterior  # type: ignore[misc]
+    online_helper.Posterior = TimedPosterior  # type: ignore[misc]
     measure(asked.tasks, "nopa")
     found = figures("NOPA", nopa, (5, 50)) + figures("expected time", expected, (None, None))
     found += figures("posterior update", TimedPosterior.seconds, (1, None))

@@ -27,13 +27,13 @@ from numpy.typing import NDArray
 
 from hearth.analysis.coverage import Script, scripts
 from hearth.commands import inputs
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import Trajectory, trajectory_of
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.motion import Frame, frames
-from hearth.rendering.rays.casting import Caster
+from hearth.rendering.rays.ray_casting import Caster
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.schemas.failures import Failure
 from hearth.schemas.libraries import library as loaded

@@ -14,8 +14,8 @@ from statistics import median
 from time import perf_counter
 from typing import Any
 
-import plain
-from measuring import Figure, Passes, as_line, finish, parser, passes, rate, runs, seconds
+import plain_reference
+from measurement import Figure, Passes, as_line, finish, parser, passes, rate, runs, seconds
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.execution_graphs import ExecutionGraphs
@@ -54,7 +54,7 @@ def main() -> None:
 def figures(asked: Namespace) -> Iterator[Figure]:
     """Every figure, in turn."""
     programs = drawn(5_000)
-    textbook = plain.textbook_lcs(programs)
+    textbook = plain_reference.textbook_lcs(programs)
     for workers, target in ((1, 4.0), (2, 2.0)):
         taken = runs(lambda workers=workers: matrix(programs, programs, workers=workers), 5, perf_counter)
         yield seconds(f"LCS of 5,000 x 5,000 programs, by {workers}", taken, target=target,
@@ -89,10 +89,10 @@ def figures(asked: Namespace) -> Iterator[Figure]:
                   ratio=counted.ratio(executions, counting))  # fmt: skip
 
 
-def yardsticks() -> tuple[plain.Yardstick, plain.Yardstick]:
+def yardsticks() -> tuple[plain_reference.Yardstick, plain_reference.Yardstick]:
     """Reading a graph from JSON, and counting relations in one."""
-    graphs = [plain.as_dicts(library.load_graph(name, default())) for name in library.names()]
-    return plain.read_graph(graphs), plain.counted_relations(graphs)
+    graphs = [plain_reference.as_dicts(library.load_graph(name, default())) for name in library.names()]
+    return plain_reference.read_graph(graphs), plain_reference.counted_relations(graphs)
 
 
 def scoring(dataset: Dataset) -> Iterator[Figure]:
@@ -124,7 +124,7 @@ def scoring(dataset: Dataset) -> Iterator[Figure]:
     )
     whole = Passes([usual], least)
     yield seconds(f"score of {ASKED:,} predictions by two processors, from these", whole, target=60.0,
-                  ratio=plain.sampled_runs().ratio(ASKED / 2, whole))  # fmt: skip
+                  ratio=plain_reference.sampled_runs().ratio(ASKED / 2, whole))  # fmt: skip
 
 
 def predicted(case: dict[str, Any], place: int) -> tuple[Step, ...]:

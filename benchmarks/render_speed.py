@@ -16,9 +16,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import plain
-from measuring import Figure, as_line, finish, parser, rate, seconds
-from warm import warm
+import plain_reference
+from measurement import Figure, as_line, finish, parser, rate, seconds
+from warm_up import warm
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
@@ -26,17 +26,17 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import home_box, room_views
 from hearth.rendering.film.video_file import Writer
 from hearth.rendering.modalities import MODALITIES, pictures_of, render
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure as Person
 from hearth.rendering.people.figure import figure_mesh
-from hearth.rendering.people.variety import person
+from hearth.rendering.people.random_people import person
 from hearth.rendering.rays import threads
-from hearth.rendering.rays.incremental import incremental_frame
+from hearth.rendering.rays.incremental_pictures import incremental_frame
 from hearth.rendering.scene.instances import Thing, forget
-from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import scene_of
 from hearth.rendering.scene.triangles import StaticThings
 from hearth.schemas.graph import EnvironmentGraph, Node
 
@@ -75,7 +75,11 @@ def room_of(graph: EnvironmentGraph) -> Node:
 
 
 def measured(
-    name: str, target: float | None, films: list[Scene], make: Callable[[], Picture], yardstick: plain.Yardstick
+    name: str,
+    target: float | None,
+    films: list[Scene],
+    make: Callable[[], Picture],
+    yardstick: plain_reference.Yardstick,
 ) -> Figure:
     """Frames per second over all scenes; the first picture prepares the home's cached data.
 
@@ -158,7 +162,7 @@ class Stayed:
         return {"rgb": self.last.picture, **pictures_of(self.last.shot, self.modalities)}
 
 
-def film_written(graph: EnvironmentGraph, camera: Camera, yardstick: plain.Yardstick) -> Figure:
+def film_written(graph: EnvironmentGraph, camera: Camera, yardstick: plain_reference.Yardstick) -> Figure:
     """Frames per second of a film that is drawn and written as VP80, until its file is complete.
 
     No pose is seen twice. The codec works while the next picture is drawn, so that single pictures cannot be timed.
@@ -222,8 +226,8 @@ def main() -> None:
     above = top_view(home_box(graph), "top", *SMALL)
     every, few = tuple(MODALITIES), films[:5]
     corners = films[0].geometry.static.mesh.corners
-    large, small = plain.z_buffer(corners, corner), plain.z_buffer(corners, above)
-    work: list[tuple[str, float | None, list[Scene], Callable[[], Picture], plain.Yardstick]] = [
+    large, small = plain_reference.z_buffer(corners, corner), plain_reference.z_buffer(corners, above)
+    work: list[tuple[str, float | None, list[Scene], Callable[[], Picture], plain_reference.Yardstick]] = [
         (f"640x480 draft, all {len(every)} modalities", 12, films, lambda: whole(films, corner, every, "draft"), large),
         ("640x480 draft, whole, rgb", None, films, lambda: whole(films, corner, ("rgb",), "draft"), large),
         (f"640x480 fine, all {len(every)} modalities", 3, few, lambda: whole(films, corner, every, "fine"), large),

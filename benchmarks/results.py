@@ -3,9 +3,9 @@
     python benchmarks/results.py [--only NAME] [--check]
     python benchmarks/results.py --take NAME=FILE    (what a benchmark outside `make bench` wrote with --json)
 
-A ratio to plain reference code (`plain.py`, `tests/oracles`), measured in the same run, holds on any machine: one that
-has fallen by a third against the results.json that is committed fails the run (status 1). With `--check` nothing is
-written. Each section has the day of its run and the load of the machine: sections may differ in age.
+A ratio to plain reference code (`plain_reference.py`, `tests/oracles`), measured in the same run, holds on any machine:
+one that has fallen by a third against the results.json that is committed fails the run (status 1). With `--check`
+nothing is written. Each section has the day of its run and the load of the machine: sections may differ in age.
 """
 
 from __future__ import annotations
@@ -23,10 +23,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-try:
-    from benchmarks.measuring import stalls
-except ImportError:
-    from measuring import stalls
+from measurement import stalls
 
 HERE = Path(__file__).resolve().parent
 TABLE, STORED = HERE / "RESULTS.md", HERE / "results.json"
@@ -109,9 +106,9 @@ def document(found: Mapping[str, Section]) -> str:
         "Written by `make bench`; not edited by hand. Medians of several runs, with the distance of the quartiles.",
         "`undisturbed` adds up the least time of each item of the work, over several passes: what a machine takes, at",
         "the least, whose processors are not taken away meanwhile. What cannot be timed in parts has no such figure.",
-        "The plain reference does the heart of the same work in plain Python (`plain.py`, `tests/oracles`), often less",
-        "than we do; ratios compare the least times. One that falls by a third fails `make bench`. `asked` is what we",
-        "aim at; a figure may miss it.",
+        "The plain reference does the heart of the same work in plain Python (`plain_reference.py`,",
+        "`tests/oracles`), often less than we do; ratios compare the least times. One that falls by a third fails",
+        "`make bench`. `asked` is what we aim at; a figure may miss it.",
         "",
         f"- Python {platform.python_version()}, {libraries}",
     ]

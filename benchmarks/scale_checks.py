@@ -1,8 +1,8 @@
 """Verify and query kept builds: `python benchmarks/scale_checks.py FOLDER [FOLDER ...] [--workers 2] [--json FILE]`.
 
-A folder is that of one size below `--keep` of `scale.py`. Printed are for each build: wall and processor seconds of
-`hearth verify`, which does every execution again, its largest process, and the same of five queries (`QUERIES`), each
-asked by a process of its own.
+A folder is that of one size below `--keep` of `build_scale.py`. Printed are for each build: wall and processor seconds
+of `hearth verify`, which does every execution again, its largest process, and the same of five queries (`QUERIES`),
+each asked by a process of its own.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import time
 from pathlib import Path
 from statistics import median
 
-from measuring import Figure, as_line, finish
-from scale import Watch, augmented, growth, run
+from build_scale import Watch, augmented, growth, run
+from measurement import Figure, as_line, finish
 
 QUERIES = (
     "SELECT split, count(*) FROM programs GROUP BY 1 ORDER BY 1",

@@ -15,7 +15,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from measuring import Figure, as_line, finish, parser
+from measurement import Figure, as_line, finish, parser
 
 PROCESSES = 3
 

@@ -3,7 +3,7 @@
 Builds a small dataset as the tier `full` is built (the embedded corpus and as many synthetic programs, two homes each),
 then runs records drawn from all over each stage's input again and again by themselves; and turns their rows into
 Parquet and back. From the sums it says how long two processors would take for the tier, from sampling to publishing,
-were they never taken away; `scale.py` builds it whole and says how long it took.
+were they never taken away; `build_scale.py` builds it whole and says how long it took.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import plain
+import plain_reference
 import pyarrow as pa
 import pyarrow.parquet as pq
-from measuring import Figure, Passes, as_line, finish, parser, passes, rate, seconds
+from measurement import Figure, Passes, as_line, finish, parser, passes, rate, seconds
 
 from hearth.pipelines.build import stage
 from hearth.pipelines.engine.runner import input_partitions
@@ -51,7 +51,7 @@ class Cost:
 
     process: Passes
     storage: Passes
-    written: plain.Yardstick
+    written: plain_reference.Yardstick
     records: int
 
     @property
@@ -91,7 +91,7 @@ def figures(out: Path, folder: Path) -> Iterator[Figure]:
     """A record's cost by stage, and the extrapolation to the tier."""
     settings = Settings(out=str(out), **{**TIERS["full"], "target": TARGET})
     costs, counts = {}, {}
-    sampled_runs = plain.sampled_runs()
+    sampled_runs = plain_reference.sampled_runs()
     for name in STAGES:
         job = Job(stage(name), settings, stage(name).prepare(settings))
         costs[name] = cost(job, folder)
@@ -122,7 +122,7 @@ def cost(job: Job, folder: Path) -> Cost:
     whole = Passes(
         [sum(totals) for totals in zip(*(part.totals for part in storage), strict=True)], sum(p.least for p in storage)
     )
-    written = plain.lines_of_json([row for output in outputs for row in output])
+    written = plain_reference.lines_of_json([row for output in outputs for row in output])
     return Cost(process, whole, written, len(some))
 
 

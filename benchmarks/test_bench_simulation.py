@@ -10,7 +10,7 @@ from dataclasses import replace
 from itertools import islice
 from typing import Any
 
-import cases
+import benchmark_cases
 import orjson
 import pytest
 from oracles import engine as reference
@@ -45,19 +45,19 @@ OPTIONS = {
 def started(corpus: str) -> list[tuple[World, Any]]:
     if corpus == "release":
         return [(World.start(Home.from_release(graph, "", default())), program) for graph, program in _release()]
-    return [(World.start(Home.from_graph(graph, "", default())), program) for graph, program in cases.own()]
+    return [(World.start(Home.from_graph(graph, "", default())), program) for graph, program in benchmark_cases.own()]
 
 
 def plain(corpus: str) -> list[tuple[PlainWorld, Any]]:
     if corpus == "release":
         return [(PlainWorld(from_release(graph), release=True), program) for graph, program in _release()]
-    return [(PlainWorld(graph), program) for graph, program in cases.own()]
+    return [(PlainWorld(graph), program) for graph, program in benchmark_cases.own()]
 
 
 def _release() -> Any:
-    found = cases.release()
+    found = benchmark_cases.release()
     if not found:
-        pytest.skip(f"no release sample in {cases.REAL} (set HEARTH_REAL_DATA)")
+        pytest.skip(f"no release sample in {benchmark_cases.REAL} (set HEARTH_REAL_DATA)")
     return found
 
 
@@ -110,21 +110,21 @@ def test_steps_keeping_every_state_reference(benchmark, corpus):
 
 @pytest.mark.benchmark(group="making worlds")
 def test_world_from_known_home(benchmark):
-    home = Home.from_graph(cases.own()[0][0], "", default())
+    home = Home.from_graph(benchmark_cases.own()[0][0], "", default())
     note(benchmark, "world", against="test_world_reference")
     benchmark(World.start, home)
 
 
 @pytest.mark.benchmark(group="making worlds")
 def test_world_reference(benchmark):
-    graph = cases.own()[0][0]
+    graph = benchmark_cases.own()[0][0]
     note(benchmark, "world")
     benchmark(PlainWorld, graph)
 
 
 @pytest.mark.benchmark(group="making worlds")
 def test_environment_of_twenty_more_things(benchmark):
-    home = Home.from_graph(cases.own()[0][0], "", default())
+    home = Home.from_graph(benchmark_cases.own()[0][0], "", default())
     room, place = (home.ids[mask.bit_length() - 1] for mask in (home.rooms, home.properties["SURFACES"]))
     nodes = [Node(2000 + i, "cup", "Props", ("GRABBABLE", "RECIPIENT"), ("CLEAN",)) for i in range(20)]
     edges = [Edge(n.id, r, t) for n in nodes for r, t in (("INSIDE", room), ("ON", place), ("CLOSE", place))]
@@ -154,7 +154,7 @@ def test_parse_and_build_reference(benchmark):
 def test_replay(benchmark):
     programs = len(_release())
     note(benchmark, "program", programs, "test_replay_reference")
-    found = benchmark(lambda: list(islice(replay(cases.SAMPLE, default()), programs)))
+    found = benchmark(lambda: list(islice(replay(benchmark_cases.SAMPLE, default()), programs)))
     assert all(one.exact for one in found)
 
 
@@ -165,7 +165,7 @@ def test_replay_reference(benchmark):
     note(benchmark, "program", programs)
 
     def go() -> None:
-        with zipfile.ZipFile(cases.SAMPLE) as sample:
+        with zipfile.ZipFile(benchmark_cases.SAMPLE) as sample:
             names = [name for name in sorted(sample.namelist()) if "/executable_programs/" in name]
             for name in [name for name in names if name.endswith(".txt")][:programs]:
                 file = name.replace("executable_programs", "init_and_final_graphs").replace(".txt", ".json")
@@ -180,7 +180,7 @@ def test_replay_reference(benchmark):
 
 @pytest.mark.benchmark(group="binding and running programs of 12 steps")
 def test_bind_and_run(benchmark):
-    items = cases.unbound()
+    items = benchmark_cases.unbound()
     assert len(items) > 50
     note(benchmark, "program", len(items), "test_bind_and_run_reference")
 
@@ -196,7 +196,7 @@ def test_bind_and_run(benchmark):
 @pytest.mark.benchmark(group="binding and running programs of 12 steps")
 def test_bind_and_run_reference(benchmark):
     """The first instance of each class, without a search, and a copy of the world for each run."""
-    items = [(PlainWorld(graph), graph, program) for graph, program in cases.own()]
+    items = [(PlainWorld(graph), graph, program) for graph, program in benchmark_cases.own()]
     note(benchmark, "program", len(items))
 
     def go() -> None:
@@ -220,7 +220,10 @@ def test_legal(benchmark, limits):
 @pytest.mark.benchmark(group="what an agent may do and sees")
 def test_legal_reference(benchmark):
     """Every action with one object is tried on every object, in one copy of the world."""
-    worlds = [(world, graph) for (world, _), (graph, _) in zip(plain("own homes")[::4], cases.own()[::4], strict=True)]
+    worlds = [
+        (world, graph)
+        for (world, _), (graph, _) in zip(plain("own homes")[::4], benchmark_cases.own()[::4], strict=True)
+    ]
     single = [name for name, action in default().actions.items() if action.arity == 1 and name in reference.ACTIONS]
     note(benchmark, "world", len(worlds))
 
@@ -244,7 +247,7 @@ def test_partial_view_as_ids(benchmark):
 
 @pytest.mark.benchmark(group="what an agent may do and sees")
 def test_partial_view_reference(benchmark):
-    worlds = [(world, graph) for (world, _), (graph, _) in zip(plain("own homes"), cases.own(), strict=True)]
+    worlds = [(world, graph) for (world, _), (graph, _) in zip(plain("own homes"), benchmark_cases.own(), strict=True)]
     note(benchmark, "world", len(worlds))
 
     def seen(world: PlainWorld, ids: list[int]) -> list[int]:
@@ -260,8 +263,8 @@ SIZES = [300, 3_000, 30_000]
 @pytest.mark.parametrize("things", SIZES)
 @pytest.mark.benchmark(group="steps in homes of any size")
 def test_steps_in_large_homes(benchmark, things):
-    graph = cases.large(things)
-    world, program = World.start(Home.from_graph(graph, "", default())), cases.errands(graph)
+    graph = benchmark_cases.large(things)
+    world, program = World.start(Home.from_graph(graph, "", default())), benchmark_cases.errands(graph)
     assert isinstance(final(world, program), World)
     note(benchmark, "step", len(program.steps), "test_steps_in_large_homes[300]" if things > 300 else "")
     benchmark.pedantic(lambda: final(world, program), rounds=20, iterations=3, warmup_rounds=1)

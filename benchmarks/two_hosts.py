@@ -20,7 +20,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from kills import differing
+from killed_builds import differing
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = (ROOT / "data_raw/crowd/descriptions.csv", ROOT / "data_raw/crowd/programs.csv")

@@ -17,7 +17,7 @@ from statistics import median
 from typing import Any
 
 import pyarrow as pa
-from measuring import Figure, as_line, finish, parser, spread
+from measurement import Figure, as_line, finish, parser, spread
 
 from hearth.pipelines.build import stage
 from hearth.pipelines.engine.runner import run_stage

@@ -1,1 +1,1 @@
-"""What agents are asked to do, and how they did: tasks, episodes, metrics, boards, and ways in for others' agents."""
+"""What agents are asked to do, and how they did: tasks, goals, episodes, metrics, results; wire protocol."""

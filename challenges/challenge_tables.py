@@ -9,12 +9,12 @@ from typing import Any
 
 import pyarrow as pa
 
-from hearth.agents.online_registry import ONLINE
-from hearth.challenges import published_tasks, table_rows
-from hearth.challenges.definition import challenge
+from hearth.agents.online_helper_registry import ONLINE
+from hearth.challenges import challenge_rows, published_tasks
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.demonstration_episodes import Demonstration, demonstrations
 from hearth.challenges.episodes import Known, Record
 from hearth.challenges.helper_beliefs import beliefs
-from hearth.challenges.playing_demonstrations import Demonstration, demonstrations
 from hearth.challenges.result_files import Results, episode_data
 from hearth.challenges.tasks import Task
 from hearth.datasets.damage import reading
@@ -36,11 +36,11 @@ STAGE = "challenge"
 TABLES: dict[str, pa.Schema] = {
     name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
     for name, row in {
-        "tasks": table_rows.TaskRow,
-        "demonstrations": table_rows.DemonstrationRow,
-        "episodes": table_rows.EpisodeRow,
-        "trajectories": table_rows.TrajectoryRow,
-        "posteriors": table_rows.PosteriorRow,
+        "tasks": challenge_rows.TaskRow,
+        "demonstrations": challenge_rows.DemonstrationRow,
+        "episodes": challenge_rows.EpisodeRow,
+        "trajectories": challenge_rows.TrajectoryRow,
+        "posteriors": challenge_rows.PosteriorRow,
     }.items()
 }
 """Published tables by name; each is one file."""
@@ -147,7 +147,7 @@ class ChallengeData(Dataset):
         return None
 
 
-def _task(task: Task) -> table_rows.TaskRow:
+def _task(task: Task) -> challenge_rows.TaskRow:
     grammar = challenge(task.challenge).grammar
     return {
         "task_id": task.id,
@@ -162,7 +162,7 @@ def _task(task: Task) -> table_rows.TaskRow:
     }
 
 
-def _demonstration(shown: Demonstration, rate: float) -> table_rows.DemonstrationRow:
+def _demonstration(shown: Demonstration, rate: float) -> challenge_rows.DemonstrationRow:
     return {
         "task_id": shown.task.id,
         "clean": rate == 0,
@@ -172,7 +172,7 @@ def _demonstration(shown: Demonstration, rate: float) -> table_rows.Demonstratio
     }
 
 
-def _instruction(tick: int, text: str) -> table_rows.InstructionRow:
+def _instruction(tick: int, text: str) -> challenge_rows.InstructionRow:
     action, *objects = text.split(" ")
     nodes = [number for each in objects if (number := number_of(each)) is not None]
     if len(nodes) < len(objects):
@@ -227,7 +227,7 @@ def _trajectory(found: Results, record: Record) -> Iterator[dict[str, Any]]:
                 yield {"episode_id": name, "agent": agent, **_instruction(tick, text)}
 
 
-def _posterior(found: Results, record: Record, known: Known) -> Iterator[table_rows.PosteriorRow]:
+def _posterior(found: Results, record: Record, known: Known) -> Iterator[challenge_rows.PosteriorRow]:
     """What a helper that infers the goal believed; nothing of others."""
     helper = found.header.lineup.helper
     if helper not in ONLINE or not record.helped or record.helper_goal is not None:

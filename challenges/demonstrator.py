@@ -11,9 +11,9 @@ from dataclasses import replace
 from functools import reduce
 from operator import or_
 
-from hearth.agents.errands import Errand
+from hearth.agents.distractions import Errand
 from hearth.agents.human_like import HumanLike
-from hearth.challenges.definition import Challenge
+from hearth.challenges.challenge_definition import Challenge
 from hearth.challenges.goal_grammar import instance, wanted_things
 from hearth.challenges.tasks import Task
 from hearth.schemas.goals import Goal

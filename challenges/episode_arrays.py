@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Record, read_choices, start_of
 from hearth.challenges.result_files import Results
-from hearth.challenges.seen_arrays import Arrays
-from hearth.challenges.session import Session, Setting
 from hearth.challenges.tasks import Task
+from hearth.envs.observation_arrays import Arrays
+from hearth.envs.session import Session, Setting
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -28,7 +28,7 @@ class EpisodeArrays:
         task: its id.
         seed: number of the episode of its task.
         goal: what the main agent wants, as text.
-        observations: T + 1 dicts of arrays (see `seen_arrays.Encoder.spaces`).
+        observations: T + 1 dicts of arrays (see `observation_arrays.Encoder.spaces`).
         actions: (T, 3) triples (see `action_codes.Triples`); zeros where it waited or spoke.
         rewards: (T,) (see `rewards.Rewards`).
         success: whether the goal was reached.

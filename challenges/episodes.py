@@ -9,11 +9,11 @@ from typing import Any
 
 from hearth.agents.agent_registry import MainAgent
 from hearth.agents.protocol import Choice
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
+from hearth.challenges.episode_agents import Lineup
+from hearth.challenges.episode_loop import play
 from hearth.challenges.failure_analysis import analysed
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.metrics import Outcome, outcome
-from hearth.challenges.play import play
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.agent_messages import Message

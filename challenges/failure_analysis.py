@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields
 from functools import reduce
 from operator import or_
 
-from hearth.challenges.definition import Challenge
+from hearth.challenges.challenge_definition import Challenge
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
@@ -126,7 +126,10 @@ class _Analysis:
             self.columns.conflicts += self._by(did.get(MAIN), before, lost, tick)
 
     def _by(self, did: Step | None, before: Progress, lost: int, tick: Tick) -> int:
-        """How many of these nodes an instruction is about and moves away: one may also go to what the other takes."""
+        """Return how many of these nodes an instruction is about and moves away.
+
+        One may also go to what the other takes.
+        """
         about = lost & self._named(did) if lost and did is not None else 0
         if not about or did is None:
             return 0

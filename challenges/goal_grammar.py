@@ -225,7 +225,7 @@ class Grammar:
         return Goal(tuple(found.items()))
 
     def size(self, goal: Goal) -> int:
-        """How many predicates a goal has, with their counts."""
+        """Return how many predicates a goal has, with their counts."""
         return sum(number for literal, number in goal if literal not in self._free)
 
     def prior(self, goal: Goal) -> float:
@@ -233,7 +233,7 @@ class Grammar:
         return self.goals.get(goal, 0.0)
 
     def counts(self, goal: Goal) -> tuple[int, ...]:
-        """How often each of `predicates` is wanted: what goal inference predicts (appendix B.3.1)."""
+        """Return how often each of `predicates` is wanted: what goal inference predicts (appendix B.3.1)."""
         wanted = dict(goal)
         return tuple(wanted.get(literal, 0) for literal in self.predicates)
 

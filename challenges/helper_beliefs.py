@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from hearth.agents.goal_space import Counts
-from hearth.agents.online import OnlineHelper
-from hearth.agents.online_registry import ONLINE
-from hearth.challenges.definition import challenge
+from hearth.agents.online_helper import OnlineHelper
+from hearth.agents.online_helper_registry import ONLINE
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_loop import Playing
 from hearth.challenges.episodes import Record, read_choices, start_of
-from hearth.challenges.play import Playing
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

@@ -48,7 +48,7 @@ def train(
         known: gives the knowledge.
         seed: of all that is drawn.
         limit: the first demonstrations, or tasks, only.
-        rate: of habits in demonstrations of goals (see `playing_demonstrations.Wish`).
+        rate: of habits in demonstrations of goals (see `demonstration_episodes.Wish`).
         epochs: passes over demonstrations, or epochs of practice; as they come where None.
         workers: processes that play episodes.
         seen, trained: report progress: episodes and epochs done.

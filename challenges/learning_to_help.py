@@ -18,16 +18,16 @@ from statistics import mean
 from typing import Any
 
 from hearth.agents.human_like import HumanLike
-from hearth.agents.learned import Choice, Hybrid
-from hearth.agents.scene_reading import vocabulary
-from hearth.agents.shown_choices import ShownChoices
-from hearth.challenges.definition import challenge
+from hearth.agents.imitation_targets import ShownChoices
+from hearth.agents.learned_helpers import Choice, Hybrid
+from hearth.agents.policy_observations import vocabulary
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_loop import Played, Player, play
 from hearth.challenges.episodes import Known, start_of
-from hearth.challenges.play import Played, Player, play
-from hearth.challenges.practice import Practice, low_rewards, practised
-from hearth.challenges.rewards import HIERARCHICAL
+from hearth.challenges.practice_episodes import Practice, low_rewards, practised
 from hearth.challenges.task_files import suite
 from hearth.challenges.tasks import Task
+from hearth.envs.rewards import HIERARCHICAL
 from hearth.models.helping.policies import TrainedPolicy, untrained
 from hearth.models.helping.policy_inputs import Batch, Trace, Words, packed
 from hearth.models.interface import Training

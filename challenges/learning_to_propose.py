@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from hearth.agents.agent_registry import MAIN
 from hearth.agents.goal_space import GoalSpace
 from hearth.agents.state_changes import StateChanges
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.episodes import Known
-from hearth.challenges.play import Player, play
 from hearth.challenges.task_files import suite
 from hearth.challenges.tasks import Task
 from hearth.models.interface import Training

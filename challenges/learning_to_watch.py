@@ -6,18 +6,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.episodes import Known
-from hearth.challenges.playing_demonstrations import Wish, demonstrate
 from hearth.challenges.published_tasks import DEMONSTRATIONS
 from hearth.challenges.task_files import suite
 from hearth.challenges.tasks import Task
-from hearth.challenges.watching import bound
+from hearth.challenges.watch_stage import bound
 from hearth.models.interface import Training
+from hearth.models.watching.demonstration_batches import Counts, Watched
 from hearth.models.watching.goal_decoding import possible_goals
 from hearth.models.watching.goal_inference import GoalInference
-from hearth.models.watching.sightings import sightings
-from hearth.models.watching.watched_batches import Counts, Watched
+from hearth.models.watching.object_sightings import sightings
 from hearth.storage.parallel import Seen, spread, unseen
 
 if TYPE_CHECKING:

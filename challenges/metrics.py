@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, overload
 
-from hearth.challenges.definition import Challenge
+from hearth.challenges.challenge_definition import Challenge
 from hearth.challenges.failure_analysis import NAMES, Columns
 
 PER_TICK = 0.004
@@ -188,7 +188,7 @@ SAME = 1e-9
 
 
 def paired(one: Mapping[str, float], other: Mapping[str, float]) -> Paired:
-    """Whether a metric differs between two agents on the tasks that both did."""
+    """Return whether a metric differs between two agents on the tasks that both did."""
     from scipy import stats
 
     tasks = [task for task in one if task in other]

@@ -10,7 +10,7 @@ from functools import lru_cache
 from itertools import combinations
 from random import Random
 
-from hearth.challenges.definition import Challenge, Split, challenge
+from hearth.challenges.challenge_definition import Challenge, Split, challenge
 from hearth.challenges.tasks import Task, drawn
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -9,8 +9,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Record
-from hearth.challenges.lineup import NOBODY, Lineup
 from hearth.challenges.metrics import METRICS, Outcomes, by_task
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -64,7 +64,7 @@ class Header:
 
     @property
     def count(self) -> int:
-        """How many episodes there are."""
+        """Return how many episodes there are."""
         if self.episodes is not None:
             return len(self.episodes)
         return len(self.suite.tasks) * self.seeds * len(self.helped)
@@ -255,7 +255,7 @@ def episode_of(given: Mapping[str, Any]) -> Record | None:
 
 
 def _measured(metrics: Mapping[str, Any]) -> bool:
-    """Whether these are the metrics of an episode, as numbers that tables hold."""
+    """Return whether these are the metrics of an episode, as numbers that tables hold."""
     if metrics.keys() != METRICS or type(metrics["success"]) is not bool:
         return False
     counts = (value for name, value in metrics.items() if name not in ("success", "reward"))
@@ -264,12 +264,12 @@ def _measured(metrics: Mapping[str, Any]) -> bool:
 
 
 def _counted(goal: Mapping[str, Any] | None) -> bool:
-    """Whether this is a goal in the words of a grammar, or none."""
+    """Return whether this is a goal in the words of a grammar, or none."""
     return goal is None or all(type(number) is int for number in goal.values())
 
 
 def _ended(end: Mapping[str, Any] | None) -> bool:
-    """Whether this says by which failure an agent ended the episode, in plain values, or nothing."""
+    """Return whether this says by which failure an agent ended the episode, in plain values, or nothing."""
     return end is None or (
         isinstance(end.get("code"), str) and all(isinstance(value, (str, int)) for value in end.values())
     )

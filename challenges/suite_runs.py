@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from hearth.challenges.episode_spread import Spread, here
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, Known, Record
-from hearth.challenges.lineup import Lineup
+from hearth.challenges.parallel_episodes import Spread, here
 from hearth.challenges.result_files import Header, Results, first_line, line, read, read_records
 from hearth.challenges.task_files import Suite
 from hearth.challenges.tasks import Task
-from hearth.challenges.watching import inferred
+from hearth.challenges.watch_stage import inferred
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
@@ -21,7 +21,7 @@ from hearth.storage.input_files import read_lines
 from hearth.storage.parallel import Seen, unseen
 
 INFERRED = {"inferred": "actions", "inferred_states": "states"}
-"""How the demonstration is read, by what the helper is asked to do (see `agents.demonstrations`)."""
+"""How the demonstration is read, by what the helper is asked to do (see `agents.demonstration_goals`)."""
 
 
 def run(
@@ -75,7 +75,10 @@ def run(
 
 
 def _kept(header: Header, partial: Path) -> int:
-    """How many episodes of the same run are in a file that a stopped run left; what is half written is cut off."""
+    """Return how many episodes of the same run are in a file that a stopped run left.
+
+    What is half written is cut off.
+    """
     if not partial.exists():
         return 0
     lines = read_lines(partial)

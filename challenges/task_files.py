@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.challenges import published_tasks
-from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -52,7 +52,7 @@ class Suite:
 
     @property
     def published(self) -> bool:
-        """Whether these are the first tasks of the published split."""
+        """Return whether these are the first tasks of the published split."""
         try:
             return self.tasks == published_tasks.tasks(self.challenge, self.split, limit=len(self.tasks))
         except HearthError:

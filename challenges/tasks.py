@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from random import Random
 
-from hearth.challenges.definition import Challenge, challenge
-from hearth.challenges.starts import start
+from hearth.challenges.challenge_definition import Challenge, challenge
+from hearth.challenges.start_worlds import start
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Job, Known, Record, again, played
 from hearth.challenges.result_files import Results, read
 from hearth.challenges.tasks import Task
@@ -98,7 +98,7 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
 
 
 def differences(check: Check) -> tuple[int, list[str]]:
-    """How many episodes of a task were done again, and what was different then."""
+    """Return how many episodes of a task were done again, and what was different then."""
     found = []
     # Those without a helper first, then those with one: their starts differ.
     for number, record in sorted(enumerate(check.records), key=lambda pair: pair[1].helped):

@@ -25,20 +25,20 @@ def augmented(
 
     \b
     Examples:
-      python cli.py augmented data_out --out figures
-      python cli.py augmented data_out --circumstances
+      hearth augmented data_out --out figures
+      hearth augmented data_out --circumstances
     """
-    from hearth.analysis.augment_figures import figures
+    from hearth.analysis.augmentation_results import figures
 
     found = figures(_published(dataset))
     if circumstances:
-        from hearth.analysis.kept_circumstances import measure
+        from hearth.analysis.context_preservation import measure
         from hearth.commands.progress_line import bar
 
         with bar("shares run again") as seen:
             found["circumstances"] = measure(_published(dataset), workers, seen)
     if out is not None:
-        from hearth.analysis.augment_pictures import draw
+        from hearth.analysis.augmentation_charts import draw
 
         found["files"] = [str(file) for file in draw(found, out)]
     if as_json:

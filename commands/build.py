@@ -63,12 +63,12 @@ def build(
 
     \b
     Examples:
-      python cli.py build --out data_out
-      python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
-      python cli.py build corpus.csv --out small --tier mini
-      python cli.py build release.zip --out hard --strength thesis
-      python cli.py build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
-      python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
+      hearth build --out data_out
+      hearth build release.zip my_programs/ --out mine --seed 7 --workers 4
+      hearth build corpus.csv --out small --tier mini
+      hearth build release.zip --out hard --strength thesis
+      hearth build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
+      hearth build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
     from hearth.pipelines.engine.tiers import STANDARD
 
@@ -102,7 +102,7 @@ def ingest(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py ingest batch.csv --out data_out
+      hearth ingest batch.csv --out data_out
     """
     _run(context, "ingest")
 
@@ -113,7 +113,7 @@ def validate(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py validate --out data_out
+      hearth validate --out data_out
     """
     _run(context, "validate")
 
@@ -140,9 +140,9 @@ def sample(
 
     \b
     Examples:
-      python cli.py sample --out data_out --seed 7 --home maple
-      python cli.py sample release.zip --homes all --homes their_homes --json
-      python cli.py sample release.zip --homes all --nodes 290
+      hearth sample --out data_out --seed 7 --home maple
+      hearth sample release.zip --homes all --homes their_homes --json
+      hearth sample release.zip --homes all --nodes 290
     """
     folder = next((Path(text) for text in homes or () if text != _ALL), None)
     if not sources:
@@ -178,16 +178,16 @@ def augment(
 
     \b
     Examples:
-      python cli.py augment --out data_out --per-program 5
-      python cli.py augment --out data_out --strength thesis
-      python cli.py augment --out data_out --target 30000 --homes maple,birch --json
+      hearth augment --out data_out --per-program 5
+      hearth augment --out data_out --strength thesis
+      hearth augment --out data_out --target 30000 --homes maple,birch --json
     """
     folder, names = _homes_or_names(homes)
     chosen = {**_tiered(context), "home": [*(home or ()), *names], "homes": folder}
     if not as_json:
         _run(context, "augment", chosen)
         return
-    from hearth.analysis.augment_figures import outcome
+    from hearth.analysis.augmentation_results import outcome
 
     found = _built("augment", chosen)
     output.emit(outcome(out / "augment"))
@@ -207,7 +207,7 @@ def render(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py render --out data_out --pictures 10 --videos 2
+      hearth render --out data_out --pictures 10 --videos 2
     """
     _run(context, "render")
 
@@ -218,7 +218,7 @@ def publish(context: typer.Context, **_: Any) -> None:
 
     \b
     Example:
-      python cli.py publish --out data_out
+      hearth publish --out data_out
     """
     _run(context, "publish")
 

@@ -42,8 +42,8 @@ def tasks(
 
     \b
     Examples:
-      python cli.py challenge tasks wah --split test-1 --out test-1.json
-      python cli.py challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
+      hearth challenge tasks wah --split test-1 --out test-1.json
+      hearth challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
     """
     from hearth.challenges.published_tasks import PUBLISHED
     from hearth.challenges.task_files import suite, write
@@ -90,13 +90,13 @@ def run_tasks(
 
     \b
     Examples:
-      python cli.py challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
-      python cli.py challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
-      python cli.py challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
-      python cli.py challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
+      hearth challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
+      hearth challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
+      hearth challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
+      hearth challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
     """
-    from hearth.challenges.episode_spread import spread_over
-    from hearth.challenges.lineup import Lineup
+    from hearth.challenges.episode_agents import Lineup
+    from hearth.challenges.parallel_episodes import spread_over
     from hearth.challenges.suite_runs import run
     from hearth.challenges.task_files import read
     from hearth.commands.progress_line import bar
@@ -117,7 +117,7 @@ def score(results: Path, *, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py challenge score hp.jsonl --json
+      hearth challenge score hp.jsonl --json
     """
     from hearth.challenges.verification import read_whole
 
@@ -139,9 +139,9 @@ def build(
 
     \b
     Examples:
-      python cli.py challenge build wah --out data_out/wah
-      python cli.py challenge build wah hp.jsonl random.jsonl --out data_out/wah
-      python cli.py query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
+      hearth challenge build wah --out data_out/wah
+      hearth challenge build wah hp.jsonl random.jsonl --out data_out/wah
+      hearth query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
     """
     from hearth.challenges.challenge_tables import publish
     from hearth.challenges.verification import read_whole
@@ -188,10 +188,10 @@ def table(
 
     \b
     Examples:
-      python cli.py challenge table wah --out data_out/challenges/wah
-      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah
-      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah --by-set     (figure 7-6a)
-      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah --particles  (figure C-5)
+      hearth challenge table wah --out data_out/challenges/wah
+      hearth challenge table owah --seeds 3 --out data_out/challenges/owah
+      hearth challenge table owah --seeds 3 --out data_out/challenges/owah --by-set     (figure 7-6a)
+      hearth challenge table owah --seeds 3 --out data_out/challenges/owah --particles  (figure C-5)
     """
     from hearth.analysis.challenge_table import TABLES, figure, methods, rows
     from hearth.challenges.task_files import suite

@@ -13,7 +13,7 @@ def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bo
 
     \b
     Example:
-      python cli.py challenge verify hp.jsonl
+      hearth challenge verify hp.jsonl
     """
     from hearth.challenges.result_files import read
     from hearth.challenges.verification import verify as differences
@@ -41,12 +41,12 @@ def solvable(
 
     \b
     Examples:
-      python cli.py challenge solvable wah
-      python cli.py challenge solvable owah --split test
+      hearth challenge solvable wah
+      hearth challenge solvable owah --split test
     """
-    from hearth.challenges.definition import challenge
+    from hearth.challenges.challenge_definition import challenge
     from hearth.challenges.published_tasks import tasks
-    from hearth.challenges.solvable import solved
+    from hearth.challenges.solvability import solved
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
@@ -77,7 +77,7 @@ def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> No
 
     \b
     Example:
-      python cli.py challenge board hp.jsonl mine.jsonl
+      hearth challenge board hp.jsonl mine.jsonl
     """
     from hearth.challenges.metrics import summary
     from hearth.challenges.verification import read_whole

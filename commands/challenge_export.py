@@ -20,11 +20,11 @@ def export(
 
     \b
     Examples:
-      python cli.py challenge export hp.jsonl --format minari --out hp-minari
-      python cli.py challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
+      hearth challenge export hp.jsonl --format minari --out hp-minari
+      hearth challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
     """
-    from hearth.challenges.episode_export import export as written
     from hearth.challenges.verification import read_whole
+    from hearth.interop.episode_export import export as written
     from hearth.kb.loading.load import default
 
     count = written(read_whole(results), form, out, agent, default(), limit)

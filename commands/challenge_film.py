@@ -23,8 +23,8 @@ def film(
 
     \b
     Examples:
-      python cli.py challenge film hp.jsonl wah-test-1-0003 --out film
-      python cli.py challenge film episode.jsonl wah-test-1-0003 --view first --out film
+      hearth challenge film hp.jsonl wah-test-1-0003 --out film
+      hearth challenge film episode.jsonl wah-test-1-0003 --view first --out film
     """
     from hearth.analysis.episode_drawing import episode_of, ticks_of
     from hearth.challenges.episode_films import execution_of

@@ -20,14 +20,14 @@ def watch(
 
     \b
     Examples:
-      python cli.py challenge watch test-1.json --from states
-      python cli.py challenge watch test-1.json --from last-frame
-      python cli.py challenge watch test-1.json --rate 0   (clean demonstrations)
+      hearth challenge watch test-1.json --from states
+      hearth challenge watch test-1.json --from last-frame
+      hearth challenge watch test-1.json --rate 0   (clean demonstrations)
     """
-    from hearth.agents.demonstrations import agreement
+    from hearth.agents.demonstration_goals import agreement
     from hearth.challenges.metrics import mean
     from hearth.challenges.task_files import read
-    from hearth.challenges.watching import inferred
+    from hearth.challenges.watch_stage import inferred
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
@@ -72,10 +72,10 @@ def learn(
 
     \b
     Examples:
-      python cli.py challenge learn wah --out build/goal-inference
-      python cli.py challenge watch test-1.json --from states --model build/goal-inference
-      python cli.py challenge learn wah --what subgoals --limit 430 --out build/helping-subgoals
-      python cli.py challenge learn owah --what proposals-small --out build/goal-proposals-small
+      hearth challenge learn wah --out build/goal-inference
+      hearth challenge watch test-1.json --from states --model build/goal-inference
+      hearth challenge learn wah --what subgoals --limit 430 --out build/helping-subgoals
+      hearth challenge learn owah --what proposals-small --out build/goal-proposals-small
     """
     from hearth.challenges.learning import train
     from hearth.commands.progress_line import bar
@@ -95,7 +95,7 @@ def curves(checkpoints: list[Path], *, out: Path, as_json: bool = False) -> None
 
     \b
     Example:
-      python cli.py challenge curves build/subgoals-0 build/subgoals-1 build/subgoals-2 --out curves.svg
+      hearth challenge curves build/subgoals-0 build/subgoals-1 build/subgoals-2 --out curves.svg
     """
     from hearth.analysis.training_curves import drawn, runs
 

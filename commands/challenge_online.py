@@ -18,7 +18,7 @@ def infer(results: Path, *, workers: int = 0, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py challenge infer nopa.jsonl
+      hearth challenge infer nopa.jsonl
     """
     from hearth.analysis.online_inference import inference
     from hearth.challenges.verification import read_whole
@@ -52,9 +52,9 @@ def people(
 
     \b
     Example:
-      python cli.py challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
+      hearth challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
     """
-    from hearth.analysis.helped_people import helped_people
+    from hearth.analysis.helper_harm import helped_people
     from hearth.challenges.task_files import suite
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default

@@ -12,10 +12,10 @@ def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None
 
     \b
     Example:
-      python cli.py challenge stats test-1.json --out figures
+      hearth challenge stats test-1.json --out figures
     """
     from hearth.analysis.challenge_starts import starts
-    from hearth.analysis.distribution import heat_map
+    from hearth.analysis.object_distribution import heat_map
     from hearth.challenges.task_files import read
     from hearth.kb.loading.load import default
     from hearth.storage.names import inside
@@ -59,9 +59,9 @@ def show(
 
     \b
     Examples:
-      python cli.py challenge show nopa.jsonl owah-test-0003 --goal-beliefs beliefs.svg
-      python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
-      python cli.py challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
+      hearth challenge show nopa.jsonl owah-test-0003 --goal-beliefs beliefs.svg
+      hearth challenge show hp.jsonl wah-test-1-0003 --out figure.png
+      hearth challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
     """
     from hearth.analysis import belief_drawing
     from hearth.analysis.episode_drawing import episode_of, furniture, narrated, panels_of, ticks_of

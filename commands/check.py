@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import grouped_faults, inputs, output
 from hearth.commands.grouped_faults import in_order
 from hearth.kb.language.fuzzy import Fuzzy
-from hearth.pipelines.checks.checked_text import Checked, check_text, warnings_of
+from hearth.pipelines.checks.text_checks import Checked, check_text, warnings_of
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -46,8 +46,8 @@ def check(
 
     \b
     Examples:
-      python cli.py check morning.txt evening.txt
-      python cli.py check --fix morning.txt
+      hearth check morning.txt evening.txt
+      hearth check --fix morning.txt
     """
     known = inputs.read_knowledge(kb)
     diffs = {file: _fix(file, known, write=fix) for file in files} if fix or diff else {}

@@ -30,7 +30,7 @@ def template(out: Path | None = None, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py corpus template --out mine.csv
+      hearth corpus template --out mine.csv
     """
     from importlib.resources import files
 
@@ -66,17 +66,17 @@ def synthesize(
 
     \b
     Examples:
-      python cli.py corpus synthesize --out synthetic.jsonl
-      python cli.py corpus synthesize --out synthetic.jsonl --splits splits.csv --json
-      python cli.py corpus synthesize --described --out described.jsonl
-      python cli.py corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
-      python cli.py sample synthetic.jsonl   (runs each of them in every home)
+      hearth corpus synthesize --out synthetic.jsonl
+      hearth corpus synthesize --out synthetic.jsonl --splits splits.csv --json
+      hearth corpus synthesize --described --out described.jsonl
+      hearth corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
+      hearth sample synthetic.jsonl   (runs each of them in every home)
     """
     import orjson
 
-    from hearth.analysis import described as written
-    from hearth.analysis import ideal_reader, synthesis
+    from hearth.analysis import description_information, synthesis
     from hearth.analysis import synthesis_splits as numbers
+    from hearth.analysis import written_descriptions as written
     from hearth.storage.files import replacing
 
     if actions not in ("animated", "all"):
@@ -95,7 +95,7 @@ def synthesize(
             numbers.write(rows, seed, splits)
         figures, parts = numbers.figures(drawn, rows if splits else ()), numbers.of_first(rows)
         if as_json and out is not None:
-            figures["ideal_reader"] = ideal_reader.figures(drawn, rows, weights)
+            figures["ideal_reader"] = description_information.figures(drawn, rows, weights)
         records = (synthesis.record(one, number, seed, parts[number]) for number, one in enumerate(drawn, 1))
     lines = (orjson.dumps(record) + b"\n" for record in records)
     if out is None:
@@ -120,8 +120,8 @@ def stats(
 
     \b
     Examples:
-      python cli.py corpus stats data_out --out figures
-      python cli.py corpus stats release.zip
+      hearth corpus stats data_out --out figures
+      hearth corpus stats release.zip
     """
     from hearth.analysis import corpus_figures
     from hearth.analysis import corpus_statistics as numbers
@@ -185,7 +185,7 @@ def dirt(key: Path, sources: list[Path] | None = None, kb: Path | None = None, a
 
     \b
     Example:
-      python cli.py corpus dirt data_raw/crowd/key.csv
+      hearth corpus dirt data_raw/crowd/key.csv
     """
     from hearth.analysis import error_detection as finding
 
@@ -212,7 +212,7 @@ def fuzz(seconds: float = 300, seed: int = 0, most: int | None = None, as_json: 
 
     \b
     Example:
-      python cli.py corpus fuzz --seconds 60 --seed 7
+      hearth corpus fuzz --seconds 60 --seed 7
     """
     report = _mutated_input().fuzz(inputs.read_knowledge(None), seconds, seed, most)
     if as_json:
@@ -254,13 +254,13 @@ def sheet(
 
     \b
     Example:
-      python cli.py corpus sheet data_out --programs 100 --out ratings.csv
+      hearth corpus sheet data_out --programs 100 --out ratings.csv
     """
-    from hearth.analysis import ratings
+    from hearth.analysis import completeness_ratings
     from hearth.storage.files import write_bytes
 
     drawn = _drawn(sources, count, seed)
-    text = ratings.sheet(drawn, raters)
+    text = completeness_ratings.sheet(drawn, raters)
     if out is not None:
         write_bytes(out, text.encode())
     message = text.removesuffix("\n") if out is None else f"{out}: ratings are 1, 2 or 3"
@@ -291,33 +291,38 @@ def completeness(
 
     \b
     Examples:
-      python cli.py corpus completeness data_out --programs 100
-      python cli.py corpus completeness data_out --programs 100 --sheet ratings.csv
+      hearth corpus completeness data_out --programs 100
+      hearth corpus completeness data_out --programs 100 --sheet ratings.csv
     """
-    from hearth.analysis import ratings
+    from hearth.analysis import completeness_ratings
     from hearth.schemas.failures import Failure
 
     known = inputs.read_knowledge(None)
     place = inputs.read_home(home, None, None, known)
-    guessed = {name: ratings.estimate(one, place, known, seed) for name, one in _drawn(sources, count, seed)}
+    guessed = {
+        name: completeness_ratings.estimate(one, place, known, seed) for name, one in _drawn(sources, count, seed)
+    }
     estimated = {name: found for name, found in guessed.items() if not isinstance(found, Failure)}
-    rated = ratings.medians(ratings.read_sheets(sheets or []))
-    table = [("thesis 3.4.1", 100, *ratings.THESIS.values()), ("estimated", len(estimated), *_shares(estimated))]
+    rated = completeness_ratings.medians(completeness_ratings.read_sheets(sheets or []))
+    table = [
+        ("thesis 3.4.1", 100, *completeness_ratings.THESIS.values()),
+        ("estimated", len(estimated), *_shares(estimated)),
+    ]
     if rated:
         table.append(("rated", len(rated), *_shares(rated)))
-    agree = ratings.agreement(estimated, rated) if rated else None
+    agree = completeness_ratings.agreement(estimated, rated) if rated else None
     if as_json:
         output.emit({"rows": table, "agreement": agree, "estimates": {k: int(v) for k, v in estimated.items()}})
         return
-    _print("Completeness of programs", ("", "programs", *ratings.SAID.values()), table)
+    _print("Completeness of programs", ("", "programs", *completeness_ratings.SAID.values()), table)
     if agree is not None:
         print(f"Estimate and median agree on {agree:.0%} of the programs that have both.")
 
 
 def _shares(classes: dict[str, Any]) -> list[float]:
-    from hearth.analysis import ratings
+    from hearth.analysis import completeness_ratings
 
-    return [*ratings.shares(classes.values()).values()]
+    return [*completeness_ratings.shares(classes.values()).values()]
 
 
 def _print(title: str, columns: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:

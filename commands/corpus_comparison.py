@@ -29,8 +29,8 @@ def realism(
 
     \b
     Examples:
-      python cli.py corpus realism --against release.zip
-      python cli.py corpus realism mine.csv --against release.zip --halves activities --out figures
+      hearth corpus realism --against release.zip
+      hearth corpus realism mine.csv --against release.zip --halves activities --out figures
     """
     from hearth.analysis import corpus_realism as numbers
     from hearth.analysis.corpus_statistics import gather
@@ -82,7 +82,7 @@ def agreement(first: Path, second: Path, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py corpus agreement sketches.json sketches_second.json
+      hearth corpus agreement sketches.json sketches_second.json
     """
     from hearth.analysis.sketch_agreement import compare
 
@@ -104,8 +104,8 @@ def retrieval(
 
     \b
     Examples:
-      python cli.py corpus retrieval
-      python cli.py corpus retrieval release.zip
+      hearth corpus retrieval
+      hearth corpus retrieval release.zip
     """
     from hearth.analysis import corpus_retrieval as study
 

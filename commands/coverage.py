@@ -44,7 +44,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
 
 def _impossible(found: Coverage, homes: Homes) -> Iterator[dict[str, Any]]:
     from hearth.analysis.coverage import ANY_HOME
-    from hearth.grounding.preconditions.infer import at_odds
+    from hearth.grounding.preconditions.precondition_inference import at_odds
 
     for script, where, failure in found.impossible:
         steps = at_odds(script.program, homes.knowledge) if where == ANY_HOME else (failure.tick,)

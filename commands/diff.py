@@ -17,7 +17,7 @@ def diff(first: Path, second: Path, rows: int = 5, strict: bool = False, as_json
 
     \b
     Example:
-      python cli.py diff data_out yesterday/data_out --rows 20
+      hearth diff data_out yesterday/data_out --rows 20
     """
     from hearth.datasets.diff import compare
 

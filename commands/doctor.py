@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hearth.commands import output
-from hearth.rendering.film.quiet import quiet
+from hearth.rendering.film.stderr_suppression import quiet
 from hearth.schemas.libraries import lacking, remedy
 
 LIBRARIES = {
@@ -232,7 +232,7 @@ def doctor(libraries: bool = False, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py doctor
+      hearth doctor
     """
     if libraries:
         wanted = [] if "open3d" in lacking("pictures") else missing_libraries()

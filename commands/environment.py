@@ -25,9 +25,9 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
 
     \b
     Example:
-      python cli.py environment conditions watch_tv.txt
+      hearth environment conditions watch_tv.txt
     """
-    from hearth.grounding.preconditions.infer import at_odds, infer
+    from hearth.grounding.preconditions.precondition_inference import at_odds, infer
     from hearth.grounding.preconditions.release_rules import compare
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
@@ -69,12 +69,12 @@ def rules(source: Path, limit: int | None = None, as_json: bool = False) -> None
 
     \b
     Example:
-      python cli.py environment rules release.zip
+      hearth environment rules release.zip
     """
     from itertools import islice
 
-    from hearth.analysis.agreement import agreement
     from hearth.analysis.coverage import scripts
+    from hearth.analysis.precondition_agreement import agreement
 
     known = inputs.read_knowledge(None)
     found = agreement(islice(scripts([str(source)], known), limit), known)
@@ -105,12 +105,12 @@ def sample_one(
 
     \b
     Examples:
-      python cli.py environment sample watch_tv.txt --home maple --out tv.json
-      python cli.py environment sample --goal "ON(plate, kitchen_table): 9" --goal "CLEAN(stove)" --nodes 290
-      python cli.py environment sample --home birch --seed 7 --out any.json
+      hearth environment sample watch_tv.txt --home maple --out tv.json
+      hearth environment sample --goal "ON(plate, kitchen_table): 9" --goal "CLEAN(stove)" --nodes 290
+      hearth environment sample --home birch --seed 7 --out any.json
     """
     from hearth.commands import sampled_environment
-    from hearth.homes import exporting
+    from hearth.homes import home_export
 
     known = inputs.read_knowledge(kb)
     place = inputs.read_home(home, None, homes, known)
@@ -118,7 +118,7 @@ def sample_one(
     drawn = sampled_environment.draw(program, goal or (), place, seed, nodes)
     graph = drawn.world.graph()
     if out is not None:
-        exporting.write_release(graph, out)
+        home_export.write_release(graph, out)
     nodes_found, edges = len(graph.nodes), len(graph.edges)
     if as_json:
         output.emit({"home": home, "seed": seed, "nodes": nodes_found, "edges": edges, "file": out, **drawn.facts})
@@ -145,9 +145,9 @@ def realism(
 
     \b
     Example:
-      python cli.py environment realism release.zip --out realism
+      hearth environment realism release.zip --out realism
     """
-    from hearth.analysis import distribution as report
+    from hearth.analysis import object_distribution as report
 
     found = _homes(home, homes)
     theirs, their_states = report.observed(source, found.knowledge, limit)
@@ -181,9 +181,9 @@ def diversity(
 
     \b
     Example:
-      python cli.py environment diversity watch_tv.txt --home maple --samples 1000
+      hearth environment diversity watch_tv.txt --home maple --samples 1000
     """
-    from hearth.analysis import distribution as report
+    from hearth.analysis import object_distribution as report
 
     found = _homes([home], homes)
     found.names()
@@ -207,10 +207,10 @@ def preconditions(
 
     \b
     Examples:
-      python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
-      python cli.py environment preconditions release.zip --drawing bars.svg
+      hearth environment preconditions release.zip --class cup --class sauce_pan --out data_out
+      hearth environment preconditions release.zip --drawing bars.svg
     """
-    from hearth.analysis import distribution as report
+    from hearth.analysis import object_distribution as report
 
     names = classes or ["cup", "sauce_pan"]
     groups = {"programs": report.of_programs(source, inputs.read_knowledge(None), names, limit)}

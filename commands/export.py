@@ -25,7 +25,7 @@ def export(
 
     \b
     Example:
-      python cli.py export data_out --format nl --out words
+      hearth export data_out --format nl --out words
     """
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.export.batches import Wanted

@@ -31,7 +31,7 @@ def list_homes(homes: Path | None = None, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py home list --homes my_homes
+      hearth home list --homes my_homes
     """
     from hearth.homes import library
 
@@ -54,13 +54,13 @@ def show(home: str, out: Path | None = None, homes: Path | None = None, as_json:
 
     \b
     Example:
-      python cli.py home show maple --out maple.svg
+      hearth home show maple --out maple.svg
     """
     graph = _graph(home, homes)
     if out is not None:
-        from hearth.homes import drawing
+        from hearth.homes import floor_plan_drawing
 
-        drawing.write(_layout(home, homes), out)
+        floor_plan_drawing.write(_layout(home, homes), out)
     rooms = _rooms(graph)
     if as_json:
         output.emit({"home": home, **_figures(graph), "contents": rooms, "drawing": out})
@@ -84,8 +84,8 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
 
     \b
     Examples:
-      python cli.py home lint TrimmedTestScene1_graph.json
-      python cli.py home lint TrimmedTestScene1_graph.json --layout
+      hearth home lint TrimmedTestScene1_graph.json
+      hearth home lint TrimmedTestScene1_graph.json --layout
     """
     from hearth.commands.inputs import note_filled
     from hearth.homes import library
@@ -138,17 +138,17 @@ def convert(home: str, out: Path, layout: bool = False, homes: Path | None = Non
 
     \b
     Examples:
-      python cli.py home convert maple maple.json
-      python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
-      python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
+      hearth home convert maple maple.json
+      hearth home convert my_homes/oak.yaml my_homes/oak.ids.csv
+      hearth home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
-    from hearth.homes import exporting, library
+    from hearth.homes import home_export, library
 
     if out.name.endswith(".ids.csv"):
-        written = exporting.write_ids(_layout(home, homes), out)
+        written = home_export.write_ids(_layout(home, homes), out)
     else:
         made = library.graph_layout(home, read_knowledge(None), homes).graph if layout else _graph(home, homes)
-        written = exporting.write_release(made, out)
+        written = home_export.write_release(made, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 
@@ -168,12 +168,12 @@ def export(
 
     \b
     Examples:
-      python cli.py home export maple --format gltf
-      python cli.py home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
+      hearth home export maple --format gltf
+      hearth home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
     """
+    from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.rendering.scene.interchange import ENDINGS, write
-    from hearth.rendering.scene.prepared import PreparedScene
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.scene_preparation import PreparedScene
 
     known = read_knowledge(None)
     drawable = with_geometry(_graph(home, homes), home, known)
@@ -189,16 +189,16 @@ def generate(rooms: int = 5, seed: int = 0, out: Path | None = None, as_json: bo
 
     \b
     Example:
-      python cli.py home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
+      hearth home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
     """
-    from hearth.homes import exporting
-    from hearth.homes.procedural.generate import generate as generated_layout
+    from hearth.homes import home_export
+    from hearth.homes.procedural.home_generator import generate as generated_layout
     from hearth.homes.scene_graph import scene
 
     known = read_knowledge(None)
     layout = generated_layout(rooms, seed, known)
     if out is not None:
-        exporting.write(layout, out, known)
+        home_export.write(layout, out, known)
     figures = _figures(scene(layout, known))
     names = ", ".join(room.name for room in layout.plan.rooms)
     text = f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else "")
@@ -220,14 +220,14 @@ def edit(
 
     \b
     Example:
-      python cli.py home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
+      hearth home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
     """
     from hearth.commands.home_edits import edited
-    from hearth.homes import exporting
+    from hearth.homes import home_export
 
     graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),
                         knowledge=read_knowledge(None), name=home)  # fmt: skip
-    exporting.write_release(graph, out)
+    home_export.write_release(graph, out)
     ids = f", new ids {', '.join(map(str, new))}" if new else ""
     text = f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}"
     output.say(text, {"home": home, "file": out, "added": new, **_figures(graph)}, as_json)
@@ -250,14 +250,14 @@ def stats(
 
     \b
     Examples:
-      python cli.py home stats --homes release_homes
-      python cli.py home stats --against release_homes
-      python cli.py home stats --generated 1000
+      hearth home stats --homes release_homes
+      hearth home stats --against release_homes
+      hearth home stats --generated 1000
     """
     from hearth.homes import library
-    from hearth.homes.procedural.generate import generate as generated_layout
+    from hearth.homes.home_statistics import beside, of_homes, placement_distance, places
+    from hearth.homes.procedural.home_generator import generate as generated_layout
     from hearth.homes.scene_graph import scene
-    from hearth.homes.statistics import beside, of_homes, placement_distance, places
 
     known, ours = read_knowledge(None), library.names()
     groups = {
@@ -292,8 +292,8 @@ def ways(names: list[str] | None = None, homes: Path | None = None, workers: int
 
     \b
     Examples:
-      python cli.py home ways
-      HEARTH_WAYS=ways python cli.py home ways oak --homes my_homes
+      hearth home ways
+      HEARTH_WAYS=ways hearth home ways oak --homes my_homes
     """
     from hearth.commands.progress_line import bar
     from hearth.homes import library
@@ -318,7 +318,7 @@ def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
     """The mean placement distance of each home to all others."""
     from statistics import fmean
 
-    from hearth.homes.statistics import placement_distance, places
+    from hearth.homes.home_statistics import placement_distance, places
 
     known = read_knowledge(None)
     apart = [

@@ -30,7 +30,7 @@ def show(name: str, every: bool = False, kb: Path | None = None, as_json: bool =
 
     \b
     Example:
-      python cli.py kb show fridge
+      hearth kb show fridge
     """
     from hearth.kb.tools.find import unknown
     from hearth.kb.tools.show import about_object
@@ -51,7 +51,7 @@ def action(name: str, kb: Path | None = None, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py kb action Open
+      hearth kb action Open
     """
     from hearth.kb.tools.find import unknown
     from hearth.kb.tools.show import about_action
@@ -80,7 +80,7 @@ def find(
 
     \b
     Example:
-      python cli.py kb find --can Grab --in fridge
+      hearth kb find --can Grab --in fridge
     """
     from hearth.kb.tools.find import Query
     from hearth.kb.tools.find import find as find_objects
@@ -102,10 +102,10 @@ def path(first: str, second: str, kb: Path | None = None, as_json: bool = False)
 
     \b
     Example:
-      python cli.py kb path spectacles book
+      hearth kb path spectacles book
     """
     from hearth.kb.tools.find import unknown
-    from hearth.kb.tools.paths import path as chain
+    from hearth.kb.tools.relation_paths import path as chain
 
     known = read_knowledge(kb)
     try:
@@ -127,7 +127,7 @@ def lint(kb: Path | None = None, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py kb lint --kb my_knowledge
+      hearth kb lint --kb my_knowledge
     """
     from hearth.kb.consistency import CHECKS
     from hearth.kb.consistency import lint as contradictions
@@ -150,7 +150,7 @@ def diff(other: Path, every: bool = False, kb: Path | None = None, as_json: bool
 
     \b
     Example:
-      python cli.py kb diff ../shared/real/kb
+      hearth kb diff ../shared/real/kb
     """
     from hearth.kb.tools.compare import compare, rejection
 
@@ -172,11 +172,11 @@ def mine(dataset: Path, least: int = 3, confidence: float = 0.3, kb: Path | None
 
     \b
     Example:
-      python cli.py kb mine data_out
+      hearth kb mine data_out
     """
     from hearth.datasets.published_programs import programs
-    from hearth.kb.tools.mine import as_lines
-    from hearth.kb.tools.mine import mine as propose
+    from hearth.kb.tools.fact_mining import as_lines
+    from hearth.kb.tools.fact_mining import mine as propose
 
     found = propose(programs(dataset), read_knowledge(kb), least, confidence)
     if as_json:
@@ -197,7 +197,7 @@ def export(form: str, to: Path | None = None, kb: Path | None = None) -> None:
 
     \b
     Example:
-      python cli.py kb export pddl --to domain.pddl
+      hearth kb export pddl --to domain.pddl
     """
     from hearth.kb.tools.export import export as write
 

@@ -26,7 +26,7 @@ def every(*, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py model list
+      hearth model list
     """
     from hearth.models.model_registry import MODELS, trained_names
 
@@ -64,7 +64,7 @@ def train(
 
     \b
     Example:
-      python cli.py model train nearest data_out --out build/nearest
+      hearth model train nearest data_out --out build/nearest
     """
     from hearth.commands.progress_line import bar
     from hearth.models.fit_model import fit
@@ -99,10 +99,10 @@ def predict(
 
     \b
     Example:
-      python cli.py model predict build/nearest data_out --part test --out predicted.jsonl
+      hearth model predict build/nearest data_out --part test --out predicted.jsonl
     """
     from hearth.commands.progress_line import bar
-    from hearth.models.predicting import predict_part
+    from hearth.models.prediction_files import predict_part
 
     with bar("executions") as seen:
         count = predict_part(
@@ -139,13 +139,13 @@ def score(
 
     \b
     Example:
-      python cli.py model score predicted.jsonl data_out
-      python cli.py model predict planner release --part "" --out planned.jsonl
-      python cli.py model score planned.jsonl release --unseen data_out
+      hearth model score predicted.jsonl data_out
+      hearth model predict planner release --part "" --out planned.jsonl
+      hearth model score planned.jsonl release --unseen data_out
     """
     from hearth.datasets.dataset import Dataset
-    from hearth.models.data import of_new_titles
     from hearth.models.evaluation import means
+    from hearth.models.text_examples import of_new_titles
     from hearth.scoring.dataset_scores import score_given
 
     asked = Dataset.open(dataset)
@@ -170,7 +170,7 @@ def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: b
 
     \b
     Example:
-      python cli.py model bands predicted.jsonl data_out --out figures
+      hearth model bands predicted.jsonl data_out --out figures
     """
     from hearth.analysis.scores_by_lcs import JUDGES, by_lcs, draw_by_lcs
     from hearth.datasets.dataset import Dataset
@@ -210,7 +210,7 @@ def examples(
 
     \b
     Example:
-      python cli.py model examples predicted.jsonl data_out --out examples.html
+      hearth model examples predicted.jsonl data_out --out examples.html
     """
     from hearth.analysis.prediction_examples import examples_page, prediction_examples
     from hearth.commands.progress_line import bar
@@ -236,8 +236,8 @@ def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool =
 
     \b
     Examples:
-      python cli.py model figure 4-4 data_out/clips --model clips-seen --out figure-4-4.svg
-      python cli.py model figure 4-7 data_out/clips --model clips-seen --out figure-4-7.html
+      hearth model figure 4-4 data_out/clips --model clips-seen --out figure-4-4.svg
+      hearth model figure 4-7 data_out/clips --model clips-seen --out figure-4-7.html
     """
     from hearth.datasets.dataset import Dataset
     from hearth.models.films import clip_confusion, film_figure
@@ -282,31 +282,31 @@ def show(
 
     \b
     Example:
-      python cli.py model show retrieve-edit "Turn on the TV and sit down" --home maple
-      python cli.py model show planner --sketch sketch.txt --home maple --home birch
-      python cli.py model show clips-seen data_out/clips/publish/films/FOLDER --film shown
-      python cli.py model show clips-seen film.webm --film shown
-      python cli.py model show build/demo2sketch data_out/demos/publish/frames/FOLDER --writer chooser --home maple
+      hearth model show retrieve-edit "Turn on the TV and sit down" --home maple
+      hearth model show planner --sketch sketch.txt --home maple --home birch
+      hearth model show clips-seen data_out/clips/publish/films/FOLDER --film shown
+      hearth model show clips-seen film.webm --film shown
+      hearth model show build/demo2sketch data_out/demos/publish/frames/FOLDER --writer chooser --home maple
     """
-    from hearth.commands import model_shown
+    from hearth.commands import model_output
     from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.films.film_files import is_film
 
     if is_film(text) and not is_demonstration(text):
-        from hearth.commands import film_read
+        from hearth.commands import film_output
 
-        found = film_read.show(model, Path(text), (home or ["maple"])[0], homes, kb, film, masks)
-        output.emit(found) if as_json else film_read.printed(found)
+        found = film_output.show(model, Path(text), (home or ["maple"])[0], homes, kb, film, masks)
+        output.emit(found) if as_json else film_output.printed(found)
         output.status(int(not found["executable"]), strict=True)
         return
-    shown = model_shown.shown(model, text, sketch, writer, home or ["maple"], homes, kb, beam)
-    films = model_shown.filmed(shown, film, homes, kb) if film else {}
+    shown = model_output.shown(model, text, sketch, writer, home or ["maple"], homes, kb, beam)
+    films = model_output.filmed(shown, film, homes, kb) if film else {}
     if as_json:
-        documents = [model_shown.document(each) | films.get(name, {}) for name, each in shown.items()]
+        documents = [model_output.document(each) | films.get(name, {}) for name, each in shown.items()]
         named = [{"home": name, **each} for name, each in zip(shown, documents, strict=True)]
         output.emit(documents[0] if len(named) == 1 else {"homes": named})
     else:
-        model_shown.printed(shown)
+        model_output.printed(shown)
         for name, made in films.items():
             print(f"Film in {name}: {', '.join(made['pages'])}")
     output.status(sum(each.failure is not None for each in shown.values()), strict=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.models.scored_rows import Row
+    from hearth.models.method_scores import Row
 
 FILMS = ("4.2", "4.3", "4.3b", "4.6")
 """Tables of clips and films."""
@@ -38,13 +38,13 @@ def table(
 
     \b
     Example:
-      python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
-      python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
-      python cli.py model table 4.2 data_out/clips --model clips-seen --model masks
-      python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
-      python cli.py model table 4.6 data_out/clips --model clips-context --model films-mle
-      python cli.py model table 5.5 data_out/demos --model build/demo2sketch --model chooser --beam 1
-      python cli.py model table A.4 data_out/demos --model build/demo2sketch --model build/retrieve-sketch
+      hearth model table 4.5 data_out --model build/retrieve-edit --repair
+      hearth model table 5.2 data_out --model planner --most 40 --beam 1
+      hearth model table 4.2 data_out/clips --model clips-seen --model masks
+      hearth model table 4.3 data_out/clips --model clips-0 --model clips-1
+      hearth model table 4.6 data_out/clips --model clips-context --model films-mle
+      hearth model table 5.5 data_out/demos --model build/demo2sketch --model chooser --beam 1
+      hearth model table A.4 data_out/demos --model build/demo2sketch --model build/retrieve-sketch
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
@@ -111,7 +111,7 @@ def _print_films(number: str, rows: Sequence[Any]) -> None:
 
 def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketches: str, as_json: bool) -> None:
     """Sketches from demonstrations beside those from descriptions (A.4)."""
-    from hearth.models.demonstrations.kinds_compared import compared
+    from hearth.models.demonstrations.demonstration_comparison import compared
 
     found = compared(dataset, split, models, beam, sketches)
     if as_json:
@@ -145,9 +145,9 @@ def tables(
 
     \b
     Examples:
-      python cli.py model tables data_out data_out/synthetic --out data_out/tables
-      python cli.py model tables data_out data_out/synthetic --out quick --table 4.5 --seeds 1 --minutes 1
-      python cli.py model tables data_out --clips data_out/clips --out data_out/tables --table 4.3 --table 4.6
+      hearth model tables data_out data_out/synthetic --out data_out/tables
+      hearth model tables data_out data_out/synthetic --out quick --table 4.5 --seeds 1 --minutes 1
+      hearth model tables data_out --clips data_out/clips --out data_out/tables --table 4.3 --table 4.6
     """
     from hearth.commands.progress_line import bar
     from hearth.models import table_plan

@@ -14,7 +14,7 @@ def plan(dataset: Path, problems: int = 200, workers: int = 0, as_json: bool = F
 
     \b
     Example:
-      python cli.py plan data_out --problems 20
+      hearth plan data_out --problems 20
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset

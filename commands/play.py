@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from hearth.agents.protocol import Agent
-    from hearth.challenges.channels import Channel
-    from hearth.challenges.play import Played
+    from hearth.challenges.agent_channels import Channel
+    from hearth.challenges.episode_loop import Played
 
 TEXT, WAIT, LISTEN, STDIO = "text", "wait", "listen", "stdio"
 """Agents that are not commands: the terminal, nobody, who connects to a port, and whoever started this command."""
@@ -50,9 +50,9 @@ def play(
 
     \b
     Examples:
-      python cli.py play maple --goal "HOLDS(agent, milk)" --text
-      python cli.py play maple --goal "HOLDS(agent, milk)" --agent 0="node docs/examples/agent.js" --out episode.jsonl
-      python cli.py replay episode.jsonl
+      hearth play maple --goal "HOLDS(agent, milk)" --text
+      hearth play maple --goal "HOLDS(agent, milk)" --agent 0="node docs/examples/agent.js" --out episode.jsonl
+      hearth replay episode.jsonl
     """
     seats = _seats([*([f"0={TEXT}"] if text else []), *(agent or ())])
     quiet = any(seat.spec == STDIO for seat in seats)
@@ -121,8 +121,8 @@ def _seats(given: list[str]) -> list[_Seat]:
 
 
 def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
-    from hearth.challenges.text_protocol import TextAgent
-    from hearth.challenges.wire import WireAgent
+    from hearth.challenges.wire_protocol import WireAgent
+    from hearth.envs.text_protocol import TextAgent
 
     if seat.spec == TEXT:
         return TextAgent(_asked_at_terminal(how.as_json), how.keep, how.messages)
@@ -144,7 +144,7 @@ class Waiting:
 def _channel(seat: _Seat, how: _How, stack: ExitStack) -> Channel:
     import shlex
 
-    from hearth.challenges.channels import Listener, ProcessChannel, StandardChannel
+    from hearth.challenges.agent_channels import Listener, ProcessChannel, StandardChannel
 
     if seat.spec == STDIO:
         return StandardChannel()
@@ -179,7 +179,7 @@ def _asked_at_terminal(as_json: bool) -> Callable[[str], str]:
 
 
 def _transcript(path: Path | None, stack: ExitStack) -> Callable[[Mapping[str, Any]], None]:
-    from hearth.challenges.answers import keep_nothing
+    from hearth.envs.agent_answers import keep_nothing
 
     if path is None:
         return keep_nothing
@@ -209,8 +209,8 @@ def _actions(given: str, known: Any) -> list[str] | None:
 def _play(
     place: Any, goal: Any, agents: list[Agent], seed: int, how: _How, actions: list[str] | None, partial: bool
 ) -> Played:
-    from hearth.challenges.play import Player
-    from hearth.challenges.play import play as run
+    from hearth.challenges.episode_loop import Player
+    from hearth.challenges.episode_loop import play as run
     from hearth.simulation.env import Env
 
     env = Env()

@@ -38,10 +38,10 @@ def query(
 
     \b
     Examples:
-      python cli.py query data_out "SELECT action, count(*) FROM steps GROUP BY action ORDER BY 2 DESC"
-      python cli.py query data_out "SELECT count(*) AS originals, count(*) FILTER (executable) AS run FROM originals"
-      python cli.py query data_out "SELECT * FROM originals" --out originals.csv
-      python cli.py query data_out "DESCRIBE programs"
+      hearth query data_out "SELECT action, count(*) FROM steps GROUP BY action ORDER BY 2 DESC"
+      hearth query data_out "SELECT count(*) AS originals, count(*) FILTER (executable) AS run FROM originals"
+      hearth query data_out "SELECT * FROM originals" --out originals.csv
+      hearth query data_out "DESCRIBE programs"
     """
     from hearth.challenges.challenge_tables import ChallengeData
     from hearth.datasets.dataset import Dataset

@@ -42,12 +42,12 @@ def program(
 
     \b
     Examples:
-      python cli.py render-program watch_tv.txt --home maple --out pictures
-      python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
-      python cli.py render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
+      hearth render-program watch_tv.txt --home maple --out pictures
+      hearth render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
+      hearth render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
     """
     from hearth.kb.loading.load import default
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.home_geometry import with_geometry
 
     _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
     known = default()
@@ -125,7 +125,7 @@ def _split(names: str) -> list[str]:
 
 
 def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[str, Any]:
-    from hearth.rendering.film.contact import caption
+    from hearth.rendering.film.contact_sheet import caption
     from hearth.rendering.film.snapshots import TOP, snapshots
 
     frames, files, seen = [], [], []
@@ -146,11 +146,11 @@ def videos(
     """Film what is to be pictured by some cameras; files, pages and steps."""
     import orjson
 
-    from hearth.rendering.film.contact import caption
+    from hearth.rendering.film.contact_sheet import caption
     from hearth.rendering.film.player import page
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
-    from hearth.rendering.scene.variation import drawn
+    from hearth.rendering.scene.film_variation import drawn
     from hearth.storage.names import inside
 
     variation = drawn(shooting.seed, shooting.title) if shooting.vary else None
@@ -174,7 +174,7 @@ def videos(
 
 
 def _sheet(shooting: Shooting, frames: list[Any]) -> str:
-    from hearth.rendering.film.contact import contact_sheet
+    from hearth.rendering.film.contact_sheet import contact_sheet
     from hearth.rendering.film.png import encode
 
     path = shooting.out / "sheet.png"
@@ -187,11 +187,11 @@ def sheet(out: Path, fine: bool = False, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py render-sheet --out models.png
+      hearth render-sheet --out models.png
     """
     from hearth.rendering.film.png import encode
-    from hearth.rendering.models.sheet import entries
-    from hearth.rendering.models.sheet import sheet as draw
+    from hearth.rendering.models.model_sheet import entries
+    from hearth.rendering.models.model_sheet import sheet as draw
 
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(encode(draw(quality="fine" if fine else "draft")))
@@ -212,13 +212,13 @@ def gallery(
 
     \b
     Example:
-      python cli.py render-gallery --fine --width 224 --out docs/pictures/steps.png
+      hearth render-gallery --fine --width 224 --out docs/pictures/steps.png
     """
     from hearth.analysis.coverage import Script, scripts
     from hearth.analysis.step_gallery import gallery as pictured
     from hearth.commands.progress_line import bar, watched
     from hearth.kb.loading.load import default
-    from hearth.rendering.film.contact import contact_sheet
+    from hearth.rendering.film.contact_sheet import contact_sheet
     from hearth.rendering.film.png import encode
     from hearth.schemas.syntax import print_step
 
@@ -251,7 +251,7 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
     \b
     Example:
-      python cli.py render-visible --count 30 --seed 7
+      hearth render-visible --count 30 --seed 7
     """
     from hearth.commands.progress_line import bar, watched
     from hearth.rendering.cameras.visibility import shares
@@ -287,7 +287,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
     """Executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
     from itertools import islice
 
-    from hearth.analysis.filmed_pairs import pairs
+    from hearth.analysis.program_home_pairs import pairs
     from hearth.rendering.cameras.visibility import tick_visibilities
     from hearth.rendering.film.snapshots import trajectory_of
 
@@ -297,7 +297,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
 
 
 def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
-    from hearth.grounding.trial import attempt
+    from hearth.grounding.grounded_run import attempt
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Failure
     from hearth.simulation.world.home import Home

@@ -15,9 +15,9 @@ from hearth.commands.inputs import read_given, read_knowledge
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
-    from hearth.repair.loop import Attempt
-    from hearth.repair.strengths import Strength
-    from hearth.repair.variants import Augmented, Pair
+    from hearth.repair.augmentation import Augmented, Pair
+    from hearth.repair.perturbation_strengths import Strength
+    from hearth.repair.repair_loop import Attempt
     from hearth.schemas.program import Program, Step
 
 
@@ -43,9 +43,9 @@ def repair(
 
     \b
     Example:
-      python cli.py repair watch_tv.txt --home maple --seed 3 --perturb free --perturb on
+      hearth repair watch_tv.txt --home maple --seed 3 --perturb free --perturb on
     """
-    from hearth.repair.variants import Options, augment
+    from hearth.repair.augmentation import Options, augment
     from hearth.schemas.failures import Failure
 
     known = read_knowledge(kb, home, graph, homes)
@@ -77,8 +77,8 @@ def _strength(name: str, kinds: list[str] | None) -> Strength:
     Raises:
         HearthError: UNKNOWN_ID, with the known kinds or strengths.
     """
-    from hearth.repair.perturb import PERTURBATIONS, Chances
-    from hearth.repair.strengths import strength
+    from hearth.repair.perturbation import PERTURBATIONS, Chances
+    from hearth.repair.perturbation_strengths import strength
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 

@@ -31,8 +31,8 @@ def replay(
 
     \b
     Examples:
-      python cli.py replay activityprograms.zip
-      python cli.py replay episode.jsonl
+      hearth replay activityprograms.zip
+      hearth replay episode.jsonl
     """
     if release.name.endswith((".jsonl", ".jsonl.gz")):
         _episodes(release, limit, as_json)

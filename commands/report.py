@@ -15,8 +15,8 @@ def report(
 
     \b
     Example:
-      python cli.py report data_out --out report_out
-      python cli.py report data_out --replays 40 --out report_out
+      hearth report data_out --out report_out
+      hearth report data_out --replays 40 --out report_out
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from hearth.commands import output
 from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
-from hearth.commands.run_shown import Outcome, document, failed, show
+from hearth.commands.run_output import Outcome, document, failed, show
 from hearth.kb.language.fuzzy import Fuzzy
 
 if TYPE_CHECKING:
@@ -49,8 +49,8 @@ def run(
 
     \b
     Examples:
-      python cli.py run watch_tv.txt --home maple --explain
-      python cli.py run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
+      hearth run watch_tv.txt --home maple --explain
+      hearth run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
     known = read_knowledge(kb, home, graph, homes)
@@ -107,7 +107,7 @@ def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
 
 def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rules) -> Outcome:
     """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
-    from hearth.grounding.trial import LEAST, as_given, attempt
+    from hearth.grounding.grounded_run import LEAST, as_given, attempt
     from hearth.repair.remedies import stop_reason
     from hearth.schemas.failures import Failure
 

@@ -55,7 +55,7 @@ def _for_program(program: Program, home: Home, seed: int, size: Size) -> Drawn:
 
 
 def _for_goal(goal: Goal, home: Home, seed: int, size: Size) -> Drawn:
-    from hearth.grounding.environments.for_goals import sample_for_goal
+    from hearth.grounding.environments.goal_environments import sample_for_goal
 
     found = sample_for_goal(goal, home, seed, size=size)
     if isinstance(found, Failure):

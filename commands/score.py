@@ -41,14 +41,14 @@ def lcs(
     \b
     Example:
       echo '{"id": "tv", "predicted": ["[Walk] <sofa> (1)"], "reference": ["[Sit] <sofa> (1)"]}' > mine.jsonl
-      python cli.py score lcs mine.jsonl
+      hearth score lcs mine.jsonl
     """
     from hearth.scoring.bootstrap import intervals
     from hearth.scoring.evaluate import METRICS, Scored, lcs_of
-    from hearth.scoring.first_faults import FirstFaults
     from hearth.scoring.line_reader import LineReader
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
+    from hearth.scoring.refused_rows import FirstFaults
 
     rejects = FirstFaults()
     pairs = read_pairs(file, references, LineReader(inputs.read_knowledge(None), fuzzy), rejects=rejects)
@@ -120,14 +120,14 @@ def program(
 
     \b
     Examples:
-      python cli.py score program predictions.jsonl --graph home.json --by activity
-      python cli.py score program plans.txt --home maple
+      hearth score program predictions.jsonl --graph home.json --by activity
+      hearth score program plans.txt --home maple
     """
     from hearth.commands.scored_programs import ALL, in_homes, read_predictions
     from hearth.homes.library import names
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
-    from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.refused_rows import FirstFaults
     from hearth.simulation.rules import CHOICES
 
     known, rejects = inputs.read_knowledge(None, "", graph), FirstFaults()
@@ -171,14 +171,14 @@ def dataset(
 
     \b
     Examples:
-      python cli.py score dataset data_out mine.jsonl --split activities --by activity
-      python cli.py score dataset data_out mine.jsonl --split activities --originals
+      hearth score dataset data_out mine.jsonl --split activities --by activity
+      hearth score dataset data_out mine.jsonl --split activities --originals
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
     from hearth.scoring.dataset_scores import score_dataset
     from hearth.scoring.evaluate import Options
-    from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.refused_rows import FirstFaults
 
     if failures and split:
         raise typer.BadParameter("splits have no failing executions", param_hint="--failures")
@@ -205,7 +205,7 @@ def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_js
 
     \b
     Example:
-      python cli.py score baselines data_out
+      hearth score baselines data_out
     """
     from hearth.datasets.dataset import Dataset
     from hearth.scoring.baselines import THESIS, THESIS_NOTE, Result
@@ -237,7 +237,7 @@ def graphs(
 
     \b
     Example:
-      python cli.py score graphs mine.json theirs.json --nodes 41,65
+      hearth score graphs mine.json theirs.json --nodes 41,65
     """
     from hearth.homes.library import read_graph
     from hearth.scoring.graph_files import node_ids

@@ -9,7 +9,7 @@ from hearth.commands import output
 
 if TYPE_CHECKING:
     from hearth.scoring.evaluate import Options, Scored, Summary
-    from hearth.scoring.first_faults import FirstFaults
+    from hearth.scoring.refused_rows import FirstFaults
 
 
 def show(scored: Sequence[Scored], how: Options, by: str | None, rejects: FirstFaults, as_json: bool) -> None:

@@ -12,11 +12,11 @@ from hearth.kb.language.fuzzy import Fuzzy
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring.environments import GRAPH, HOME
-from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.line_reader import LineReader, in_order
-from hearth.scoring.lines import Line
+from hearth.scoring.line_sequences import Line
 from hearth.scoring.prediction_rows import has_predictions
 from hearth.scoring.predictions import Pair, read_pairs
+from hearth.scoring.refused_rows import FirstFaults
 from hearth.storage.input_files import placed
 from hearth.storage.rejects import Reject
 

@@ -31,9 +31,9 @@ def serve(
 
     \b
     Examples:
-      python cli.py serve
-      python cli.py serve --study people-alone
-      python cli.py serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
+      hearth serve
+      hearth serve --study people-alone
+      hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
     """
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)

@@ -39,11 +39,11 @@ def sketch(
 
     \b
     Examples:
-      python cli.py sketch watch_tv.txt
-      python cli.py sketch release.zip --judge sketch_annotation.json --disagreements
-      python cli.py sketch release.zip --judge sketch_annotation.json --folds 10
-      python cli.py sketch release.zip --judge sketch_annotation.json --fit people.json
-      python cli.py sketch watch_tv.txt --model people.json
+      hearth sketch watch_tv.txt
+      hearth sketch release.zip --judge sketch_annotation.json --disagreements
+      hearth sketch release.zip --judge sketch_annotation.json --folds 10
+      hearth sketch release.zip --judge sketch_annotation.json --fit people.json
+      hearth sketch watch_tv.txt --model people.json
     """
     from hearth.analysis.coverage import scripts
     from hearth.schemas.diagnostics import HearthError

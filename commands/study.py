@@ -27,7 +27,7 @@ def shipped(*, as_json: bool = False) -> None:
 
     \b
     Example:
-      python cli.py study list
+      hearth study list
     """
     from hearth.studies.study_file import SHIPPED, named
 
@@ -44,8 +44,8 @@ def check(study: str, *, as_json: bool = False) -> None:
 
     \b
     Examples:
-      python cli.py study check people-with-helpers
-      python cli.py study check mine.yaml
+      hearth study check people-with-helpers
+      hearth study check mine.yaml
     """
     from collections import Counter
 
@@ -95,8 +95,8 @@ def simulate(
 
     \b
     Examples:
-      python cli.py study simulate people-with-helpers --out build/studies
-      python cli.py study report build/studies/people-with-helpers
+      hearth study simulate people-with-helpers --out build/studies
+      hearth study report build/studies/people-with-helpers
     """
     from hearth.storage.names import inside
     from hearth.studies.study_tables import helper_fault
@@ -161,9 +161,9 @@ def prepare(
 
     \b
     Examples:
-      python cli.py study prepare programs-by-lcs --out collected/studies
-      python cli.py study prepare programs-by-lcs --predictions predicted.jsonl --out collected/studies
-      python cli.py study prepare likeness-of-films --people collected --out collected/studies
+      hearth study prepare programs-by-lcs --out collected/studies
+      hearth study prepare programs-by-lcs --predictions predicted.jsonl --out collected/studies
+      hearth study prepare likeness-of-films --people collected --out collected/studies
     """
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
@@ -186,8 +186,8 @@ def export(source: Path, *, out: Path, store: str = "", study: str = "", as_json
 
     \b
     Examples:
-      python cli.py study export build/studies/people-with-helpers --out tables
-      python cli.py study export collected --study people-alone --out tables
+      hearth study export build/studies/people-with-helpers --out tables
+      hearth study export collected --study people-alone --out tables
     """
     from hearth.studies.study_tables import export as write
 
@@ -205,8 +205,8 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
 
     \b
     Examples:
-      python cli.py study report build/studies/people-with-helpers --out report
-      python cli.py study report collected --study people-alone --json
+      hearth study report build/studies/people-with-helpers --out report
+      hearth study report collected --study people-alone --json
     """
     from hearth.studies.study_figures import names_of
     from hearth.studies.study_findings import findings
@@ -246,9 +246,9 @@ def figure(
 
     \b
     Examples:
-      python cli.py study figure 6-8 --out build/studies
-      python cli.py study figure 7-6b --out build/studies
-      python cli.py study figure 4-9 --out build/studies
+      hearth study figure 6-8 --out build/studies
+      hearth study figure 7-6b --out build/studies
+      hearth study figure 4-9 --out build/studies
     """
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
@@ -274,7 +274,7 @@ def forget(source: Path, person: str, *, store: str = "", study: str = "", as_js
 
     \b
     Example:
-      python cli.py study forget collected 3f6c0a9d2b7e4815 --study people-alone
+      hearth study forget collected 3f6c0a9d2b7e4815 --study people-alone
     """
     from hearth.studies.study_tables import person_of
 

@@ -14,7 +14,7 @@ def verify(dataset: Path, workers: int = 0, strict: bool = False, as_json: bool 
 
     \b
     Example:
-      python cli.py verify data_out
+      hearth verify data_out
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.verify import verify as checked

@@ -16,10 +16,10 @@ from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
 from hearth.datasets.stored_homes import StoredHome
-from hearth.schemas.brief import cut
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.published_rows import StoredRunRow
+from hearth.schemas.short_repr import cut
 from hearth.schemas.tables import TABLES
 from hearth.storage.manifest import NAME
 

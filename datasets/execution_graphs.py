@@ -11,10 +11,10 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.codecs import Bindings, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.tensors import GraphSample, Tensors, to_tensors
-from hearth.schemas.brief import brief
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
+from hearth.schemas.short_repr import brief
 
 SHARE = 128
 """Executions that iteration reads together."""

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.damage import reading
 from hearth.datasets.stored_homes import StoredHome
-from hearth.schemas.brief import cut
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.literals import RENAMED
 from hearth.schemas.program import Program
 from hearth.schemas.published_rows import ProgramRow, RepairedRow, StoredRunRow
 from hearth.schemas.row_types import ConditionRow
+from hearth.schemas.short_repr import cut
 from hearth.schemas.stage_rows import SketchRow
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class Run:
 
     @property
     def executable(self) -> bool:
-        """Whether it ran to its end."""
+        """Return whether it ran to its end."""
         return self.row["executable"]
 
     @property

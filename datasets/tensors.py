@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hearth.datasets.format.codecs import Bindings
-from hearth.schemas.brief import brief
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import PROPERTY_ID, RELATION_ID, ROOM_CATEGORY, STATE_ID
 
 INSIDE_ROOM = len(RELATION_ID)

@@ -14,9 +14,9 @@ from hearth.datasets.dataset_knowledge import other_base
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify_folder import AGAIN, manifest_faults, other_files, unknown
-from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.short_repr import brief
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES
 from hearth.simulation.world.home import Home
 from hearth.storage.manifest import NAME

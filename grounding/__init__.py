@@ -1,1 +1,1 @@
-"""What fits: preconditions of a program, binding its objects to a home, sampling an environment."""
+"""Grounding: preconditions of a program, binding its objects to a home, sampling an environment."""

@@ -11,10 +11,10 @@ from itertools import product
 from operator import and_, or_
 
 from hearth.grounding.node_ids import by_number, classes_of
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
+from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import act, ready, together, unfit
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import rows
@@ -232,7 +232,7 @@ def _room(key: Key, world: World) -> str:
 
 
 def _bound(step: Step, nodes: dict[Key, int], partly: bool = False) -> Step:
-    """A step with nodes for what has none; where objects may go without (`partly`) they are left as they are."""
+    """Return a step with nodes for its unbound objects; objects that may stay unbound (`partly`) do."""
     objects = tuple(
         ref if ref.node is not None or (partly and ref.key not in nodes) else replace(ref, node=nodes[ref.key])
         for ref in step.objects

@@ -18,7 +18,7 @@ class FailureContext:
         at: number of the failing step, from 0; one past the last when the program ran but missed its goal.
         failure: why it fails.
         world: the world as the step is tried.
-        knowledge: what the world goes by.
+        knowledge: that of the world.
     """
 
     program: Program

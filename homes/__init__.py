@@ -1,1 +1,1 @@
-"""Where things happen: floor plans, their geometry, and the scene graphs that follow from it."""
+"""Homes: floor plans, their geometry, and the scene graphs that follow from it."""

@@ -51,7 +51,7 @@ class Rect(NamedTuple):
         return (self.x0 + self.x1) / 2, (self.z0 + self.z1) / 2
 
     def reach(self, direction: str) -> float:
-        """How far it reaches in a direction: its bound there, counted that way."""
+        """Return how far it reaches in a direction: its bound there, counted that way."""
         west, south, east, north = self
         return {"west": -west, "south": -south, "east": east, "north": north}[direction]
 
@@ -66,17 +66,17 @@ class Rect(NamedTuple):
         return max(0.0, width) * max(0.0, depth)
 
     def contains(self, other: Rect, slack: float = 0.005) -> bool:
-        """Whether the other lies within, give or take `slack`."""
+        """Return whether the other lies within, give or take `slack`."""
         west_south = other.x0 >= self.x0 - slack and other.z0 >= self.z0 - slack
         return west_south and other.x1 <= self.x1 + slack and other.z1 <= self.z1 + slack
 
     def holds(self, x: float, z: float) -> bool:
-        """Whether a point lies within."""
+        """Return whether a point lies within."""
         return self.x0 <= x <= self.x1 and self.z0 <= z <= self.z1
 
 
 def along_x(wall: str) -> bool:
-    """Whether a wall runs from west to east."""
+    """Return whether a wall runs from west to east."""
     return wall in ("north", "south")
 
 
@@ -123,7 +123,7 @@ def _rounded(values: tuple[float, float, float]) -> tuple[float, float, float]:
 
 
 def intrusion(a: Box, b: Box) -> float:
-    """How deep two boxes stand in each other, in metres; 0 or less when they do not."""
+    """Return how deep two boxes stand in each other, in metres; 0 or less when they do not."""
     return min((sa + sb) / 2 - abs(ca - cb) for ca, cb, sa, sb in zip(a.center, b.center, a.size, b.size, strict=True))
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from hearth.homes.from_graph.graph_layout import GraphLayout, lay_out
-from hearth.homes.from_graph.measured import has_geometry, measured
-from hearth.homes.left_out import filled
+from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
+from hearth.homes.node_defaults import filled
 from hearth.homes.plans.layout import Layout, read
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge
@@ -91,7 +91,7 @@ def graph_of(path: Path | str, knowledge: Knowledge) -> EnvironmentGraph:
 
 
 FILES = (".json", ".yaml")
-"""How the names of scene graphs and plans end."""
+"""Endings of the names of scene graphs and plans."""
 
 
 def given_file(home: str) -> Path | None:
@@ -216,7 +216,7 @@ def _layout(path: Path, knowledge: Knowledge) -> Layout:
 
 
 def _ids(path: Path) -> dict[str, int]:
-    """Node ids by name, from the file beside a plan; empty where there is none."""
+    """Return node ids by name, from the file that belongs to a plan; empty where there is none."""
     if not path.exists():
         return {}
     found: dict[str, int] = {}

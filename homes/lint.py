@@ -4,11 +4,11 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from functools import cached_property
 
-from hearth.homes.forms import form
-from hearth.homes.from_graph.measured import has_geometry, measured
-from hearth.homes.left_out import CATEGORIES
-from hearth.homes.plans.checks import joined
+from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
+from hearth.homes.node_defaults import CATEGORIES
+from hearth.homes.object_shapes import form
 from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.plan_checks import joined
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -24,7 +24,7 @@ SITTING_ON_EDGES = "SITTING"
 
 
 class View:
-    """A graph with what the checks look up.
+    """A graph with the indexes that the checks use.
 
     Attributes:
         graph: the graph.
@@ -79,11 +79,11 @@ class View:
         return f"{node.class_name} ({node_id})" if node else f"node {node_id}"
 
     def is_room(self, node_id: int) -> bool:
-        """Whether it is a room."""
+        """Return whether it is a room."""
         return self.nodes[node_id].category == ROOM_CATEGORY
 
     def parents(self, node_id: int) -> list[int]:
-        """What it is INSIDE."""
+        """Return the node's container."""
         return self.targets["INSIDE"].get(node_id, [])
 
 
@@ -268,7 +268,7 @@ def _close(view: View) -> Iterator[Diagnostic]:
 
 
 def _on_foot(view: View) -> Iterator[Diagnostic]:
-    """What stands on the floor, and who, where the largest free region of it does not come near."""
+    """Return the things and characters on the floor that the largest free region of it does not come near."""
     if not has_geometry(view.graph):
         return
     layout = measured(view.graph, "", view.knowledge)

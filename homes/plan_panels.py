@@ -1,4 +1,4 @@
-"""Several drawings of one floor plan side by side, each with ways of its own, a title, and a legend of who goes there.
+"""Several drawings of one floor plan side by side, each with ways of its own, a title, and a legend of the characters.
 
 Furniture has no names but what is asked for, and names are moved apart.
 """
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.sax.saxutils import escape
 
-from hearth.homes.drawing import PERSON, SCALE, Shape, Trail, bounds, paint, shapes, svg_shape, svg_trail
+from hearth.homes.floor_plan_drawing import PERSON, SCALE, Shape, Trail, bounds, paint, shapes, svg_shape, svg_trail
 from hearth.homes.geometry import Rect
 from hearth.homes.plans.layout import Layout
 from hearth.schemas.diagnostics import HearthError
@@ -21,7 +21,7 @@ HEAD = 0.9
 """Metres above each drawing, for its title and the legend."""
 
 LETTER = 0.55
-"""The width of a letter beside its height, about."""
+"""Approximate width of a letter as a share of its height."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Panel:
     Attributes:
         title: over it.
         trails: on it.
-        names: of who goes there, in the trails' order, for the legend.
+        names: of the walking characters, in the trails' order, for the legend.
     """
 
     title: str

@@ -5,7 +5,7 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from hearth.homes.plans.shell import Thing
+from hearth.homes.plans.home_shell import Thing
 from hearth.schemas.graph import Box, Edge
 from hearth.schemas.vocabulary import RELATION_ID, RELATIONS
 
@@ -14,13 +14,13 @@ CLOSE_WITHIN = 0.8
 VIEW = 60.0
 """A thing faces what lies at most this many degrees off the way its front points."""
 SHOWN = 80.0
-"""And what it faces must show its own front: at most this many degrees off."""
+"""Largest angle between the front of a faced thing and the direction to the one that faces it, degrees."""
 FAR = 7.0
 """Metres beyond which nothing is looked at."""
 EYES = (1.1, 1.6)
 """Sight starts between these heights: those of someone sitting and standing."""
 BLIND = ("ceiling", "flat", "door", "window")
-"""How things are mounted that face nothing."""
+"""Mounts of things that face nothing."""
 TALL = ("floor", "wall", "door")
 """And how those are that may stand in the way of sight."""
 
@@ -63,7 +63,7 @@ def close(things: Sequence[Thing]) -> np.ndarray:
     """Pairs (pairs, 2) with at most `CLOSE_WITHIN` of free space between their boxes, both ways round.
 
     Walls part things of different rooms; doors and their jambs are near things of both. A container's sides part
-    nothing: as in the release, what is in a dresser is near what stands beside it.
+    nothing: as in the release, the things in a dresser are near its neighbors.
     """
     found = [np.zeros((0, 2), np.int64)]
     doorway = np.array([bool(thing.between) for thing in things])
@@ -79,7 +79,7 @@ def close(things: Sequence[Thing]) -> np.ndarray:
 
 
 def _rooms(things: Sequence[Thing]) -> dict[str, list[int]]:
-    """What is in each room, doorways in both of theirs; rooms themselves are near nothing."""
+    """Return the things of each room, doorways in both of theirs; rooms themselves are near nothing."""
     found: dict[str, list[int]] = {}
     for i, thing in enumerate(things):
         if thing.mount != "room":
@@ -119,7 +119,7 @@ def facing(things: Sequence[Thing], lookable: frozenset[str]) -> Iterator[tuple[
 
 
 def _seen(things: Sequence[Thing], targets: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """Which things of one room face which of its targets."""
+    """Return which things of one room face which of its targets."""
     centers, _ = arrays([thing.box for thing in things])
     towards = centers[targets][None] - centers[:, None]
     distance = np.maximum(np.hypot(towards[..., 0], towards[..., 2]), 1e-9)
@@ -144,7 +144,7 @@ def direction(yaw: float) -> tuple[float, float]:
 
 
 def _blocked(things: Sequence[Thing], sources: np.ndarray, aims: np.ndarray) -> np.ndarray:
-    """Bool (pairs): the line of sight cuts through something of size other than the two and what they are on."""
+    """Return bool (pairs): a thing of size, other than the two and their supports, cuts the line of sight."""
     centers, halves = arrays([thing.box for thing in things])
     walls = np.array([k for k, thing in enumerate(things) if thing.mount in TALL], int)
     start = centers[sources].copy()

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping
 from operator import attrgetter
 
+from hearth.homes.plans.home_shell import Thing
 from hearth.homes.plans.layout import Layout
-from hearth.homes.plans.shell import Thing
 from hearth.homes.relations import edges
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

@@ -1,1 +1,1 @@
-"""What is known: actions, objects, places, states, synonyms, rooms and repairs. Pure look-ups over reviewable files."""
+"""The knowledge: actions, objects, places, states, synonyms, rooms and repairs. Pure look-ups over reviewable files."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import ObjectClass, Placement
+from hearth.kb.knowledge_records import ObjectClass, Placement
 
 TOO_LARGE_TO_CARRY = 2.1
 """Metres: the longest edge of a thing that can be grabbed (a ladder is 2)."""
@@ -81,7 +81,7 @@ def _fits(knowledge: Knowledge) -> Iterator[tuple[str, str]]:
 
 
 def _goes_in(inner: tuple[float, float, float], outer: tuple[float, float, float]) -> bool:
-    """Whether a box fits in another some way round, leaning or looking out by as much as the box is long."""
+    """Return whether a box fits in another some way round, leaning or looking out by as much as the box is long."""
     small, large = sorted(inner), sorted(outer)
     return small[0] <= large[0] * 1.1 and small[1] <= large[1] * 1.1 and small[2] <= large[2] * 2
 
@@ -166,4 +166,4 @@ CHECKS: dict[str, Callable[[Knowledge], Iterator[tuple[str, str]]]] = {
     "class": _named,
     "usable": _usable,
 }
-"""What is checked, by name."""
+"""The checks, by name."""

@@ -6,7 +6,7 @@ A formula is one of
     not F, F & F, F | F, (F)   as usual; `not` binds tightest, then `&`, then `|`
     some x: F                  for at least one thing x; reaches as far right as it can
     count x: F < limit(o)      fewer things than a number known of o
-    option(name)               the engine goes by the rule of that name
+    option(name)               the engine uses the rule of that name
 
 and an effect is
 
@@ -26,8 +26,8 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-from hearth.schemas.brief import brief
 from hearth.schemas.literals import Literal
+from hearth.schemas.short_repr import brief
 from hearth.schemas.tokens import Tokens
 
 FUNCTIONS = frozenset({"room", "origin", "place"})

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from hearth.kb import modifiers
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -123,14 +123,14 @@ class _Checker:
         return self.source[line - 1].rstrip("\n") if 0 < line <= len(self.source) else ""
 
     def _object(self, ref: ObjectRef, line: int) -> Span:
-        """Where an object's name stands, or whatever it was called before it became canonical."""
+        """Return where an object's name stands, or whatever it was called before it became canonical."""
         text = self._text(line)
         names = (ref.name, *self.knowledge.same_class(ref.name))
         spans = (_found_in(text, r"<[\s_]*({})[\s_]*>", name) for name in names)
         return next((span for span in spans if span[1]), (0, 0, ref.name))
 
     def _arguments(self, step: Step, line: int) -> Span:
-        """Where the objects of a step stand, or its action where it has none."""
+        """Return where the objects of a step stand, or its action where it has none."""
         text = self._text(line)
         start, end, _ = _found_in(text, r"(\[\s*{}\s*\])", step.action)
         after = text[end:].partition("|")[0].partition("{")[0]
@@ -145,7 +145,7 @@ class _Checker:
 
 
 def _found_in(text: str, pattern: str, name: str) -> Span:
-    """Where a name stands in a line as written: any case, spaces or underscores between its words."""
+    """Return where a name stands in a line as written: any case, spaces or underscores between its words."""
     words = r"[\s_]+".join(map(re.escape, name.replace("_", " ").split()))
     match = re.search(pattern.format(words), text, re.IGNORECASE)
     return (match.start(1), match.end(1), name) if match else (0, 0, name)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import ObjectClass
+from hearth.kb.knowledge_records import ObjectClass
 from hearth.kb.spelling import key_of
 from hearth.schemas.graph import Node
 

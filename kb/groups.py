@@ -1,9 +1,9 @@
-"""Groups of actions: those that follow from what an action needs and changes, and those that an entry names itself."""
+"""Groups of actions: those that follow from an action's needs and changes, and those that an entry names itself."""
 
 from collections.abc import Callable, Iterable, Mapping
 
 from hearth.kb.formula import TRUE, And, Effect, Some
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import OPPOSITE
@@ -23,11 +23,11 @@ DECLARED: dict[str, str] = {
     "unsaid": "goes without saying among people (thesis 3.4.1)",
     "variant": "changes what a plainer action changes, too",
 }
-"""The groups that entries of actions.yaml may name, and what they mean."""
+"""The groups that entries of actions.yaml may name, and their meanings."""
 
 
 def _adds(action: Action) -> frozenset[str]:
-    """What becomes true in every case."""
+    """The effects that hold in every case."""
     return frozenset(str(e.literal) for e in action.effects if not e.literal.negated and _always(e))
 
 

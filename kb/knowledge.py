@@ -7,11 +7,20 @@ from typing import TypeVar
 
 from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.groups import groups, relation_of, state_of, tool_of
-from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Process, Repair, StateGroup
+from hearth.kb.knowledge_records import (
+    Action,
+    Association,
+    Kind,
+    ObjectClass,
+    Placement,
+    Process,
+    Repair,
+    StateGroup,
+)
 from hearth.kb.spelling import key_of, near_names
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATES
 
 K = TypeVar("K")
@@ -39,7 +48,7 @@ class Knowledge:
         defaults: class or property -> the states a home is prepared with (thesis 5.5.2).
         derived: definitions of derived predicates.
         kinds: the kinds above the classes.
-        associations: what goes with what in use.
+        associations: classes that are used together.
         repairs: what to do about a failure, by name; the first that fits is the one to try.
         processes: changes that come by themselves in action set 3, by name.
     """
@@ -78,11 +87,11 @@ class Knowledge:
 
     @cached_property
     def arity(self) -> Mapping[str, int]:
-        """How many objects each action takes; asked by every step."""
+        """Return how many objects each action takes; asked by every step."""
         return {name: action.arity for name, action in self.actions.items()}
 
     def affords(self, action: str, position: int, class_name: str) -> bool:
-        """Whether the grammar lets a thing of that class be the argument at `position` (from 0) of the action.
+        """Return whether the grammar lets a thing of that class be the argument at `position` (from 0) of the action.
 
         Unknown actions, classes and positions are not afforded.
         """
@@ -92,7 +101,10 @@ class Knowledge:
         return found.grammar[position].accepts(thing.properties, thing.name, thing.category == "Rooms")
 
     def achievers(self, predicate: str) -> tuple[tuple[Action, Effect], ...]:
-        """Which actions make a predicate true, and by which effect: `ON`, `HOLDS_RH`, `CLOSE`, or a state's name."""
+        """Return the actions that make a predicate true, and by which effect.
+
+        `ON`, `HOLDS_RH`, `CLOSE`, or a state's name.
+        """
         return self._achievers.get(predicate, ())
 
     @cached_property
@@ -146,11 +158,14 @@ class Knowledge:
         return relation_of(self.actions[action]) if action in self.actions else ""
 
     def tool_of(self, action: str) -> str | None:
-        """What an action needs in hand without naming it: part of a name, '' for anything, None for nothing."""
+        """Return the object that an action needs in hand without naming it.
+
+        Part of a name, '' for anything, None for nothing.
+        """
         return tool_of(self.actions[action]) if action in self.actions else None
 
     def repairs_for(self, code: Code, action: str) -> tuple[Repair, ...]:
-        """What may be done when the action fails with that code, the first choice first."""
+        """Return the possible repairs of an action that fails with that code, the first choice first."""
         return tuple(r for r in self._repairs.get(code, ()) if not r.actions or action in r.actions)
 
     @cached_property
@@ -212,7 +227,7 @@ class Knowledge:
         return (*family, *(alias for one in family for alias in self._aliases.get(one, ())))
 
     def ancestors(self, name: str) -> tuple[str, ...]:
-        """What it is a kind of, nearest first: `fridge` -> appliance, device, artefact, thing."""
+        """Return the hypernyms of a class, nearest first: `fridge` -> appliance, device, artefact, thing."""
         thing = self.object_class(name)
         above: list[str] = []
         step = thing.hypernym if thing else ""
@@ -223,21 +238,21 @@ class Knowledge:
         return tuple(above)
 
     def is_room(self, name: str) -> bool:
-        """Whether that is a kind of room."""
+        """Return whether that is a kind of room."""
         thing = self.object_class(name)
         return thing is not None and thing.category == "Rooms"
 
     def has(self, name: str, prop: str) -> bool:
-        """Whether things of a class have a property; those of an unknown class have none."""
+        """Return whether things of a class have a property; those of an unknown class have none."""
         thing = self.object_class(name)
         return thing is not None and prop in thing.properties
 
     def seat_limit(self, name: str) -> int:
-        """How many things may be ON it before one may no longer sit down."""
+        """Return how many things may be ON it before one may no longer sit down."""
         return self._limit("sit", name)
 
     def bed_limit(self, name: str) -> int:
-        """How many things may be ON it before one may no longer lie down."""
+        """Return how many things may be ON it before one may no longer lie down."""
         return self._limit("lie", name)
 
     def _limit(self, kind: str, name: str) -> int:
@@ -289,11 +304,11 @@ class Knowledge:
     # Places
 
     def placements(self, name: str) -> tuple[Placement, ...]:
-        """Where a thing of that class may be, most usual first."""
+        """Return where a thing of that class may be, most usual first."""
         return self._of(self._placements, name)
 
     def holds(self, name: str) -> tuple[Placement, ...]:
-        """What may be on, in or near a thing of that class, most usual first."""
+        """Return the classes that may be on, in or near a thing of that class, most usual first."""
         return self._of(self._held, name)
 
     def _of(self, table: Mapping[str, tuple[Placement, ...]], name: str) -> tuple[Placement, ...]:

@@ -41,7 +41,7 @@ ModifierFault = tuple[str, str, str]
 
 
 def faults(step: Step, knowledge: Knowledge) -> Iterator[ModifierFault]:
-    """What is wrong with a step's modifiers."""
+    """Faults of a step's modifiers."""
     seen: set[str] = set()
     for name, value in step.modifiers:
         found, known = f"{name}={value}", MODIFIERS.get(name)

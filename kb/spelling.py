@@ -1,4 +1,4 @@
-"""How names are compared, and which known ones somebody may have meant who wrote another."""
+"""Comparison of names, and the known names that a writer of an unknown one may have meant."""
 
 from __future__ import annotations
 

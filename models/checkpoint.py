@@ -128,7 +128,7 @@ def _without_minutes(trained: Any) -> Any:
 
 
 def _facts_fit(trained: Mapping[str, Any]) -> bool:
-    """Whether what is computed with, or drawn, of how a model was trained is numbers."""
+    """Return whether what is computed with, or drawn, of how a model was trained is numbers."""
     phases = [trained, trained.get("imitation", {})]
     return all(isinstance(phase, dict) and _phase_fits(phase) for phase in phases)
 

@@ -10,9 +10,9 @@ from typing import Any
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.checkpoint import save
-from hearth.models.data import corpus, facts_of
 from hearth.models.interface import Settings, Training
 from hearth.models.model_registry import MODELS, settings_of
+from hearth.models.text_examples import corpus, facts_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen

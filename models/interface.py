@@ -142,7 +142,7 @@ def texts(values: Any) -> tuple[str, ...]:
 
 
 def _like(value: Any, default: Any) -> bool:
-    """Whether a value is of the kind of a default; without a default, or with None, all JSON values are."""
+    """Return whether a value is of the kind of a default; without a default, or with None, all JSON values are."""
     if not isinstance(default, int | float | str):
         return True
     if isinstance(default, float):

@@ -65,10 +65,10 @@ MODELS: dict[str, Entry] = {
         )
     },
     "chooser": Entry(
-        "sketches.chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
+        "sketches.plan_chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
     ),
     "chooser-text": Entry(
-        "sketches.chooser:Chooser",
+        "sketches.plan_chooser:Chooser",
         "sketch",
         "The same; it reads the description beside the sketch.",
         "ours",
@@ -82,20 +82,20 @@ MODELS: dict[str, Entry] = {
         "thesis 4.3.3",
     ),
     "clips-seen": Entry(
-        "films.seen_model:SeenModel",
+        "films.mask_clip_model:SeenModel",
         "film",
         "Names it by what each class of the masks does beside the person; it points at the objects.",
         "ours",
     ),
     "clips-context": Entry(
-        "films.seen_model:SeenModel",
+        "films.mask_clip_model:SeenModel",
         "film",
         "The same; it looks at seven seconds before and after each clip, too.",
         "ours",
         {"context": True},
     ),
     "clips-predicted": Entry(
-        "films.seen_model:SeenModel",
+        "films.mask_clip_model:SeenModel",
         "film",
         "The same; it learns from masks as a network predicts them (--set masks=FOLDER), too.",
         "ours",
@@ -108,13 +108,13 @@ MODELS: dict[str, Entry] = {
         "thesis 4.3.3",
     ),
     "films-pg-lcs": Entry(
-        "films.film_critical:FilmCritical",
+        "films.film_self_critical:FilmCritical",
         "film",
         "A trained `films-mle` (--set start=FOLDER) trained on by LCS.",
         "thesis 4.3.1",
     ),
     "films-pg-lcs-sim": Entry(
-        "films.film_critical:FilmCritical",
+        "films.film_self_critical:FilmCritical",
         "film",
         "A trained `films-pg-lcs` trained on by LCS and a tenth for programs that run.",
         "thesis 4.3.1",
@@ -234,7 +234,7 @@ def settings_of(name: str, **changed: Any) -> Model:
         suggestion = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(MODELS)}"
         raise HearthError.of(Code.UNKNOWN_ID, f"no model is called `{name}`", suggestion=suggestion)
     if entry.by:
-        raise _writes_nothing(name, f"python cli.py {entry.by} --out FOLDER trains it")
+        raise _writes_nothing(name, f"hearth {entry.by} --out FOLDER trains it")
     made: Model = _class(entry)(**{**entry.settings, **changed})
     return made
 
@@ -268,7 +268,7 @@ def restore(model: str | Path) -> tuple[str, Trained]:
     """
     name, trained = restore_any(model)
     if MODELS[name].by:
-        raise _writes_nothing(str(model), "python cli.py challenge run TASKS --helper hybrid uses such models")
+        raise _writes_nothing(str(model), "hearth challenge run TASKS --helper hybrid uses such models")
     found: Trained = trained
     return name, found
 
@@ -285,7 +285,7 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
     if str(model) in MODELS and not folder.exists():
         message = f"`{model}` has not been trained"
         command = MODELS[str(model)].by or f"model train {model} DATASET"
-        suggestion = f"python cli.py {command} --out FOLDER, and name that folder"
+        suggestion = f"hearth {command} --out FOLDER, and name that folder"
         raise HearthError.of(Code.MISSING_FILE, message, suggestion=suggestion)
     checkpoint = load(folder)
     entry = MODELS.get(checkpoint.model)

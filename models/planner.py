@@ -15,7 +15,7 @@ from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.checkpoint import Checkpoint
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
 
 @dataclass(frozen=True, slots=True)

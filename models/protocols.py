@@ -10,8 +10,8 @@ from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.checkpoint import Checkpoint
-    from hearth.models.data import Corpus
     from hearth.models.decoding.scorers import Scorer
+    from hearth.models.text_examples import Corpus
 
 
 class Model(Protocol):

@@ -27,7 +27,7 @@ BY_ROUNDS = "5.3"
 
 
 def fits(table: str, name: str, entry: Entry) -> bool:
-    """Whether a table has rows for a model."""
+    """Return whether a table has rows for a model."""
     if table == BY_ROUNDS and name != "planner" and not entry.place.startswith("sketches.graph_model:"):
         return False
     return not entry.by and (entry.input, entry.output) in KINDS[table]

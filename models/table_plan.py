@@ -11,9 +11,9 @@ from typing import Any, Literal, NamedTuple
 
 from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import NAME, identity
-from hearth.models.data import facts_of
 from hearth.models.fit_model import STATE, fit
 from hearth.models.model_registry import settings_of
+from hearth.models.text_examples import facts_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import read_json, value_digest, write_json

@@ -162,7 +162,7 @@ def best_of(epochs: Sequence[Epoch]) -> int:
 
 
 def _ended(epochs: Sequence[Epoch], best: int, how: Training) -> str:
-    """Why training ends now; "" if it goes on."""
+    """Return why training ends now; "" if it goes on."""
     spent = sum(epoch.seconds for epoch in epochs)
     if len(epochs) >= how.epochs:
         return "epochs"
@@ -233,7 +233,7 @@ class _State:
         return epochs
 
     def _fits(self, tensors: Mapping[str, torch.Tensor]) -> bool:
-        """Whether these are weights of the module, now and at their best, and numbers of the optimiser for them."""
+        """Return whether these are current and best weights of the module, with the optimizer's numbers for them."""
         own = {name: value.shape for name, value in self.module.state_dict().items()}
         wanted = {f"{part}/{name}": shape for part in ("now", "best") for name, shape in own.items()}
         given = {name: value.shape for name, value in tensors.items() if not name.startswith(_OPTIMISER)}
@@ -271,5 +271,5 @@ def _epochs(rows: Any) -> list[Epoch]:
 
 
 def kept(folder: Path) -> bool:
-    """Whether a folder has the state of a training."""
+    """Return whether a folder has the state of a training."""
     return (folder / STATE).is_file()

@@ -16,14 +16,14 @@ from hearth.datasets.format.codecs import (
 from hearth.grounding.environments.sampling import Environment
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import NOTE, Job, Output, Partition, Plan, Stage, rows_of
-from hearth.repair.causes import cause
-from hearth.repair.loop import successes
+from hearth.pipelines.engine.user_overlays import overlays, overlays_used
+from hearth.repair.augmentation import Augmented, Options, Pair, augment
+from hearth.repair.failure_causes import cause
+from hearth.repair.perturbation_strengths import strength
+from hearth.repair.repair_loop import successes
 from hearth.repair.sketch import ENVIRONMENTS, Keep, inherited, sketch
-from hearth.repair.strengths import strength
-from hearth.repair.variants import Augmented, Options, Pair, augment
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -67,7 +67,7 @@ class Context:
         return [home for home in self._others if home.name != name]
 
     def options_for(self, record_id: str) -> Options:
-        """How an execution is augmented; a fractional number of pairs is rounded up or down at random."""
+        """Return how an execution is augmented; a fractional number of pairs is rounded up or down at random."""
         return replace(self.options, count=_pairs(self.each, self.seed, record_id))
 
 

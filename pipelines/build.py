@@ -8,20 +8,20 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engine.build_estimates import forecast
 from hearth.pipelines.engine.build_homes import Homes, known_homes
 from hearth.pipelines.engine.engines import engine as make_engine
-from hearth.pipelines.engine.estimates import forecast
-from hearth.pipelines.engine.overlays import kept_overlays, overlays
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, record_of, stage
 from hearth.pipelines.engine.tiers import tiered
+from hearth.pipelines.engine.user_overlays import kept_overlays, overlays
 from hearth.pipelines.render import no_pictures
-from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
+from hearth.schemas.short_repr import brief
 from hearth.schemas.stage_rows import RejectedRow
 from hearth.storage.fetching import fetched
 from hearth.storage.lock import locked

@@ -10,9 +10,9 @@ import pyarrow.parquet as pq
 from hearth.datasets.format.codecs import graph_of
 from hearth.datasets.format.shared_homes import write_home
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
-from hearth.pipelines.crowd.known_descriptions import Described
-from hearth.pipelines.crowd.repeated import Repeated
-from hearth.pipelines.engine.context import knowledge
+from hearth.pipelines.crowd.description_lookup import Described
+from hearth.pipelines.crowd.duplicate_records import Repeated
+from hearth.pipelines.engine.build_context import knowledge
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage

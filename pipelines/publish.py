@@ -16,10 +16,10 @@ from hearth.datasets.format.split_columns import PARTS
 from hearth.datasets.format.splits import LEFT_OUT
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.final_tables import finish, strength_used
-from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.split_assignment import Assignment, assignment
 from hearth.pipelines.engine.stage import Job, Partition, Stage
+from hearth.pipelines.engine.user_overlays import overlays, overlays_used
 from hearth.schemas.failures import Code
 from hearth.schemas.published_rows import EnvironmentRow, ExecutionRow, PerturbedRow, ProgramRow, RepairedRow
 from hearth.schemas.row_types import Row, columns_of

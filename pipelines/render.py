@@ -15,10 +15,10 @@ import pyarrow.parquet as pq
 from hearth.datasets.format.cases import rerun
 from hearth.pipelines.engine import clip_cases, demonstration_cases
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.split_assignment import programs_of
 from hearth.pipelines.engine.stage import NOTE, Job, Partition, Plan, Stage
+from hearth.pipelines.engine.user_overlays import overlays, overlays_used
 from hearth.schemas.libraries import lacking
 from hearth.schemas.row_types import PinholeRow, TrackRow
 from hearth.schemas.stage_rows import CaseRow, ClippedRow, DemonstratedRow, FilmedRow, RenderedRow
@@ -30,7 +30,7 @@ from hearth.storage.partitions import READ_BATCH, read_rows
 if TYPE_CHECKING:
     from hearth.rendering.cameras.camera import Camera
     from hearth.rendering.film.snapshots import Snapshot
-    from hearth.rendering.scene.with_geometry import DrawableHome
+    from hearth.rendering.scene.home_geometry import DrawableHome
     from hearth.simulation.engine import Execution
 
 AUTO = "auto"
@@ -52,7 +52,7 @@ class Context(NamedTuple):
 
     def home(self, name: str) -> DrawableHome:
         """A home with geometry, derived from its relations if it has none; once a process."""
-        from hearth.rendering.scene.with_geometry import with_geometry
+        from hearth.rendering.scene.home_geometry import with_geometry
 
         if name not in self.drawable:
             self.drawable[name] = with_geometry(self.homes.graph(name), name, self.homes.knowledge)
@@ -97,7 +97,7 @@ def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Con
     """Write a film as webm, which browsers play; they do not play the mp4 that OpenCV writes."""
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
-    from hearth.rendering.scene.variation import drawn
+    from hearth.rendering.scene.film_variation import drawn
 
     name, job, home = case["execution_id"], context.job, place.graph
     folder = f"{FILMS}/{_folder(name)}"
@@ -126,7 +126,7 @@ def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Co
     from hearth.rendering.film import clips
     from hearth.rendering.film.clip_file import FILE
     from hearth.rendering.film.snapshots import trajectory_of
-    from hearth.rendering.scene.variation import drawn
+    from hearth.rendering.scene.film_variation import drawn
 
     name, job, known = case["execution_id"], context.job, context.homes.knowledge
     trajectory = trajectory_of(execution, place.graph, known, variation=drawn(job.settings.seed, name))

@@ -12,12 +12,12 @@ from hearth.datasets.format.codecs import bindings_of, change_of, condition_rows
 from hearth.datasets.format.shared_homes import common, write_home
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.overlays import keep_homes, overlays, overlays_used
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.stage import Job, Plan, Stage
+from hearth.pipelines.engine.user_overlays import keep_homes, overlays, overlays_used
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng

@@ -11,8 +11,8 @@ from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.numbered_steps import parse_steps
-from hearth.pipelines.checks import programs, special
-from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
+from hearth.pipelines.checks import program_checks, special_blocks
+from hearth.pipelines.engine.build_context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import plans
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -63,9 +63,9 @@ def process_as(record: IngestedRow, reading: Reading) -> list[ValidatedRow | Rej
     titled = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
     )
-    start = programs.met_at_start(program, groundings, record["conditions"] or (), known)
-    found = [*programs.findings(titled, known), *programs.undeclared(titled, record, known), *start]
-    warnings = (*warnings, *(programs.diagnostic(each, titled, record["place"]) for each in found))
+    start = program_checks.met_at_start(program, groundings, record["conditions"] or (), known)
+    found = [*program_checks.findings(titled, known), *program_checks.undeclared(titled, record, known), *start]
+    warnings = (*warnings, *(program_checks.diagnostic(each, titled, record["place"]) for each in found))
     row: ValidatedRow = {
         **named(record),
         "title": titled.title,
@@ -89,7 +89,7 @@ def checked(
         place: the file, for diagnostics.
         known: the grammar.
     """
-    expanded = special.expand(text, before)
+    expanded = special_blocks.expand(text, before)
     source = expanded.text.split("\n")
     written, faults = parse_program(expanded.text, place)
     program, wrong = grammar.check(written.numbered(), known, place, source)
@@ -98,18 +98,21 @@ def checked(
         faults = grammar.affordances(program, known, place, source)
     if not faults:
         faults = tuple(
-            programs.diagnostic(each, program, place, source) for each in programs.contradictions(program, known)
+            program_checks.diagnostic(each, program, place, source)
+            for each in program_checks.contradictions(program, known)
         )
     faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
     lines = tuple(expanded.original(line) for line in program.lines)
     program = replace(program, lines=lines)
     if faults:
         return program, faults, ()
-    unexecuted = (programs.diagnostic(each, program, place) for each in programs.never_executed(program, known))
+    unexecuted = (
+        program_checks.diagnostic(each, program, place) for each in program_checks.never_executed(program, known)
+    )
     return program, (), (*_replaced(expanded, place), *unexecuted)
 
 
-def _replaced(expanded: special.Expanded, place: str) -> Iterator[Diagnostic]:
+def _replaced(expanded: special_blocks.Expanded, place: str) -> Iterator[Diagnostic]:
     for line, text in expanded.replaced:
         message = "a special block, replaced by the steps that the special-blocks file gives for it"
         yield Diagnostic(Code.SPECIAL_BLOCK, message, place, line, found=text[:200])
@@ -124,8 +127,12 @@ def checked_natural_language(
     if faults:
         return parse.program, faults, ()
     # Natural language loses instances: two lamps may look like one switched on twice, so this is only a warning.
-    found = (*programs.never_executed(parse.program, known), *programs.contradictions(parse.program, known))
-    return parse.program, (), (*parse.warnings, *(programs.diagnostic(each, parse.program, place) for each in found))
+    found = (*program_checks.never_executed(parse.program, known), *program_checks.contradictions(parse.program, known))
+    return (
+        parse.program,
+        (),
+        (*parse.warnings, *(program_checks.diagnostic(each, parse.program, place) for each in found)),
+    )
 
 
 def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge, check: Check) -> GroundingRow | Reject:

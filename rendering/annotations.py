@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera, point_of
 from hearth.rendering.people.figure import Figure
-from hearth.rendering.rays.maps import extents
-from hearth.rendering.rays.shot import Shot
+from hearth.rendering.rays.camera_shot import Shot
+from hearth.rendering.rays.pixel_maps import extents
 from hearth.rendering.scene.instances import Thing, own_mesh
 from hearth.schemas.graph import Point
 

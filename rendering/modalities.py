@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from hearth.rendering.annotations import boxes, camera_of, poses
 from hearth.rendering.arrays import Image
 from hearth.rendering.cameras.camera import Camera
-from hearth.rendering.rays import maps, shading
-from hearth.rendering.rays.fine import fine
-from hearth.rendering.rays.flow import flow_of
-from hearth.rendering.rays.shot import Shot, draft, everywhere, shoot
+from hearth.rendering.rays import pixel_maps, shading
+from hearth.rendering.rays.camera_shot import Shot, draft, everywhere, shoot
+from hearth.rendering.rays.fine_pictures import fine
+from hearth.rendering.rays.optical_flow import flow_of
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.diagnostics import HearthError
@@ -86,7 +86,7 @@ def _rgb(shot: Shot, quality: str) -> Image:
 
 def _depth(shot: Shot, quality: str) -> Image:
     out = np.empty(len(shot.rays), np.uint16)
-    maps.depths(shot.hits.distance, shot.hits.triangle, shot.skipped, out)
+    pixel_maps.depths(shot.hits.distance, shot.hits.triangle, shot.skipped, out)
     return shot.image(out)
 
 
@@ -94,7 +94,7 @@ def _per_thing(shot: Shot, values: Sequence[int]) -> Image:
     """(H, W) the value of the thing that each pixel shows, 0 for the background."""
     dtype = np.uint16 if max(values, default=0) < 1 << 16 else np.int32
     out = np.empty(len(shot.rays), dtype)
-    maps.labels(shot.hits.triangle, shot.geometry.owners, np.array([*values, 0], dtype), out)
+    pixel_maps.labels(shot.hits.triangle, shot.geometry.owners, np.array([*values, 0], dtype), out)
     return shot.image(out)
 
 
@@ -117,7 +117,7 @@ def _normals(shot: Shot, quality: str) -> Image:
 
     def work(chunk: NDArray[np.int32]) -> None:
         part = int(chunk[0]), int(chunk[-1]) + 1
-        maps.facings(shot.rays, triangle, u, v, *rows, *part, out)
+        pixel_maps.facings(shot.rays, triangle, u, v, *rows, *part, out)
 
     each(work, shading.chunks(everywhere(len(shot.rays))))
     return shot.image(out)

@@ -1,1 +1,1 @@
-"""What breaks when conditions are perturbed, and how it is mended."""
+"""Failures of perturbed environments, and their repairs."""

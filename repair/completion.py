@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from hearth.grounding.binding import nearest
 from hearth.kb.knowledge import Knowledge
-from hearth.repair.loop import repair
+from hearth.repair.repair_loop import repair
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import Execution
@@ -36,7 +36,7 @@ def complete(steps: Steps, world: World, knowledge: Knowledge, rules: Rules = DE
     Args:
         steps: of one agent; objects with nodes keep them.
         world: the start.
-        knowledge, rules: what the world goes by.
+        knowledge, rules: those of the world.
     """
     program = Program(steps=steps)
     program = nearest(program, world).apply(program)

@@ -16,7 +16,7 @@ MOST_STEPS = 4
 
 
 def stop_reason(execution: Execution) -> str:
-    """Return why an execution stopped and what would fix it, as one sentence; "" where it did not stop."""
+    """Return why an execution stopped and the remedy, as one sentence; "" where it did not stop."""
     failure = execution.failure
     if failure is None:
         return ""

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 from hearth.grounding.environments.sampling import Size, sample
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.infer import infer
 from hearth.grounding.preconditions.postconditions import Postconditions, achieved, nodes_of
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.kb.knowledge import Knowledge
-from hearth.repair.gist import asked, meant, milestones, replaceable
+from hearth.repair.activity_steps import asked, meant, milestones, replaceable
 from hearth.repair.handlers.common import Handler
 from hearth.repair.handlers.registry import HANDLERS
-from hearth.repair.loop import repair
+from hearth.repair.repair_loop import repair
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
@@ -60,7 +60,7 @@ def sketch(
     Args:
         program: with instances as counters.
         homes: the first of them are tried, each in an environment sampled for the program.
-        knowledge: what homes and program go by.
+        knowledge: that of homes and program.
         seed, record_id: all the randomness there is.
         original: what the program needs, and how it runs in an environment of its own, which then is the first tried.
 
@@ -126,7 +126,7 @@ def _suffices(
 
 
 def _passes(nodes: Mapping[Key, int], execution: Execution, passed: Postconditions) -> bool:
-    """Whether each of some effects is there at some time."""
+    """Return whether each of some effects is there at some time."""
     return all(any(holds(fact, world, nodes) for world in execution.worlds) for fact in passed)
 
 

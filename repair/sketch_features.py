@@ -1,4 +1,4 @@
-"""What a learned sketch sees of a step: the action and its object, the steps around it, its effects, and the text.
+"""Features of a step for a learned sketch: the action and its object, the steps around it, its effects, and the text.
 
 Names are features of their own (`Grab soap`); numbers are counts and places; both stand in one mapping.
 """
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.repair.gist import action_phrases, asked, clauses, names_in_text, stems, takes_back
+from hearth.repair.activity_steps import action_phrases, asked, clauses, names_in_text, stems, takes_back
 from hearth.schemas.program import Program, Step
 
 MOST = 4
@@ -102,7 +102,7 @@ class _Seen:
         return [n for n, step in enumerate(self.steps) if n != number and any(ref in step.objects for ref in first)]
 
     def _words(self, step: Step) -> dict[str, float]:
-        """Whether title and description have its verb and its objects."""
+        """Return whether title and description have its verb and its objects."""
         phrases = action_phrases(step.action, self.known)
         objects = [names_in_text(ref.name, self.known) for ref in step.objects]
         first = objects[0] if objects else frozenset()

@@ -1,4 +1,4 @@
-"""Planning without learning: a sketch's steps bound to nodes, and what must come between them from the repairs."""
+"""Planning without learning: a sketch's steps bound to nodes, and the steps between them from the repairs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def complete_steps(steps: Sequence[Step]) -> Steps:
 
 
 def plan(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> tuple[Planned, ...]:
-    """What to do so that steps can be done one after the other; it always runs.
+    """A plan in which the steps can be done one after the other; it always runs.
 
     A step that no repair makes possible is left out.
 

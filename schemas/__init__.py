@@ -1,1 +1,1 @@
-"""What things are: programs, environment graphs, goals, failure codes, table columns. Imports nothing of ours."""
+"""Data types: programs, environment graphs, goals, failure codes, table columns. Imports nothing of ours."""

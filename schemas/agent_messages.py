@@ -1,4 +1,4 @@
-"""What people say to each other instead of doing something in a tick."""
+"""Messages that agents and people send in a tick instead of acting."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """The difference of two graphs: the form in which ticks, environments and final graphs are published.
 
-`encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by what
-moved (`simulation.world.world_change`), with the same result; `datasets.format.codecs` reads and writes rows of tables.
+`encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by their
+movements (`simulation.world.world_change`), with the same result; `datasets.format.codecs` reads and writes rows of
+tables.
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
-from hearth.schemas.brief import brief
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATE_ID
 
 State = tuple[int, str]
@@ -65,7 +66,7 @@ _NO_NODES: Mapping[int, Node] = {}
 
 
 class Parts(NamedTuple):
-    """A graph as what is compared.
+    """A graph in the form that is compared.
 
     Attributes:
         edges: its edges.
@@ -117,7 +118,7 @@ def _parts(graph: EnvironmentGraph) -> Parts:
 
 
 def _same(one: Node, other: Node | None) -> bool:
-    """Whether two nodes are equal, simulated states aside."""
+    """Return whether two nodes are equal, simulated states aside."""
     return other is not None and (one == other or _still(one) == _still(other))
 
 
@@ -205,7 +206,7 @@ def in_states(node: Node, names: Iterable[str]) -> Node:
 
 
 def compose(changes: Iterable[Change]) -> Change:
-    """What changes that follow one another come to; what came and went again is none of it.
+    """Return the sum of successive changes; an addition and its removal cancel out.
 
     They add and remove no nodes: ticks.
     """

@@ -1,4 +1,4 @@
-"""One sentence a failure: why a step failed, and what would fix it; the code stands at the end."""
+"""One sentence a failure: the reason why a step failed, and the remedy; the code stands at the end."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def _no_place(failure: Failure) -> str:
 
 
 def _facts(words: str) -> Callable[[Failure], str]:
-    """Return what says these words and, where the failure has them, what was needed and what was found."""
+    """Return a test for these words and, where the failure has them, the needed and the found fact."""
 
     def said(failure: Failure) -> str:
         known = (("needed", failure.expected), ("found", failure.actual))
@@ -163,7 +163,7 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
     (Code.UNPERTURBED, "a program of its own"): "{actual}",
     (Code.UNPERTURBED, "a precondition that can be perturbed"): "it has no precondition that can be perturbed",
 }
-"""Words of a failure whose code alone does not tell it from others, by what was expected."""
+"""Words of a failure whose code is ambiguous, by the expected fact."""
 
 WHY: Mapping[Code, Words] = {
     # Reading
@@ -269,7 +269,7 @@ WHY: Mapping[Code, Words] = {
     Code.OUT_OF_ORDER: "this came out of order",
     Code.FINISHED: "the person ended it",
 }
-"""Why something failed, in words, for every code."""
+"""Reasons of failures, in words, for every code."""
 
 MEANINGS: Mapping[Code, str] = {
     Code.WRONG_ARITY: "the action takes another number of objects",
@@ -306,4 +306,4 @@ REMEDIES: Mapping[Code, str] = {
     Code.NOT_FACING: "turn to it first",
     Code.OCCUPIED: "take things off it first",
 }
-"""What a person would do about a failure where no repair is known, or the repairs find nothing in this home."""
+"""Remedies of a failure for a person, where no repair is known, or the repairs find nothing in this home."""

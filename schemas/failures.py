@@ -125,7 +125,7 @@ class Code(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """Why an instruction could not be done.
+    """The reason why an instruction could not be done.
 
     Attributes:
         code: the kind.

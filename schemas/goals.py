@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from hearth.schemas.brief import brief
 from hearth.schemas.literals import Literal, Name
+from hearth.schemas.short_repr import brief
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What must all be reached: literals with how often each must hold, and parts that are joined by other words.
+    """Parts of a goal that must all be reached: literals with their numbers, and parts that are joined by other words.
 
     Counted are distinct subjects; of a literal about characters, what each of them is related to: `HOLDS(agent, book)`
     counts books. A literal may name an action, `Watch(television)`: counted are the different objects it was done with.

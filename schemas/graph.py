@@ -4,10 +4,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
-from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import RELATIONS
 
 Point = tuple[float, float, float]

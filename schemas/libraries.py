@@ -12,7 +12,7 @@ from hearth.schemas.failures import Code
 from hearth.version import DISTRIBUTION
 
 CHECKOUT = Path(__file__).parents[1] / "pyproject.toml"
-"""Where it is there, Hearth runs from its folder; a wheel does not have it."""
+"""In a checkout, Hearth runs from its folder; a wheel has no such folder."""
 
 EXTRAS = {
     "agents": ("gymnasium", "pettingzoo"),
@@ -27,7 +27,7 @@ EXTRAS = {
 """The modules of each extra of pyproject.toml."""
 
 MADE = {"agents": "make setup", "pictures": "make setup", "web": "make setup", "models": "make .venv/.models"}
-"""What installs some extras in a checkout; pip of `.venv` installs the others."""
+"""The make targets that install some extras in a checkout; pip of `.venv` installs the others."""
 
 
 def library(module: str) -> Any:
@@ -48,7 +48,7 @@ def library(module: str) -> Any:
 
 
 def remedy(extra: str) -> str:
-    """How to install an extra where Hearth is."""
+    """Return how to install an extra where Hearth is."""
     if not CHECKOUT.is_file():
         return f"run `pip install '{DISTRIBUTION}[{extra}]'`"
     command = MADE.get(extra, f".venv/bin/python -m pip install '.[{extra}]'")

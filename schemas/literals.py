@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Generic, NamedTuple, TypeVar
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 
 Key = tuple[str, int]
 """An object of a program: (class name, instance)."""
 
 Name = str | int
-"""What a goal is about: a class name, a node id, or `agent` (any character) or `agent:1` (the second by id)."""
+"""The subject of a goal: a class name, a node id, or `agent` (any character) or `agent:1` (the second by id)."""
 
 CHARACTER: Key = (CHARACTER_CLASS, 1)
 """The character of a program; the second of several is `(CHARACTER_CLASS, 2)`."""

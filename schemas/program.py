@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 
 MOST_OBJECTS = 2
 """Objects that an action takes at most."""
@@ -27,7 +27,10 @@ class ObjectRef:
 
     @property
     def key(self) -> tuple[str, int]:
-        """Identity within its program, whatever it is bound to; of what only a node names, that node, below 0."""
+        """Identity within its program, independent of its binding.
+
+        An object that only a node names has that node, below 0.
+        """
         return (self.name, self.instance or -(self.node or 0))
 
 
@@ -92,7 +95,7 @@ class Program:
         return tuple(seen.values())
 
     def agents(self) -> int:
-        """How many agents it needs: one more than the highest it names."""
+        """Return how many agents it needs: one more than the highest it names."""
         return max((step.agent for step in self.steps), default=0) + 1
 
     def with_steps(self, steps: Iterable[Step]) -> Program:
@@ -100,7 +103,7 @@ class Program:
         return Program(self.title, self.description, tuple(steps))
 
     def unbound(self) -> Program:
-        """The program as collected: node ids left out, and instances for what they alone named."""
+        """Return the program as collected: node ids left out, and instances for the objects that they alone named."""
         return self.numbered().bound({})
 
     def numbered(self) -> Program:

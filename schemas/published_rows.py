@@ -20,7 +20,7 @@ from hearth.schemas.stage_rows import ClippedRow, DemonstratedRow, FilmedRow, Re
 
 
 class VersionsRow(TypedDict):
-    """What a published row belongs to."""
+    """The owner of a published row."""
 
     action_set: Annotated[str, "the meaning of actions it was run with"]
     dataset_version: Annotated[str, "the dataset it belongs to"]
@@ -106,7 +106,7 @@ class _PreparedFor(TypedDict):
 
 
 class EnvironmentRow(_PreparedFor, DifferenceRow):
-    """An environment: a home prepared for a program, as what differs from the home."""
+    """An environment: a home prepared for a program, as its differences from the home."""
 
     conditions: list[ConditionRow]
 
@@ -144,7 +144,7 @@ class RepairedRow(_Tried, RepairRow):
 
 
 class PerturbedRow(_Tried, PerturbationRow):
-    """A perturbation of the environment of a program, with what it caused."""
+    """A perturbation of the environment of a program, with the failures that it caused."""
 
 
 class SplitRow(TypedDict):
@@ -195,7 +195,7 @@ class NameRow(TypedDict):
 
 
 class LedgerRow(TypedDict):
-    """What became of a stage's records: `records_in = records_through + records_rejected`."""
+    """The fate of a stage's records: `records_in = records_through + records_rejected`."""
 
     stage: Annotated[str, "the stage"]
     record: Annotated[str, "what its records are, and what was left out; the rows of other kinds go on as they are"]

@@ -1,9 +1,9 @@
-"""How rows are declared, and what stands within them: graphs, changes, steps, failures.
+"""Declarations of rows, and of the values within them: graphs, changes, steps, failures.
 
-`stage_rows` has what the stages pass on, `published_rows` what is published. Nested types are used where a thing
-belongs to its row. Each column has its meaning beside its type, for dataset cards.
-Node ids are those of the environment's graph; steps and ticks count from 0. In a file any column may be null; `| None`
-marks those that are. `schemas.tables` makes Arrow schemas of these declarations, column by column.
+`stage_rows` has the rows between stages, `published_rows` the published ones. Nested types are used where a thing
+belongs to its row. Each column has its meaning next to its type, for dataset cards. Node ids are those of the
+environment's graph; steps and ticks count from 0. In a file any column may be null; `| None` marks those that are.
+`schemas.tables` makes Arrow schemas of these declarations, column by column.
 """
 
 from collections.abc import Mapping
@@ -78,7 +78,7 @@ class NodeStateRow(TypedDict):
 
 
 class ChangeRow(TypedDict):
-    """What differs between two worlds over the same nodes."""
+    """The differences between two worlds over the same nodes."""
 
     added: Annotated[list[EdgeRow], "edges that were not there before"]
     removed: Annotated[list[EdgeRow], "edges that were there before"]
@@ -138,14 +138,14 @@ class StepRow(TypedDict):
 
 
 class QuantityRow(TypedDict):
-    """A room or an object, declared beside a program."""
+    """A room or an object, declared with a program."""
 
     name: Annotated[str, "class of the object, or of the room"]
     quantity: Annotated[int, "how many"]
 
 
 class FailureRow(TypedDict):
-    """Why an instruction could not be done."""
+    """The reason why an instruction could not be done."""
 
     code: Annotated[str, "why, a failure of `vocabulary`"]
     tick: Annotated[int, "the tick, from 0"]
@@ -169,7 +169,7 @@ class WarningRow(TypedDict):
 
 
 class InstructionRow(TypedDict):
-    """Which step an agent does in a tick."""
+    """The step that an agent does in a tick."""
 
     agent: Annotated[int, "who"]
     step: Annotated[int, "the program's step, from 0"]
@@ -180,7 +180,7 @@ class _Instructed(TypedDict):
 
 
 class TickRow(_Instructed, ChangeRow):
-    """What was done in a tick, and what it changed."""
+    """The acts of a tick, and their changes."""
 
 
 class _NodesDiffer(TypedDict):
@@ -189,7 +189,7 @@ class _NodesDiffer(TypedDict):
 
 
 class DifferenceRow(_NodesDiffer, ChangeRow):
-    """What differs from the home. A removed node takes its edges with it."""
+    """The differences from the home. A removed node takes its edges with it."""
 
 
 class PerturbationRow(TypedDict):
@@ -230,7 +230,7 @@ class PinholeRow(TypedDict):
 
 
 class FilmedStepRow(TypedDict):
-    """When a film shows a tick."""
+    """The time at which a film shows a tick."""
 
     tick: Annotated[int, "the tick, from 0"]
     steps: Annotated[list[str], "its steps, as text"]
@@ -251,7 +251,7 @@ class TrackRow(TypedDict):
 
 
 class VariationRow(TypedDict):
-    """What was drawn by chance for a film."""
+    """Random choices of a film."""
 
     seed: Annotated[Long, "of the chances below"]
     hour: Annotated[float, "time of day"]
@@ -262,14 +262,14 @@ class VariationRow(TypedDict):
 
 
 class CodeRow(TypedDict):
-    """How many records were refused for a reason."""
+    """The number of records that were refused for a reason."""
 
     code: Annotated[str, "why"]
     count: Annotated[Long, "how many records"]
 
 
 class ScriptRow(TypedDict):
-    """What rows with a program have in common."""
+    """Columns that all rows with a program have."""
 
     title: Annotated[str, "name of the activity"]
     description: Annotated[str, "what is done, in sentences"]

@@ -24,7 +24,7 @@ from hearth.schemas.row_types import (
 
 
 class NamedRow(TypedDict):
-    """Where a program comes from, with its title, description and declarations."""
+    """The source of a program, with its title, description and declarations."""
 
     program_id: Annotated[str, "stable id of the program"]
     origin: Annotated[str, "written, crowd, release, text, spoken, records, sketches, scenes, synthetic or augmented"]
@@ -64,7 +64,7 @@ class PartRow(TypedDict):
 
 
 class IngestedRow(_Kind, NamedRow):
-    """What `ingest` reads."""
+    """Rows that `ingest` reads."""
 
     style: Annotated[str | None, "the voice in which a text was written, where its source says"]
     text: Annotated[str | None, "the program as collected; null for a description"]
@@ -91,7 +91,7 @@ class GroundingRow(TypedDict):
 
 
 class ValidatedRow(NamedRow):
-    """What `validate` checked."""
+    """Rows that `validate` checked."""
 
     steps: Annotated[list[StepRow], "the program in canonical names, unbound"]
     groundings: Annotated[list[GroundingRow], "the program as grounded in a home, checked"]
@@ -188,7 +188,7 @@ class FilmedRow(TypedDict):
 
 
 class ClippedRow(TypedDict):
-    """Two seconds of a film, and what is done in their middle."""
+    """Two seconds of a film, and the act in their middle."""
 
     execution_id: Annotated[str, "the execution filmed"]
     number: Annotated[int, "of the clip in its film, from 0"]

@@ -14,11 +14,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from hearth.schemas.blocks import STEP, Splitter
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.malformed import explain, special
+from hearth.schemas.malformed_steps import explain, special
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.program_blocks import STEP, Splitter
 
 MAX_LINE = 10_000
 """Characters a line may have; a longer one is rejected instead of being searched for steps."""

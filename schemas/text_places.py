@@ -1,4 +1,4 @@
-"""Where the lines of a text stand in the file that it was taken from: a text file, or a cell, or a string in JSON."""
+"""Places of a text's lines in its file: a text file, a cell, or a string in JSON."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -12,7 +12,7 @@ from hearth.schemas.failures import Code
 _PART = re.compile(r"\S+")
 
 DEEPEST = 40
-"""How deep parts of a text may stand within one another; Python's own limit would end in a traceback."""
+"""Deepest nesting of parts of a text; Python's own limit would end in a traceback."""
 
 T = TypeVar("T")
 Self = TypeVar("Self", bound="Tokens")
@@ -48,7 +48,7 @@ class Tokens:
         self.places.append(len(text))
 
     def whole(self: Self, rule: Callable[[Self], T]) -> T:
-        """What a rule makes of all tokens."""
+        """Return a rule's result for all tokens."""
         result = rule(self)
         if self.peek():
             raise self.fault(f"`{self.peek()}` is too much")
@@ -77,7 +77,7 @@ class Tokens:
         return token
 
     def deeper(self, rule: Callable[[], T]) -> T:
-        """What a rule makes of a part that stands within another."""
+        """Return a rule's result for a part that stands within another."""
         if self.depth >= DEEPEST:
             raise self.fault(f"more than {DEEPEST} parts within one another")
         self.depth += 1
@@ -92,7 +92,7 @@ class Tokens:
         return self.take()
 
     def several(self, rule: Callable[[], T], *marks: str) -> tuple[T, ...]:
-        """What a rule makes of parts with a mark between them."""
+        """Return a rule's results for parts with a mark between them."""
         parts = [rule()]
         while self.peek().lower() in marks:
             self.take()

@@ -37,7 +37,7 @@ PROPERTIES: tuple[str, ...] = (
     "POURABLE", "CAN_OPEN", "HAS_SWITCH", "READABLE", "LOOKABLE", "CONTAINERS", "CLOTHES", "PERSON", "BODY_PART",
     "COVER_OBJECT", "HAS_PLUG", "HAS_PAPER", "MOVABLE", "CREAM",
 )  # fmt: skip
-"""What an object can be used for."""
+"""Uses of an object."""
 
 PROPERTY_ID = {name: number for number, name in enumerate(PROPERTIES)}
 

@@ -23,7 +23,7 @@ def packaged(package: str, file: str) -> Any:
 
 
 def too_much(text: str) -> str:
-    """Why a text is not read as YAML; "" where it may be. A fault of form is left for the reader to name.
+    """Return why a text is not read as YAML; "" where it may be. A fault of form is left for the reader to name.
 
     It takes time in proportion to the text, whatever its aliases stand for.
     """

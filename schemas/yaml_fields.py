@@ -7,7 +7,7 @@ from dataclasses import replace
 from difflib import get_close_matches
 from typing import Any
 
-from hearth.schemas import located
+from hearth.schemas import located_yaml
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 
@@ -74,15 +74,15 @@ def fields(
     """The values of a mapping, read by their keys' readers; what can't be read is noted and left out.
 
     Args:
-        entry: as `located.read` gives it.
+        entry: as `located_yaml.read` gives it.
         keys: the reader of each key; `list` for a list.
         what: the mapping's name in messages.
         faults: gets what is wrong.
         need: the keys that it must have.
         line: where it stands, if it does not know.
     """
-    if not isinstance(entry, located.Mapping):
-        faults.add(Code.SYNTAX, f"{what} is a mapping", located.line_of(entry) or line, ", ".join(keys))
+    if not isinstance(entry, located_yaml.Mapping):
+        faults.add(Code.SYNTAX, f"{what} is a mapping", located_yaml.line_of(entry) or line, ", ".join(keys))
         return {}
     for key, at in entry.twice:
         faults.add(Code.DUPLICATE, f"`{key}` stands twice", at, "keep one of them")
@@ -111,6 +111,6 @@ def _list(value: Any) -> Any:
 
 def shown(value: Any) -> str:
     """A value as messages quote it."""
-    if isinstance(value, located.Number):
+    if isinstance(value, located_yaml.Number):
         return f"{float(value):g}"
     return str(value)[:60]

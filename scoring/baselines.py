@@ -12,7 +12,7 @@ from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
 from hearth.grounding.binding import nearest
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 from hearth.repair.sketch_plan import planned_program
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step

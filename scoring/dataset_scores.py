@@ -17,11 +17,11 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
 from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, scored
-from hearth.scoring.first_faults import FirstFaults
 from hearth.scoring.line_reader import LineReader
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.prediction_rows import Named
 from hearth.scoring.predictions import Pair, read_pairs
+from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.engine import run
 from hearth.simulation.rules import RULES
 from hearth.storage.parallel import Seen, spread, unseen

@@ -9,24 +9,24 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
+from hearth.schemas.short_repr import brief
 from hearth.scoring.bootstrap import Interval, intervals
 from hearth.scoring.environments import Environments
-from hearth.scoring.first_faults import FirstFaults
-from hearth.scoring.lines import Lines
+from hearth.scoring.line_sequences import Lines
 from hearth.scoring.metrics import executability as running
 from hearth.scoring.metrics.executability import ErrorClass, Executability, executability
+from hearth.scoring.metrics.goal_progress import Achieved, GoalScore, of_given, signatures_of
 from hearth.scoring.metrics.goals import goal_of
 from hearth.scoring.metrics.graph_f1 import FAILED, MATCH, SCOPE, GraphScore, MatchBy, Scope, f1_signature, named
 from hearth.scoring.metrics.graph_f1 import score as graph_score
 from hearth.scoring.metrics.lcs import LEVELS, LcsScore, lcs_signature, score_pairs
 from hearth.scoring.metrics.parsability import SIGNATURE as PARSABLE
 from hearth.scoring.metrics.parsability import Parsability, parsability
-from hearth.scoring.metrics.reached import Achieved, GoalScore, of_given, signatures_of
 from hearth.scoring.predictions import Pair
+from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.engine import run
 from hearth.simulation.goal_text import read_goal
 from hearth.simulation.rules import DEFAULT, Rules
@@ -90,12 +90,12 @@ class Scored:
 
     @property
     def missing(self) -> bool:
-        """Whether the prediction is missing."""
+        """Return whether the prediction is missing."""
         return self.pair.predicted is None
 
     @property
     def empty(self) -> bool:
-        """Whether the prediction has no lines."""
+        """Return whether the prediction has no lines."""
         return self.pair.predicted == ()
 
 

@@ -11,7 +11,7 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.lines import Line, Lines, PlanReader, Refused
+from hearth.scoring.line_sequences import Line, Lines, PlanReader, Refused
 
 
 class LineReader(PlanReader):

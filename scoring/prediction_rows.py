@@ -9,8 +9,8 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.first_faults import FirstFaults
-from hearth.scoring.lines import Source
+from hearth.scoring.line_sequences import Source
+from hearth.scoring.refused_rows import FirstFaults
 from hearth.storage.input_files import LARGEST_TABLE, read_input
 
 PARQUET = b"PAR1"

@@ -9,10 +9,10 @@ from hearth.datasets.format.ids import names_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.first_faults import SHOWN, FirstFaults
 from hearth.scoring.line_reader import LineReader
-from hearth.scoring.lines import Lines, Reader, Source, read, steps_of
+from hearth.scoring.line_sequences import Lines, Reader, Source, read, steps_of
 from hearth.scoring.prediction_rows import Named, Row, rows_of, source_of
+from hearth.scoring.refused_rows import SHOWN, FirstFaults
 
 EXAMPLE = '{"id": "p1", "predicted": "[Walk] <kitchen> (1)", "reference": ["[Walk] <kitchen> (1)"]}'
 

@@ -1,1 +1,1 @@
-"""What happens: immutable worlds, one function an action, the engine, what an agent sees, homes and floor plans."""
+"""The simulator: immutable worlds, one function an action, the engine, agents' views, homes and floor plans."""

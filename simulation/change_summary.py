@@ -7,7 +7,7 @@ from hearth.simulation.world.world import World
 
 
 def summary(change: Change, world: World) -> str:
-    """What changed, on one line: states, places, and the numbers of the rest; `world` is the one before."""
+    """Return the changes on one line: states, places, and the numbers of the rest; `world` is the earlier one."""
 
     def name(node: int) -> str:
         return f"{world.home.classes[world.home.index[node]]} ({node})"

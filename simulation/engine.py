@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.consequences import actions
 from hearth.simulation.actions.metres import followed
@@ -39,7 +39,7 @@ class Execution:
 
     @property
     def executable(self) -> bool:
-        """Whether every tick was done."""
+        """Return whether every tick was done."""
         return self.failure is None
 
     @property
@@ -48,7 +48,7 @@ class Execution:
         return self.worlds[-1]
 
     def changes(self) -> tuple[Change, ...]:
-        """What each tick changed."""
+        """The changes of each tick."""
         return tuple(now.changes(before) for before, now in zip(self.worlds, self.worlds[1:], strict=False))
 
 
@@ -74,7 +74,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
 
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
-    """Only the end of a run, for who needs no trace."""
+    """Return only the end of a run, for callers that need no trace."""
     world = ready(world, program, rules)
     for number, steps in enumerate(_ticks(program)):
         result = alone(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
@@ -149,7 +149,7 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
 
 
 def _in_place(before: World, done: World, instruction: Step, o: int, s: int) -> World | Failure:
-    """The world after an instruction, with its character's place and what its modifiers ask for."""
+    """Return the world after an instruction, with its character's place and the effects of its modifiers."""
     if before.agents[instruction.agent].pose is not None:
         done = followed(before, done, instruction.agent, instruction.action, o)
     return modified(before, done, instruction, o, s) if instruction.modifiers else done
@@ -197,7 +197,10 @@ def tick(
 
 
 def _only_moves(instruction: Step, before: World, now: World) -> bool:
-    """Whether an instruction can't have become possible by what changed: a move of metres that no door allowed."""
+    """Return whether an instruction stays impossible after a change.
+
+    A move of metres that no door allowed.
+    """
     return instruction.action in MOVES and before.states is now.states
 
 
@@ -226,8 +229,9 @@ def _twice(instruction: Step) -> Failure:
 
 
 def unfit(world: World, instruction: Step) -> Failure | None:
-    """Why an instruction fails whatever its objects are bound to, or None: nobody has its number (UNKNOWN_AGENT), or it
-    has fewer or more objects than its action takes (WRONG_ARITY).
+    """Return the failure of an instruction that fails for any binding of its objects, or None.
+
+    No agent has its number (UNKNOWN_AGENT), or its action takes another number of objects (WRONG_ARITY).
     """
     if not 0 <= instruction.agent < len(world.agents):
         return _refused(world, instruction)

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any, overload
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal
@@ -35,7 +35,7 @@ class Tick:
     """One tick of an episode.
 
     Attributes:
-        instructions: what each agent tried, by number; who did nothing is not named.
+        instructions: each agent's instruction, by number; an agent that did nothing is not named.
         failures: why, for those who could not.
         before, world: the world before and after it.
     """
@@ -49,7 +49,7 @@ class Tick:
 
     @property
     def change(self) -> Change:
-        """What is different from before it, poses aside."""
+        """The differences from the world before, poses aside."""
         return self.world.changes(self.before)
 
 
@@ -147,7 +147,8 @@ class Env:
             alone = self._read(instructions)
             instructions = {alone.agent: alone}
         items = sorted(instructions.items())
-        # The number decides who acts: a step read from text that names no agent says 0, and is kept as who did it.
+        # The number names the acting agent: a step read from text without an agent says 0, and is stored as the agent
+        # did it.
         tried = {n: replace(self._read(given), agent=n) for n, given in items if given is not None}
         after, failures = engine.tick(before, tried, self.rules)
         self._world = after
@@ -162,7 +163,9 @@ class Env:
     def observe(self, agent: int, modality: str, /, *more: str) -> Mapping[str, Any]: ...
 
     def observe(self, agent: int = 0, *modalities: str) -> View | Mapping[str, Any]:
-        """What an agent sees now: facts, or, where modalities are named (`rgb`, `depth`, ...), pictures by modality.
+        """Return an agent's observation.
+
+        Facts, or, where modalities are named (`rgb`, `depth`, ...), pictures by modality.
 
         Raises:
             HearthError: UNKNOWN_AGENT; NOT_RENDERED when pictures are asked for and there is no camera sensor.
@@ -187,7 +190,9 @@ class Env:
         only_reachable: bool = False,
         actions: Collection[str] | None = None,
     ) -> Legal:
-        """What an agent could do now; by default only with what it sees, when it does not see everything.
+        """Return an agent's legal instructions.
+
+        By default only about visible nodes, if the agent does not see everything.
 
         Args:
             agent: its number.

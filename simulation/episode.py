@@ -1,4 +1,4 @@
-"""Episodes that can be done again, and checked by a digest of every tick."""
+"""Episodes that can be re-run, and checked by a digest of every tick."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from hearth.simulation.world.digest import digest
 from hearth.simulation.world.world import World
 
 Instructions = Mapping[int, Step]
-"""What each agent tries in a tick, by number."""
+"""Instructions of each agent in a tick, by number."""
 
 Said = Mapping[int, Message]
-"""What each agent says in a tick, by number."""
+"""Messages of each agent in a tick, by number."""
 
 
 @dataclass(frozen=True, eq=False)
 class Episode:
-    """What happened in an episode. Two are equal if their digests are.
+    """The events of an episode. Two episodes are equal if their digests are.
 
     Attributes:
         start: the world at its start.
@@ -51,7 +51,7 @@ class Episode:
 
     @classmethod
     def of(cls, env: Env, said: Sequence[Said] = ()) -> Episode:
-        """The episode of an environment up to now, with what agents said in each tick.
+        """Return the episode of an environment up to now, with the agents' messages in each tick.
 
         Raises:
             HearthError: UNKNOWN_HOME before the first `reset`.
@@ -64,7 +64,7 @@ class Episode:
         return cls(start, env.rules, tuple(each.instructions for each in env.ticks), tuple(digests), spoken)
 
     def again(self) -> Iterator[tuple[World, str]]:
-        """Do it again: the world and the digest at the start and after each tick."""
+        """Re-run the episode: yield the world and the digest at the start and after each tick."""
         world, last = self.start, digest(self.start)
         yield world, last
         for instructions, words in zip(self.ticks, self.said, strict=True):

@@ -1,7 +1,7 @@
 """Files of episodes: written, and read back as they were.
 
-A file has JSON lines. A line with `graph` is a home's; a line with `ticks` is an episode, which names the home and what
-is different from it at its start. Files whose names end in `.gz` are compressed.
+A file has JSON lines. A line with `graph` is a home's; a line with `ticks` is an episode, which names the home and the
+differences from it at its start. Files whose names end in `.gz` are compressed.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def _edge(source: Any, relation: Any, target: Any) -> Edge:
 
 
 def _agent(number: str) -> int:
-    """The number of an agent; those that there are not have their own failure when the episode is done again."""
+    """Return the number of an agent; unknown numbers have their own failure when the episode is re-run."""
     if not number.isdecimal() or len(number) > 3:
         raise ValueError(f"`{number[:20]}` is not the number of an agent")
     return int(number)

@@ -1,10 +1,10 @@
-"""Why a step could be done or not: each check of its action, and the edges or states by which it held."""
+"""Explanations of steps: each check of an action, and the edges or states by which it held or failed."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from hearth.kb.formula import And, Formula, Or, Some, Term, free
-from hearth.kb.records import Condition
+from hearth.kb.knowledge_records import Condition
 from hearth.schemas.failures import Failure
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step
@@ -37,7 +37,7 @@ class _Cast:
     made_bed: bool
 
     def index(self, term: Term) -> int:
-        """Index of what a term names, or -1."""
+        """Return the index of the node that a term names, or -1."""
         index = {"a": self.agent.index, "o": self.o, "s": self.s}.get(term.name, -1)
         if index < 0 or not term.function:
             return index
@@ -127,7 +127,7 @@ def _conditions(world: World, step: Step, rules: Rules) -> Iterator[Condition]:
 
 
 def _failing(conditions: list[Condition], world: World, step: Step, failure: Failure) -> int | None:
-    """Which check a failure is about: of several of its code the one about the object that it names first."""
+    """Return the check of a failure: of several with its code, the one about the object named first."""
     found = [number for number, condition in enumerate(conditions) if condition.code is failure.code]
     node = next(iter(failure.objects), None)
     variable = next((name for name, ref in zip("os", step.objects, strict=False) if ref.node == node), "")

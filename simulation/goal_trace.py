@@ -1,4 +1,4 @@
-"""Whether a goal is reached over a run: what holds at its end, what was done, and in which order.
+"""A goal over a run: the facts at its end, the acts, and their order.
 
 A state or relation is reached while it holds; an action is reached once it has been done. The parts of `A then B` are
 reached one after the other. After a state, a state is reached only when it begins to hold; after an action it may have
@@ -34,22 +34,22 @@ class Trace(NamedTuple):
 
     @classmethod
     def of(cls, execution: Execution) -> Trace:
-        """What an execution did, up to its failure if it has one."""
+        """Return the acts of an execution, up to its failure if it has one."""
         return cls(execution.worlds, tuple(islice(execution.program.ticks(), len(execution.worlds) - 1)))
 
     def reached(self, goal: Goal, since: int = 0, now: int | None = None) -> bool:
-        """Whether a goal is reached in the world of one number, by what was done since that of another."""
+        """Return whether a goal is reached in the world of one number, by the acts since that of another."""
         now = len(self.done) if now is None else now
         counted = all(self.times(literal, since, now) >= self.needed(literal, wanted) for literal, wanted in goal)
         return counted and all(self.has(part, since, now) for part in goal.parts)
 
     def needed(self, literal: Literal[Name], wanted: int) -> int:
-        """How often a literal must hold to be reached (see `Candidates.needed`)."""
+        """Return how often a literal must hold to be reached (see `Candidates.needed`)."""
         home = self.worlds[0].home
         return wanted if acts(literal, home) else candidates(literal, home).needed(wanted)
 
     def times(self, literal: Literal[Name], since: int, now: int) -> int:
-        """How often a literal holds in a world; of an action, with how many different objects it was done."""
+        """Return how often a literal holds in a world; of an action, with how many different objects it was done."""
         world = self.worlds[now]
         if acts(literal, world.home):
             done = ((tick, step) for tick in range(since, now) for step in self.done[tick])
@@ -58,7 +58,7 @@ class Trace(NamedTuple):
         return sum(mask.bit_count() for mask in candidates(literal, world.home).met(world))
 
     def has(self, part: Joined, since: int, now: int) -> bool:
-        """Whether a joined part of a goal is reached."""
+        """Return whether a joined part of a goal is reached."""
         if part.join == "then":
             return self._ordered(part.goals, since, now)
         if part.join == "or":
@@ -89,7 +89,10 @@ class Trace(NamedTuple):
         return came and self.reached(goals[-1], since, now)
 
     def _comes(self, goal: Goal, since: int, at: int, begins: bool) -> bool:
-        """Whether a goal is reached at a time; with `begins`, for the first time since an earlier one or again."""
+        """Return whether a goal is reached at a time.
+
+        With `begins`, for the first time since an earlier one or again.
+        """
         if begins and not goal.counts and [part.join for part in goal.parts] == ["or"]:
             return any(self._comes(other, since, at, begins) for other in goal.parts[0].goals)
         before = begins and (at == since or self.reached(goal, since, at - 1))
@@ -101,12 +104,12 @@ def _positive(goal: Goal) -> bool:
 
 
 def acts(literal: Literal[Name], home: Home) -> bool:
-    """Whether a literal is about an action that is done."""
+    """Return whether a literal is about an action that is done."""
     return literal.name in home.knowledge.actions
 
 
 def by_agent(literal: Literal[Name]) -> bool:
-    """Whether an action's first term says who does it."""
+    """Return whether an action's first term says who does it."""
     return bool(literal.terms) and str(literal.terms[0]).partition(":")[0] == AGENT
 
 

@@ -1,4 +1,4 @@
-"""The progress of a goal, updated by changes and by what is done (thesis 6.3, tables B.1 and C.2)."""
+"""The progress of a goal, updated by changes and by acts (thesis 6.3, tables B.1 and C.2)."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from operator import is_
 
-from hearth.schemas.brief import brief
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.program import Step
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import RELATIONS, STATE_ID
 from hearth.simulation.engine import Execution
 from hearth.simulation.goal_trace import Trace, acts, by_agent
@@ -28,12 +28,12 @@ RELATED = frozenset({*RELATIONS, HOLDS})
 """The relations of goals."""
 
 LiteralFault = tuple[str, Code, str]
-"""Why a literal of a goal is refused: a message, a code and a suggestion."""
+"""Refusals of a goal's literal: a message, a code and a suggestion."""
 
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """A literal of a goal: what may make it hold, and what does now (see `holds.Candidates`)."""
+    """A literal of a goal: the nodes that can make it hold, and those that do now (see `holds.Candidates`)."""
 
     literal: Literal[Name]
     wanted: int
@@ -44,7 +44,7 @@ class Watch:
 
     @property
     def count(self) -> int:
-        """How often it holds."""
+        """Return how often it holds."""
         return sum(mask.bit_count() for mask in self.met)
 
 
@@ -99,7 +99,9 @@ class Progress:
         return replace(found, trace=Trace.of(execution)) if found.trace else found
 
     def after(self, world: World, change: Change, done: Sequence[Step] = ()) -> Progress:
-        """The progress in a world that came of the last by a change; looks only at what the change names.
+        """Return the progress in a world that follows the last by a change.
+
+        Looks only at the nodes that the change names.
 
         Args:
             world: after the tick.
@@ -134,20 +136,23 @@ class Progress:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """How often each literal holds, in the goal's order."""
+        """Return how often each literal holds, in the goal's order."""
         if self.trace:
             return tuple(self.trace.times(literal, 0, len(self.trace.done)) for literal, _ in self.goal)
         return tuple(watch.count for watch in self.watches)
 
     @property
     def has(self) -> tuple[bool, ...]:
-        """Whether each joined part is reached, in the goal's order."""
+        """Return whether each joined part is reached, in the goal's order."""
         trace = self.trace
         return tuple(trace.has(part, 0, len(trace.done)) for part in self.goal.parts) if trace else ()
 
     @property
     def satisfied(self) -> bool:
-        """Whether every literal holds as often as is wanted, and every part is reached; True for an empty goal."""
+        """Return whether every literal holds as often as is wanted, and every part is reached.
+
+        True for an empty goal.
+        """
         return all(found >= wanted for found, (_, wanted) in self.required()) and all(self.has)
 
     @property
@@ -158,7 +163,7 @@ class Progress:
         return found / wanted if wanted else 1.0
 
     def unmet(self) -> Goal:
-        """What is still to be done: each literal with how many are missing, and the parts that are not reached."""
+        """Return the rest of the goal: each literal with its missing number, and the parts that are not reached."""
         missing = ((literal, wanted - found) for found, (literal, wanted) in self.required())
         parts = (part for part, reached in zip(self.goal.parts, self.has, strict=True) if not reached)
         return Goal(tuple((literal, number) for literal, number in missing if number > 0), tuple(parts))
@@ -190,7 +195,10 @@ def _touched(change: Change, home: Home) -> defaultdict[str, int]:
 
 
 def check(literal: Literal[Name], home: Home) -> LiteralFault | None:
-    """Why no change could make a literal hold, or what the home and its knowledge do not have; None if nothing."""
+    """Return why no change could make a literal hold, or what the home and its knowledge do not have.
+
+    None if nothing.
+    """
     known, terms = home.knowledge, literal.terms
     if acts(literal, home):
         action = known.actions[literal.name]
@@ -209,7 +217,7 @@ def check(literal: Literal[Name], home: Home) -> LiteralFault | None:
 
 
 def unknown(term: Name, home: Home) -> LiteralFault | None:
-    """Why a term stands for nothing that there could be; None if it does."""
+    """Return why a term stands for nothing that there could be; None if it does."""
     if term == AGENT or nodes(term, home) or str(term).startswith("?"):
         return None
     if isinstance(term, int):

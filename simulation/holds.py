@@ -1,4 +1,4 @@
-"""Whether a literal holds in a world: one small function a predicate, all over bit sets.
+"""Tests of literals in a world: one small function a predicate, all over bit sets.
 
 A literal whose terms stand for several nodes holds when it holds of some subject and some target.
 """
@@ -25,14 +25,14 @@ PETS = ("cat", "dog")
 """Animals that may lie on a seat."""
 
 Unary = Callable[[World, int], bool]
-"""Whether a predicate holds of a node."""
+"""A test whether a predicate holds of a node."""
 
 Binary = Callable[[World, int, int], int]
 """With which of some targets a predicate holds of a node."""
 
 
 def holds(literal: Literal[T], world: World, binding: Mapping[T, int] = UNBOUND) -> bool:
-    """Whether a literal holds; without its negation, one about a term that stands for nothing does not.
+    """Return whether a literal holds; without its negation, one about a term that stands for nothing does not.
 
     Examples:
         >>> literal = hearth.Literal.of("HOLDS", "agent", "milk")
@@ -77,7 +77,10 @@ class Candidates(NamedTuple):
     by_target: bool
 
     def needed(self, wanted: int) -> int:
-        """How often it must hold to be reached: as often as is wanted; if negated, of all candidates, as in `holds`."""
+        """Return how often it must hold to be reached.
+
+        As often as is wanted; if negated, of all candidates, as in `holds`.
+        """
         if not self.literal.negated:
             return wanted
         return self.subjects.bit_count() * (self.targets.bit_count() if self.by_target else 1)
@@ -92,7 +95,7 @@ class Candidates(NamedTuple):
         return (self._subjects(world, self.subjects),)
 
     def updated(self, met: tuple[int, ...], world: World, changed: int) -> tuple[int, ...]:
-        """The same from what it was in an earlier world, where only the edges and states of some nodes differ."""
+        """Return the same from its value in an earlier world, where only the edges and states of some nodes differ."""
         if self.by_target:
             return self.met(world)
         return (met[0] & ~changed | self._subjects(world, self.subjects & changed),)
@@ -257,7 +260,7 @@ def _is_held(world: World, i: int, targets: int) -> int:
 
 
 def _not_near(world: World, i: int, targets: int) -> int:
-    """Who has walked to the target is not close to it."""
+    """A character that has walked to the target is not close to it."""
     home = world.home
     mine = (1 << i | rows.close(world, i) | rows.on(world, i)) & ~home.properties["BODY_PART"]
     return mask_of(j for j in indices(targets) if not mine & home.reach[j])

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from hearth.kb.formula import TRUE, And, Formula, Term
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Process
+from hearth.kb.knowledge_records import Process
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID, STATES
 from hearth.simulation.actions.literal_effects import made

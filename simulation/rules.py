@@ -23,7 +23,7 @@ class Rules(NamedTuple):
         doors: a closed door on the only way between two rooms stops a walk; the release ignores doors.
         bodies: characters at places do not walk by metres through each other.
         one_grip: what one holds is not grabbed again. The release takes it into the other hand, too.
-        made_bed: bedding on what one can lie on takes no room there: it is turned back. The release counts it, so that
+        made_bed: bedding on a bed or couch takes no room there: it is turned back. The release counts it, so that
             a made bed is occupied.
         near: what a walk brings one close to. `release`: its goal, a room too, what that is INSIDE, what is ON it, and
             one's body parts. `evolving_graph`: its goal, what that is INSIDE and ON, what is INSIDE it if it can be
@@ -98,7 +98,7 @@ CHOICES: dict[str, Rules] = {
     "evolving_graph": EVOLVING_GRAPH,
     "consequences": CONSEQUENCES,
 }
-"""What `--rules` of a command chooses from: ours of today, the release of 2018, VirtualHome 2.x, and action set 3."""
+"""Rules from which `--rules` of a command chooses: ours of today, the release of 2018, VirtualHome 2.x, action set 3."""
 
 
 def read(given: Mapping[str, Any]) -> Rules:
@@ -120,8 +120,8 @@ def read(given: Mapping[str, Any]) -> Rules:
 def suited(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Rules:
     """The rules by which a program says what its author meant.
 
-    Who switches something on only after watching it, or off before, watches what is off: the release has such programs,
-    and by the thesis's rule (5.5.2) they contradict themselves.
+    A person who switches something on only after watching it, or off before, watches a dark screen: the release has
+    such programs, and by the thesis's rule (5.5.2) they contradict themselves.
     """
     on, off = knowledge.achieving("ON"), knowledge.achieving("OFF")
     now: dict[Key, bool] = {}

@@ -79,7 +79,7 @@ def members(found: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
 
 
 def refusal_of(info: zipfile.ZipInfo, place: str) -> Reject | None:
-    """Why a member is not read, by its entry in the directory."""
+    """Return why a member is not read, by its entry in the directory."""
     if leaves(info.filename):
         message = f"`{info.filename[:100]}` leaves the archive"
         return Reject.of(Code.BAD_ARCHIVE, message, file=place, found=info.filename[:200], suggestion="pack it anew")
@@ -96,7 +96,7 @@ def refusal_of(info: zipfile.ZipInfo, place: str) -> Reject | None:
 
 
 def bomb(size: int, packed: int) -> bool:
-    """Whether the ratio of unpacked to packed bytes is beyond that of any text."""
+    """Return whether the ratio of unpacked to packed bytes is beyond that of any text."""
     return size > LARGEST_MEMBER or (size > _HARMLESS and size > packed * MOST_PACKED)
 
 

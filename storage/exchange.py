@@ -20,12 +20,12 @@ _EXCHANGE = 2
 
 
 def beside(folder: Path) -> Path:
-    """Where the next version of a folder is written."""
+    """Return where the next version of a folder is written."""
     return _real(folder).with_name(f".{folder.name}")
 
 
 def away(folder: Path) -> Path:
-    """Where the version before stands for a moment, on systems that cannot exchange two folders in one step."""
+    """Return where the version before stands for a moment, on systems that cannot exchange two folders in one step."""
     return _real(folder).with_name(f".{folder.name}.old")
 
 
@@ -81,7 +81,10 @@ def recover(folder: Path) -> None:
 
 
 def present(folder: Path) -> Path:
-    """Where a folder is to be read: by its own name, or, for the moment of its replacement, where it was moved."""
+    """Return where a folder is to be read.
+
+    By its own name, or, for the moment of its replacement, where it was moved.
+    """
     return folder if folder.exists() or not away(folder).exists() else away(folder)
 
 

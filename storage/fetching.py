@@ -61,7 +61,7 @@ def fetched(path: str | Path) -> Path:
 
 
 def _places(folder: str) -> tuple[str, ...]:
-    """Where a dataset is: in its folder or, while a build replaces it, beside it."""
+    """Return where a dataset is: in its folder or, while a build replaces it, beside it."""
     path = PurePosixPath(folder)
     return (folder, str(path.with_name(f".{path.name}"))) if len(path.parts) > 1 else (folder,)
 

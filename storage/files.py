@@ -21,7 +21,7 @@ TEMPORARY = ".tmp"
 
 
 def is_temporary(name: str) -> bool:
-    """Whether a file's name is that of something half written, or of what a library keeps beside such a file."""
+    """Return whether a file's name is that of something half written, or of what a library keeps beside such a file."""
     return TEMPORARY in Path(name).suffixes
 
 

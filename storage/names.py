@@ -14,7 +14,7 @@ LONGEST = 200
 
 
 def leaves(name: str) -> bool:
-    """Whether a name, as an archive or a store lists it, points outside the folder that it is given for."""
+    """Return whether a name, as an archive or a store lists it, points outside the folder that it is given for."""
     path = PurePosixPath(name.replace("\\", "/"))
     return path.is_absolute() or ".." in path.parts or (len(name) > 1 and name[1] == ":")
 
@@ -39,7 +39,7 @@ def inside(folder: Path, name: str) -> Path:
 
 
 def _fits(path: Path) -> bool:
-    """Whether systems have such names: not too long, and without half a character as JSON may have it."""
+    """Return whether systems have such names: not too long, and without half a character as JSON may have it."""
     try:
         return all(len(os.fsencode(part)) <= 255 for part in path.parts)
     except UnicodeEncodeError:

@@ -19,7 +19,7 @@ Result = TypeVar("Result")
 
 
 def context() -> BaseContext:
-    """How processes are started: never by forking a process that may hold threads or locks.
+    """Return how processes are started: never by forking a process that may hold threads or locks.
 
     An interrupt at the keyboard waits until a worker has started (`begin`): before, it would print where it was.
     """

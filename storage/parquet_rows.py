@@ -67,7 +67,7 @@ def row_batches(file: Any, packed: int, name: str, columns: Sequence[str] | None
 
 
 def _at_once(footer: Any) -> int:
-    """How many rows are read at a time: a text that a part has once, all its rows may have."""
+    """Return how many rows are read at a time: a text that a part has once, all its rows may have."""
     # Of whole row groups: to ask for the parts of a column ends the process if their statistics are damaged.
     sizes = [footer.row_group(number).total_byte_size for number in range(footer.num_row_groups)]
     return int(max(1, min(BATCH, _HELD // max(1, *sizes, 1))))

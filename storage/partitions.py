@@ -80,7 +80,7 @@ class Counts:
 
 
 def part_path(folder: Path, table: str, number: int) -> Path:
-    """Where partition `number` of a table stands; a stage with one table has its parts in its own folder.
+    """Return where partition `number` of a table stands; a stage with one table has its parts in its own folder.
 
     A table in several files has one for each share: that of `programs.test` is `programs/part-00000.test.parquet`.
     """
@@ -89,7 +89,7 @@ def part_path(folder: Path, table: str, number: int) -> Path:
 
 
 def rejects_path(folder: Path, number: int) -> Path:
-    """Where the rejects of a partition wait until the stage is complete."""
+    """Return where the rejects of a partition wait until the stage is complete."""
     return folder / f".rejects-{number:05d}.parquet"
 
 

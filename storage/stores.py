@@ -258,7 +258,7 @@ def _own_folder() -> Path:
 
 
 def _following(stage: str) -> str:
-    """Where the next version of a stage's folder is written, as in a plain folder."""
+    """Return where the next version of a stage's folder is written, as in a plain folder."""
     return beside(Path(stage)).name
 
 
@@ -268,7 +268,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _is_plain(name: str) -> bool:
-    """Whether a file is not a part; parts never change under their name while a build goes on."""
+    """Return whether a file is not a part; parts never change under their name while a build goes on."""
     base = name.rsplit("/", 1)[-1]
     return not (base.startswith((".", "part-")) and base.endswith(".parquet")) and base not in (_LOCK, _REVISION)
 

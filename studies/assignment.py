@@ -69,7 +69,7 @@ def _in_turn(number: int, groups: int, chooser: Random) -> list[int]:
 
 
 def _sizes(trials: int, people: int, chooser: Random) -> list[int]:
-    """How many trials each person has: all as many, but for one."""
+    """Return how many trials each person has: all as many, but for one."""
     least, more = divmod(trials, people)
     sizes = [least + (person < more) for person in range(people)]
     chooser.shuffle(sizes)

@@ -42,7 +42,7 @@ class Standing:
 
     @property
     def finished(self) -> bool:
-        """Whether the person has done all."""
+        """Return whether the person has done all."""
         return self.stage == DONE
 
 
@@ -82,7 +82,7 @@ class Conduct:
         raise HearthError.of(Code.CONFLICT, "too many people join at this moment", suggestion="try again")
 
     def has_room(self) -> bool:
-        """Whether somebody who joins now gets a place."""
+        """Return whether somebody who joins now gets a place."""
         return next(self._open_places(self.ledger.read(PLACES)), None) is not None
 
     def _open_place(self, joined: Sequence[Event]) -> int | None:
@@ -99,7 +99,7 @@ class Conduct:
                 yield int(event.data["place"]), person
 
     def _gone(self, person: str) -> bool:
-        """Whether a person has left, once silence is kept as leaving."""
+        """Return whether a person has left, once silence is kept as leaving."""
         try:
             self.leave(person, "idle")
         except HearthError as error:  # this person does something at this very moment
@@ -109,13 +109,13 @@ class Conduct:
         return True
 
     def is_silent(self, standing: Standing) -> bool:
-        """Whether somebody who is under way gave no sign for as long as the study allows."""
+        """Return whether somebody who is under way gave no sign for as long as the study allows."""
         return standing.stage not in (DONE, LEFT) and (
             self.clock() - self.last_sign(standing) >= self.study.limits.idle_hours * 3600
         )
 
     def last_sign(self, standing: Standing) -> float:
-        """When a person did something last."""
+        """Return when a person did something last."""
         return max([each.at for each in standing.events] or [self.joined_at(standing.person)])
 
     def code(self, person: str) -> str:
@@ -123,11 +123,11 @@ class Conduct:
         return salted(self.ledger.secret("participants"), person)
 
     def joined_at(self, person: str) -> float:
-        """When a person joined."""
+        """Return when a person joined."""
         return next(each.at for each in self.ledger.read(PLACES) if each.data["person"] == person)
 
     def standing(self, person: str) -> Standing:
-        """Where a person is.
+        """Return where a person is.
 
         Raises:
             HearthError: UNKNOWN_ID: nobody of this id takes part.
@@ -253,7 +253,7 @@ def _wrong(stage: str, expected: str) -> HearthError:
 
 
 def stage_of(study: Study, slot: Sequence[Planned], events: Sequence[Event]) -> tuple[str, int]:
-    """Where the events of a person lead: a stage, and the number of a trial or practice trial."""
+    """Return where the events of a person lead: a stage, and the number of a trial or practice trial."""
     kinds = [each.kind for each in events]
     done, practised = kinds.count("did"), kinds.count("practised")
     if kinds and kinds[-1] in ("left", "finished"):

@@ -87,7 +87,7 @@ class MemoryLedger:
         return list(self.events.get(stream, ()))
 
     def _next(self, event: Event) -> bool:
-        """Whether an event is the next of its stream."""
+        """Return whether an event is the next of its stream."""
         return event.number == len(self.events.get(event.stream, ()))
 
     def append(self, event: Event) -> bool:

@@ -56,7 +56,7 @@ class Shoot:
 
 
 def film_path(folder: Path, film: JudgedFilm, shown: str = FILM) -> Path:
-    """Where a film, or a replay, of a study's folder is."""
+    """Return where a film, or a replay, of a study's folder is."""
     place, ending = FOLDERS[shown]
     return inside(folder, f"{place}/{film.name}{ending}")
 
@@ -67,7 +67,7 @@ def shoot(job: Shoot) -> Path:
     Raises:
         HearthError: NOT_RENDERED: its program does not run; MISSING_FILE: libraries for pictures are not installed.
     """
-    from hearth.rendering.scene.with_geometry import with_geometry
+    from hearth.rendering.scene.home_geometry import with_geometry
 
     path = film_path(job.folder, job.film, job.shown)
     if path.exists():
@@ -84,7 +84,7 @@ def shoot(job: Shoot) -> Path:
 
 def _write_replay(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: Path) -> None:
     """What the browser's player reads: `home`, the shapes of the home, and `run`, what differs from it tick by tick."""
-    from hearth.rendering.film.replay import home_shapes, run_shapes
+    from hearth.rendering.film.replay_3d import home_shapes, run_shapes
 
     library("trimesh")
     write_json(path, {"home": home_shapes(place, known), "run": run_shapes(_execution(job, known), place, known)})
@@ -93,7 +93,7 @@ def _write_replay(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: P
 def _record(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: Path) -> None:
     from hearth.rendering.film.snapshots import AUTO, trajectory_of
     from hearth.rendering.film.video import record
-    from hearth.rendering.scene.variation import PLAIN
+    from hearth.rendering.scene.film_variation import PLAIN
 
     variation = replace(PLAIN, seed=job.seed, speed=QUICK[job.task is not None])
     trajectory = trajectory_of(_execution(job, known), place, known, variation=variation)

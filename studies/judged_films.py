@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Record
 from hearth.challenges.result_files import episode_data, episode_of
 from hearth.schemas.diagnostics import HearthError

@@ -16,7 +16,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
 from hearth.schemas.rng import derive, rng
 from hearth.schemas.syntax import parse_program, print_lines
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.metrics.lcs import score
 from hearth.scoring.predictions import read_pairs
 from hearth.simulation.engine import Execution

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hearth.agents.demonstrations import agreement
-from hearth.challenges.definition import challenge
+from hearth.agents.demonstration_goals import agreement
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Known, played
 from hearth.challenges.result_files import episode_data
 from hearth.schemas.diagnostics import HearthError

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any
 
-from hearth.agents.faults import Faults, Faulty
+from hearth.agents.human_faults import Faults, Faulty
 from hearth.schemas.rng import rng
 from hearth.studies.study import Question
 
@@ -91,5 +91,8 @@ def rated(question: Question, impression: float, bias: float, chooser: Random) -
 
 
 def likeness(lengths: Mapping[str, float], film: str) -> float:
-    """How good a film looks among those of its task: the shortest length's share of its own, a little below perfect."""
+    """Return how good a film looks among those of its task.
+
+    The shortest length's share of its own, a little below perfect.
+    """
     return 0.85 * min(lengths.values()) / max(lengths[film], 1.0)

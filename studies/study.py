@@ -82,7 +82,8 @@ class Condition:
     Attributes:
         name: in tables.
         title: in reports.
-        helper, goal: who helps, and what it is asked to do (see `challenges.lineup.Lineup`); nobody where `none`.
+        helper, goal: who helps, and what it is asked to do (see `challenges.episode_agents.Lineup`); nobody where
+            `none`.
         actor: whose episodes films show: `person` or `agent`; "" where people play.
     """
 
@@ -94,7 +95,7 @@ class Condition:
 
     @property
     def helped(self) -> bool:
-        """Whether there is a helper."""
+        """Return whether there is a helper."""
         return self.helper != "none"
 
 
@@ -122,7 +123,7 @@ class Band:
     high: float
 
     def holds(self, lcs: float) -> bool:
-        """Whether a program's score is in the band."""
+        """Return whether a program's score is in the band."""
         return self.low <= lcs < self.high or lcs == self.high == 1
 
 

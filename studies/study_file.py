@@ -10,10 +10,10 @@ from typing import Any
 
 from hearth.agents.agent_registry import HELPERS
 from hearth.agents.human_like import HumanLike
-from hearth.challenges.definition import challenge
-from hearth.challenges.lineup import NOBODY, Lineup
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.published_tasks import tasks as published
-from hearth.schemas import located
+from hearth.schemas import located_yaml
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -50,8 +50,8 @@ MOST_PEOPLE, MOST_TRIALS = 5_000, 100_000
 
 name = reads("a name of letters, digits, - and _", lambda it: isinstance(it, str) and _NAME.fullmatch(it), then=str)
 text = reads("a text of 1 to 20,000 characters", lambda it: isinstance(it, str) and 0 < len(it) <= 20_000, then=str)
-hours = reads("a number above 0", lambda it: isinstance(it, located.Number) and 0 < it < 10_000, then=float)
-share = reads("a number from 0 to 1", lambda it: isinstance(it, located.Number) and 0 <= it <= 1, then=float)
+hours = reads("a number above 0", lambda it: isinstance(it, located_yaml.Number) and 0 < it < 10_000, then=float)
+share = reads("a number from 0 to 1", lambda it: isinstance(it, located_yaml.Number) and 0 <= it <= 1, then=float)
 yes = reads("true or false", lambda it: isinstance(it, bool))
 
 
@@ -59,7 +59,7 @@ def whole(low: int, high: int) -> ReadValue:
     """A reader of whole numbers between two."""
     return reads(
         f"a whole number from {low} to {high:,}",
-        lambda it: isinstance(it, located.Number) and float(it).is_integer() and low <= it <= high,
+        lambda it: isinstance(it, located_yaml.Number) and float(it).is_integer() and low <= it <= high,
         then=int,
     )
 
@@ -114,7 +114,7 @@ def study_of(content: str, file: str, begun: bool = False) -> Study:
 
     One that has `begun` is read whatever its helpers could do, so that what was collected stays to be had.
     """
-    tree = located.read(content, file)
+    tree = located_yaml.read(content, file)
     faults = Faults(file)
     top = fields(tree, STUDY_KEYS, "a study", faults, NEEDED)
     found = _study(top, tree, faults, content)
@@ -176,16 +176,16 @@ def _films(entry: Any, faults: Faults) -> Films:
         band = fields(each, BAND_KEYS, "a band", faults, ("name", "title", "from", "to"))
         if len(band) == len(BAND_KEYS):
             if band["from"] >= band["to"]:
-                faults.add(Code.BAD_ARGUMENT, "the band is empty", located.line_of(each), "`from` is below `to`")
+                faults.add(Code.BAD_ARGUMENT, "the band is empty", located_yaml.line_of(each), "`from` is below `to`")
             bands.append(Band(band["name"], band["title"], band["from"], band["to"]))
-    if isinstance(entry, located.Mapping) and not (bands and "each" in found):
+    if isinstance(entry, located_yaml.Mapping) and not (bands and "each" in found):
         faults.add(Code.SYNTAX, "`films` of programs need `bands` and `each`", entry.line, "each: 10")
     return Films(PROGRAMS, "", tuple(bands), found.get("each", 0), found.get("shown", FILM))
 
 
 def _condition(entry: Any, room: str, faults: Faults) -> Condition:
     found = fields(entry, CONDITION_KEYS, "a condition", faults, ("name", "title"))
-    line = located.line_of(entry)
+    line = located_yaml.line_of(entry)
     helper, goal = found.get("helper", NOBODY), found.get("goal", "")
     if room == JUDGE and (helper, goal) != (NOBODY, ""):
         faults.add(Code.BAD_ARGUMENT, "who judges films has no helper", line, "leave out `helper` and `goal`")
@@ -204,14 +204,14 @@ def _condition(entry: Any, room: str, faults: Faults) -> Condition:
 
 
 def reads_plans(helper: str) -> bool:
-    """Whether a helper is made for a partner that is a program, whose subgoal it reads."""
+    """Return whether a helper is made for a partner that is a program, whose subgoal it reads."""
     partner = HumanLike()
     return helper in HELPERS and getattr(HELPERS[helper].make(partner), "partner", None) is partner
 
 
 def _question(entry: Any, faults: Faults) -> Question:
     found = fields(entry, QUESTION_KEYS, "a question", faults, ("name", "text"))
-    line = located.line_of(entry)
+    line = located_yaml.line_of(entry)
     plain: dict[str, Any] = {key: found[key] for key in ("required", "after") if key in found}
     if "scale" in found and "choices" in found:
         faults.add(Code.SYNTAX, "a question has a scale or choices, not both", line, "leave one of them out")
@@ -231,7 +231,7 @@ def _scale(entry: Any, faults: Faults) -> dict[str, Any]:
     keys = {"from": whole(0, 100), "to": whole(1, 100), "labels": _mapping}
     found = fields(entry, keys, "a scale", faults, ("from", "to"))
     low, high = found.get("from", 1), found.get("to", 1)
-    line = located.line_of(entry)
+    line = located_yaml.line_of(entry)
     if {"from", "to"} <= found.keys() and low >= high:
         faults.add(Code.BAD_ARGUMENT, f"the scale from {low} to {high} is empty", line, "`from` is below `to`")
     labels = found.get("labels") or {}
@@ -242,13 +242,13 @@ def _scale(entry: Any, faults: Faults) -> dict[str, Any]:
 
 
 def _is_of_scale(key: str, low: int, high: int) -> bool:
-    """Whether a key is a number of a scale; other digits than 0 to 9, or thousands of them, are none."""
+    """Return whether a key is a number of a scale; other digits than 0 to 9, or thousands of them, are none."""
     number = number_of(key)
     return number is not None and low <= number <= high
 
 
 def _check_room(room: str, top: dict[str, Any], tasks: Any, films: Any, tree: Any, faults: Faults) -> None:
-    line = tree.at("room") if isinstance(tree, located.Mapping) else 0
+    line = tree.at("room") if isinstance(tree, located_yaml.Mapping) else 0
     if room == PLAY:
         if "tasks" not in top:
             faults.add(Code.SYNTAX, "people who play need `tasks`", line, "tasks: {challenge: wah, ...}")
@@ -294,11 +294,11 @@ def _check_helpers(study: Study, entries: Sequence[Any], faults: Faults) -> None
             Lineup(helper=condition.helper, goal=condition.goal).checked().fits(challenge(study.tasks.challenge))
         except HearthError as error:
             first = error.diagnostics[0]
-            faults.add(first.code, first.message, located.line_of(entry), first.suggestion)
+            faults.add(first.code, first.message, located_yaml.line_of(entry), first.suggestion)
 
 
 def groups_of(study: Study) -> int:
-    """How many kinds of tasks come in turn: the goal sets of a challenge, or the bands of programs."""
+    """Return how many kinds of tasks come in turn: the goal sets of a challenge, or the bands of programs."""
     if study.tasks is not None:
         return len(challenge(study.tasks.challenge).grammar.sets)
     return len(study.films.bands) if study.films else 1

@@ -191,7 +191,7 @@ def _comparisons(found: Findings) -> Iterator[Comparison]:
 
 
 def _correlations(found: Findings, films: list[JudgedFilm]) -> dict[str, tuple[float, float]]:
-    """How the ratings of programs go with their LCS."""
+    """Return how the ratings of programs go with their LCS."""
     if not (found.study.films and found.study.films.bands):
         return {}
     result = {}

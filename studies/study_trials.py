@@ -9,14 +9,14 @@ from typing import Any
 
 from hearth.agents.agent_registry import MainAgent
 from hearth.challenges import published_tasks
+from hearth.challenges.demonstration_episodes import Wish
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, Known, Record, again
-from hearth.challenges.lineup import Lineup
-from hearth.challenges.playing_demonstrations import Wish
 from hearth.challenges.result_files import episode_data, episode_of
 from hearth.challenges.suite_runs import INFERRED, helper_goal
 from hearth.challenges.task_files import Suite
 from hearth.challenges.tasks import Task
-from hearth.challenges.watching import Watched, infer
+from hearth.challenges.watch_stage import Watched, infer
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

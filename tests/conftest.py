@@ -21,7 +21,7 @@ settings.load_profile("hearth")
 ROOT = Path(__file__).resolve().parents[1]
 
 # `python -m pytest` puts the checkout first in the path, where `datasets` would hide the library of that name.
-OWN = [str(ROOT / "tests"), str(ROOT / "benchmarks")]
+OWN = [str(ROOT / folder) for folder in ("tests", "tests/trust", "benchmarks")]
 sys.path[:] = [*OWN, *(entry for entry in sys.path if Path(entry or ".").resolve() != ROOT)]
 pytest_plugins = ["builds"]
 sys.path.append(str(ROOT / "tests"))  # for `oracles`

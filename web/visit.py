@@ -125,7 +125,7 @@ class Visit:
 
 
 def by_browser(asked: Request) -> bool:
-    """Whether who asks takes a page; programs, which do not, get JSON."""
+    """Return whether who asks takes a page; programs, which do not, get JSON."""
     return "text/html" in asked.headers.get("accept", "")
 
 

@@ -28,7 +28,7 @@ class Wanted:
 
     @property
     def some(self) -> bool:
-        """Whether not all are wanted."""
+        """Return whether not all are wanted."""
         return bool(self.programs) or self.limit is not None
 
     def chosen(self) -> tuple[str, dict[str, Any]]:

@@ -16,7 +16,7 @@ from itertools import count
 
 from hearth.kb.formula import Effect, Term
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 from hearth.kb.tools.pddl import Names, Writer, dashed, option_predicate, options, unary_predicates
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS

@@ -59,7 +59,7 @@ class Task:
     rules: Rules = DEFAULT
 
     def reached(self, final: World) -> bool:
-        """Whether a world satisfies the goal."""
+        """Return whether a world satisfies the goal."""
         now = {edge for edge in final.edges() if edge.relation in WANTED}
         return all(final.has_state(node, state) is holds for node, state, holds in self.states) and all(
             (edge in now) is holds for edge, holds in self.edges

@@ -12,7 +12,7 @@ from hearth.datasets.format.croissant import SUMMARY
 from hearth.datasets.format.datasheet import datasheet
 from hearth.datasets.format.split_columns import PARTS
 from hearth.datasets.format.splits import LEFT_OUT
-from hearth.repair.strengths import MILD
+from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.storage.files import write_bytes
 from hearth.version import ACTION_SET, VERSION

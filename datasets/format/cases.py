@@ -15,8 +15,8 @@ from hearth.datasets.format.codecs import (
     program_of,
     tick_rows,
 )
+from hearth.grounding.environments.home_thinning import without
 from hearth.grounding.environments.sampling import Environment
-from hearth.grounding.environments.thinning import without
 from hearth.schemas.change import Change, State
 from hearth.schemas.graph import Edge
 from hearth.schemas.row_types import DifferenceRow

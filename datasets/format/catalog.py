@@ -75,7 +75,7 @@ def _reading(table: str, root: str = "") -> str:
 
 @cache
 def earlier(format: int) -> dict[str, Any]:
-    """How tables of a format differ from today's, by table: see `earlier.yaml`."""
+    """Return how tables of a format differ from today's, by table: see `earlier.yaml`."""
     if format >= FORMAT:
         return {}
     return dict(packaged("hearth.datasets.format", "earlier.yaml")[format])

@@ -7,7 +7,7 @@ from typing import Any
 import pyarrow as pa
 
 from hearth.datasets.format.datasheet import datasheet
-from hearth.repair.strengths import MILD
+from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.program import MOST_OBJECTS
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of
 from hearth.schemas.yaml_extent import packaged

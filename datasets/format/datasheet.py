@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from hearth.datasets.format.ids import OURS
-from hearth.repair.strengths import MILD, strength
+from hearth.repair.perturbation_strengths import MILD, strength
 from hearth.schemas.yaml_extent import packaged
 
 STRENGTH = "strength"

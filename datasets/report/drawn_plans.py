@@ -82,8 +82,8 @@ _LONGEST, _LETTER, _LEGIBLE = 0.24, 0.56, 0.085
 
 
 def _furniture_names(nodes: tuple[Node, ...]) -> Iterator[str]:
-    """The names of furniture in which they fit, along its longer side, over what stands there as in `homes/drawing.py`;
-    those of mats where nothing stands on them.
+    """The names of furniture in which they fit, along its longer side, over what stands there as in
+    `homes/floor_plan_drawing.py`; those of mats where nothing stands on them.
     """
     drawn = list(_furniture(nodes))
     taken = [_room_name(node, node.box) for node in nodes if node.category == "Rooms" and node.box]

@@ -65,7 +65,7 @@ def write_replays(dataset: Dataset, to: Path, most: int) -> dict[str, tuple[int,
 def _written(
     dataset: Dataset, homes: StoredHomes, case: Mapping[str, object], new: bool
 ) -> Iterator[tuple[str, object]]:
-    from hearth.rendering.film.replay import home_shapes, run_shapes
+    from hearth.rendering.film.replay_3d import home_shapes, run_shapes
 
     home = dataset.home(str(case["home"]))
     yield "replay", run_shapes(rerun(case, homes), home, dataset.knowledge)  # type: ignore[arg-type]

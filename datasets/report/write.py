@@ -17,7 +17,7 @@ from hearth.datasets.report.drawn_plans import plans
 from hearth.datasets.report.figures import figures
 from hearth.datasets.report.replays import write_replays
 from hearth.datasets.report.stories import DRAWN, Stories
-from hearth.repair.strengths import MILD
+from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row

@@ -183,7 +183,7 @@ def page() -> str:
         "",
         *whole(),
         *memory(),
-        "`python benchmarks/scale.py`, `scale_checks.py` and `challenge_scale.py` print seconds, memory and bytes of",
-        "whole runs of any size.",
+        "`python benchmarks/build_scale.py`, `scale_checks.py` and `challenge_scale.py` print seconds, memory and",
+        "bytes of whole runs of any size.",
     ]
     return "\n".join(lines) + "\n"

@@ -16,7 +16,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
-    "pipelines", "models", "agents", "challenges", "analysis", "studies", "web",
+    "pipelines", "models", "agents", "envs", "challenges", "interop", "analysis", "studies", "web",
 )  # fmt: skip
 
 ENTRY_POINTS = {
@@ -31,11 +31,11 @@ ENTRY_POINTS = {
     "Programs in a home": ("hearth:parse_program", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit"),
     "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
     "Environments of learning libraries": (
-        "hearth.challenges.single:HomeEnv", "hearth.challenges.parallel:ParallelHome",
+        "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
     "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth:read_goal", "hearth.simulation.explain:checks"),
     "Environments and variants": (
-        "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.loop:repair", "hearth:sketch",
+        "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.repair_loop:repair", "hearth:sketch",
     ),
     "Pictures": ("hearth:render", "hearth:record"),
     "Scores": (
@@ -319,9 +319,6 @@ COPIED = {
 }
 """Documents of the checkout that are pages, too."""
 
-FOR_ALL = ("data_raw/homes/README.md", "kb/README.md")
-"""Those of them whose readers may have no checkout: `hearth` is the command that all have."""
-
 ELSEWHERE = {"docs/examples": "examples/own-corpus.md", "NOTICE": "about/notice.md", "LICENSE": "about/notice.md"}
 """What documents link to and the documentation has elsewhere."""
 
@@ -335,8 +332,7 @@ def copied(file: str) -> str:
         found = known.get(match[1], match[1].removeprefix("docs/"))
         return f"]({os.path.relpath(found, place)})"
 
-    text = re.sub(r"\]\(((?:docs/|data_raw/|kb/|[A-Z]+)[^)#\s]*)\)", moved, (ROOT / file).read_text("utf-8"))
-    return text.replace("python cli.py", "hearth") if file in FOR_ALL else text
+    return re.sub(r"\]\(((?:docs/|data_raw/|kb/|[A-Z]+)[^)#\s]*)\)", moved, (ROOT / file).read_text("utf-8"))
 
 
 def cost() -> str:

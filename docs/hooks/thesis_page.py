@@ -27,7 +27,7 @@ SOURCE = ROOT / "docs/thesis.yaml"
 PAGE = ROOT / "docs/thesis.md"
 
 STATES = {
-    "measured": "numbers beside ours",
+    "measured": "numbers next to ours",
     "made": "a command makes ours",
     "part": "some of it",
     "missing": "not yet",
@@ -40,8 +40,8 @@ NONE = "not yet"
 ABOUT = """\
 # What the thesis says, what we measure
 
-Every table and figure of the thesis [*VirtualHome*](index.md#the-corpus-that-comes-with-it), and what Hearth has in its
-place. Each number of ours is what the command below it prints, measured on the day and at the commit beside it.
+Every table and figure of the thesis [*VirtualHome*](corpus.md), and its counterpart in Hearth. The command below each
+of our numbers prints it; the day and the commit of the measurement stand next to it.
 Our corpus, homes and engine differ from the thesis's, so a number that is equal is a sign, and no proof.
 
 `docs/thesis.yaml` has the numbers; `python docs/hooks/thesis_page.py "table 3.1"` measures an item again."""

@@ -7,7 +7,7 @@ from functools import cache, cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
-from hearth.grounding.environments.thinning import superfluous, without
+from hearth.grounding.environments.home_thinning import superfluous, without
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -24,7 +24,7 @@ WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
 
 
 class Spots(NamedTuple):
-    """Where things of a class belong in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
+    """Usual places of a class in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
 
     choices: tuple[tuple[str, int, str], ...]
     weights: tuple[int, ...]
@@ -91,7 +91,7 @@ class Base:
         return tuple(indices(self.home.instances(name)))
 
     def _kind(self, name: str) -> Kind:
-        """What a new node of a class is like."""
+        """Properties and states of a new node of a class."""
         thing = self.knowledge.object_class(name)
         properties = tuple(sorted(thing.properties)) if thing else ()
         category = thing.category if thing else "placable_objects"
@@ -113,7 +113,7 @@ class Base:
         return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
     def _spots(self, name: str) -> Spots:
-        """Where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
+        """Return where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
         return _weighted(self._places(name))
 
     @cached_property

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from hearth.grounding.binding import Binding, bind
 from hearth.grounding.environments.default_state import prepared
-from hearth.grounding.environments.for_goals import provide
-from hearth.grounding.environments.partial import PartialEnvironment
+from hearth.grounding.environments.goal_environments import provide
+from hearth.grounding.environments.partial_environment import PartialEnvironment
 from hearth.grounding.environments.sampling import TRIES, Environment, of_partial, unplaceable
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.conditions import Preconditions
@@ -30,7 +30,7 @@ def sample_together(
         program: instances as counters.
         home: any home; it is brought to its default state first.
         agents: how many characters take part.
-        seed: of what is added, and of the rooms that the characters stand in.
+        seed: of the added objects, and of the rooms that the characters stand in.
         rules: for the run.
 
     Returns:

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hearth.grounding.environments.condition_satisfaction import fulfil
 from hearth.grounding.environments.default_state import Base, prepared
-from hearth.grounding.environments.filling import fill
-from hearth.grounding.environments.partial import PartialEnvironment
-from hearth.grounding.environments.placing import bind, requirements_of
-from hearth.grounding.environments.satisfying import fulfil
+from hearth.grounding.environments.object_placement import bind, requirements_of
+from hearth.grounding.environments.partial_environment import PartialEnvironment
+from hearth.grounding.environments.random_objects import fill
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for
-from hearth.grounding.preconditions.checking import unmet, unmet_failure
+from hearth.grounding.preconditions.condition_checks import unmet, unmet_failure
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.infer import infer
-from hearth.schemas.brief import brief
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import CHARACTER, HANDS, Key
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
+from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.bits import indices
@@ -86,12 +86,12 @@ def of_partial(partial: PartialEnvironment, seed: int, program: Program, conditi
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How many nodes an environment should have.
+    """The number of nodes of an environment.
 
     Attributes:
         least, most: the number is drawn from between.
         some: how many random ones are added at most to a home that is larger.
-        thin: whether a larger home goes without some of what it has, instead.
+        thin: whether a larger home loses some of its nodes instead.
     """
 
     least: int = 280
@@ -204,7 +204,7 @@ def draw(
 
 
 def settle_character(partial: PartialEnvironment, program: Program, conditions: Preconditions) -> None:
-    """Where its conditions want the character, else in another room than the program starts in."""
+    """Return where its conditions want the character, else in another room than the program starts in."""
     base = partial.base
     home = base.home
     me = base.character

@@ -1,1 +1,1 @@
-"""What a program needs and what it achieves: conditions inferred, abduced, assumed, checked."""
+"""Needs and results of a program: conditions inferred, abduced, assumed, checked."""

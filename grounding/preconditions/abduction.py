@@ -97,8 +97,9 @@ def _had_not_left(context: StartContext) -> Iterator[Condition]:
 
 
 def anchors(context: StartContext) -> Iterator[Key]:
-    """What the character is CLOSE to at that moment, the last mentioned first: furniture, what hands could hold, what
-    they hold (for the place it was taken from), parts of the body, rooms.
+    """The nodes that the character is CLOSE to at that moment, the last mentioned first.
+
+    Furniture, portable objects, held objects (for the place of their origin), parts of the body, rooms.
     """
     world, agent = context.world, context.agent
     index = world.home.index
@@ -129,7 +130,7 @@ def _rank(context: StartContext, node: int) -> int:
 
 
 def _put_back_place(context: StartContext) -> Iterator[Condition]:
-    """Something to be put back where it came from stood, from the start, on or in what the character is now at."""
+    """An object to be put back stood, from the start, on or in the thing where the character is now."""
     step = context.program.steps[context.at]
     if step.action != "PutObjBack" or context.key() is not None:
         return
@@ -142,7 +143,7 @@ def _not_close(context: StartContext) -> Iterator[Condition]:
 
 
 def _facing(context: StartContext) -> Iterator[Condition]:
-    """What the character sits on, or has turned to, faces the object."""
+    """The character's seat, or the thing it has turned to, faces the object."""
     key = context.key()
     if key is None:
         return

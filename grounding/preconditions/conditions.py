@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from hearth.schemas.brief import brief
 from hearth.schemas.literals import Key, Literal
+from hearth.schemas.short_repr import brief
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Condition:
 
     @property
     def name(self) -> str:
-        """What must hold."""
+        """Conditions that must hold."""
         return self.literal.name
 
     @property
@@ -57,7 +57,7 @@ _IN_WORDS = {
     "together": "in the same room as", "other_room": "in another room than", "not_near": "out of reach of",
     "in_closed_container": "in something closed",
 }  # fmt: skip
-"""What a condition says of its object, where its name alone does not."""
+"""The part of a condition's meaning that its name alone does not give."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ class Preconditions:
         return len(self.conditions)
 
     def has(self, name: str, *objects: Key) -> bool:
-        """Whether a condition is among them."""
+        """Return whether a condition is among them."""
         wanted = Literal(name, objects)
         return any(c.literal == wanted for c in self.conditions)
 

@@ -124,7 +124,7 @@ def _edges(ids: dict[Key, int], rooms: dict[Key, int], conditions: Preconditions
 
 
 def _beside(ids: dict[Key, int], stands: dict[int, int], conditions: Preconditions) -> list[Edge]:
-    """What is at reach of a thing is at reach of what that thing stands on or in too."""
+    """A node within reach of a thing is also within reach of the thing's support or container."""
     places = dict(stands)
     places.update(
         {ids[c.objects[0]]: ids[c.objects[1]] for c in conditions if c.name in ("in", "inside") and c.objects[1] in ids}

@@ -19,7 +19,7 @@ Postconditions = tuple[Literal[Key], ...]
 
 
 def achieved(execution: Execution) -> Postconditions:
-    """What holds at the end of a run and did not at its start, of the program's objects and the characters.
+    """Facts that hold at the end of a run and did not at its start, about the program's objects and the characters.
 
     That a bottle is INSIDE the glass it was poured into counts only if it is put nowhere else. A room counts where it
     is the point: for a character, when the last walk was to that room itself; for a thing, when it lies in a room that
@@ -56,7 +56,7 @@ def missing(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> P
 
 
 def reached(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> bool:
-    """Whether every fact holds in a world."""
+    """Return whether every fact holds in a world."""
     return all(holds(fact, world, nodes) for fact in wanted)
 
 

@@ -1,4 +1,4 @@
-"""The release's own rules for preconditions, to be compared with what a program really needs.
+"""The release's own rules for preconditions, to be compared with a program's real needs.
 
 They read the program once, in order, and look at names only (facts worked out from the release; thesis 5.5.2).
 """
@@ -42,7 +42,7 @@ def by_rules(program: Program, knowledge: Knowledge) -> Preconditions:
 def compare(
     program: Program, ours: Preconditions, knowledge: Knowledge, rules: Rules = DEFAULT
 ) -> tuple[Compared, ...]:
-    """Each of the release's conditions beside ours: the same, or why it is not among them."""
+    """Each of the release's conditions with ours: the same, or the reason why it is not among them."""
     facts = {condition.literal for condition in ours}
     return tuple(
         Compared(condition, True) if condition.literal in facts else _tried(condition, program, ours, knowledge, rules)
@@ -95,7 +95,7 @@ def _states(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
 
 
 def _rest(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rules 3 and 6: who first gets up was sitting; what is taken off, and was not put on, is worn."""
+    """Rules 3 and 6: a character that first gets up was sitting; a garment first taken off is worn."""
     seated = False
     worn: set[Key] = set()
     for number, step in enumerate(program.steps):
@@ -134,7 +134,7 @@ def _places(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
 
 
 def _seat(seat: Key | None, step: Step, knowledge: Knowledge) -> Key | None:
-    """What the character sits or lies on after a step."""
+    """Return the character's seat or bed after a step."""
     if step.action in knowledge.group("rests"):
         return step.objects[0].key
     return None if step.action in knowledge.group("gets_up") else seat

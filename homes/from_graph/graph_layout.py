@@ -8,18 +8,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import sqrt
 
-from hearth.homes.from_graph import panels
-from hearth.homes.from_graph.arranging import Crowd, furnish
-from hearth.homes.from_graph.embedding import guessed
-from hearth.homes.from_graph.parts import Parts
-from hearth.homes.from_graph.rooms import RoomPair, packed
-from hearth.homes.from_graph.shown_relations import missed, unmet
+from hearth.homes.from_graph import room_panels
+from hearth.homes.from_graph.furniture_arrangement import Crowd, furnish
+from hearth.homes.from_graph.geometric_relations import missed, unmet
+from hearth.homes.from_graph.graph_places import Parts
+from hearth.homes.from_graph.room_embedding import guessed
+from hearth.homes.from_graph.room_rectangles import RoomPair, packed
 from hearth.homes.geometry import Rect
-from hearth.homes.plans import shell
+from hearth.homes.plans import home_shell
 from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.home_shell import Thing, outer_walls, shared_wall, span
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Plan, Room, Window
-from hearth.homes.plans.shell import Thing, outer_walls, shared_wall, span
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -32,7 +32,7 @@ LEAST_SIDE = 2.6
 SPACE = 2.4
 """Square metres of room for each square metre of furniture."""
 GOES = 2
-"""How often a home is furnished in a series, each time with what was learnt."""
+"""Number of times that a home is furnished in a series; each time uses the result of the one before."""
 ENLARGED = (1.0, 1.2, 1.45, 1.75, 2.1)
 """Factors by which a room's floor is enlarged until everything stands."""
 
@@ -74,7 +74,7 @@ def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> GraphLa
     return GraphLayout(new, layout, tuple(unmet(new, things, parts, crowd.squeezed)))
 
 
-def _large_enough(parts: Parts, name: str) -> tuple[Plan, shell.Shell]:
+def _large_enough(parts: Parts, name: str) -> tuple[Plan, home_shell.Shell]:
     """Rooms in which all furniture stands, or that are as large as they may be."""
     factors = dict.fromkeys(parts.rooms, 0)
     for _ in ENLARGED:
@@ -93,7 +93,7 @@ def _short(crowd: Crowd, plan: Plan) -> list[int]:
     return [room for room, found in zip(crowd.parts.rooms, plan.rooms, strict=True) if furnish(crowd, room, found)]
 
 
-def _cut_off(crowd: Crowd, plan: Plan, built: shell.Shell) -> list[int]:
+def _cut_off(crowd: Crowd, plan: Plan, built: home_shell.Shell) -> list[int]:
     """The room of each piece of furniture that nobody gets near."""
     numbers = {room.name: number for number, room in enumerate(plan.rooms)}
     floor = Layout(plan, built, (*built.things, *crowd.things.values())).floor
@@ -102,22 +102,22 @@ def _cut_off(crowd: Crowd, plan: Plan, built: shell.Shell) -> list[int]:
     return [plan.rooms[number].line for number, box in rooms if floor.distance(box, number) > REACH]
 
 
-def _arranged(parts: Parts, plan: Plan, built: shell.Shell) -> tuple[Crowd, dict[int, Thing]]:
+def _arranged(parts: Parts, plan: Plan, built: home_shell.Shell) -> tuple[Crowd, dict[int, Thing]]:
     """Everything in its place, the best of several goes: each knows where the one before has put things.
 
     The furniture decides which tile is where, and then the tiles where the furniture is. One series of goes begins with
     nothing known, the other with a guess.
     """
-    fixed, places = panels.rooms_and_doors(parts, plan, built), panels.slots(parts, plan, built)
+    fixed, places = room_panels.rooms_and_doors(parts, plan, built), room_panels.slots(parts, plan, built)
     guess = guessed(parts, plan, fixed)
     found: list[tuple[int, Crowd, dict[int, Thing]]] = []
-    for start in ({}, guess | panels.assigned(parts, places, guess | fixed, anew=True)):
+    for start in ({}, guess | room_panels.assigned(parts, places, guess | fixed, anew=True)):
         before: dict[int, Thing] = start
         for _ in range(GOES):
             crowd = Crowd(parts, built, before | fixed)
             lost = 1000 * len(_short(crowd, plan)) + 200 * len(_cut_off(crowd, plan, built))
             before = fixed | crowd.things
-            before |= panels.assigned(parts, places, before)
+            before |= room_panels.assigned(parts, places, before)
             found.append((lost + missed(parts, before), crowd, before))
     _, crowd, things = min(found, key=lambda go: go[0])
     return crowd, dict(things)
@@ -131,7 +131,7 @@ def _name(room: Node) -> str:
     return f"{room.class_name} ({room.id})"
 
 
-def _plan(parts: Parts, name: str, factors: Mapping[int, float]) -> tuple[Plan, shell.Shell]:
+def _plan(parts: Parts, name: str, factors: Mapping[int, float]) -> tuple[Plan, home_shell.Shell]:
     sizes = {}
     for room in parts.rooms:
         area = (SPACE * parts.area(room) + 4.0) * factors[room]
@@ -146,7 +146,7 @@ def _plan(parts: Parts, name: str, factors: Mapping[int, float]) -> tuple[Plan, 
         for r in parts.rooms
     )
     plan = Plan(name, rooms, doors, "Laid out from its relations.", HEIGHT)
-    return plan, shell.build(plan, Faults(name))
+    return plan, home_shell.build(plan, Faults(name))
 
 
 def _doorways(parts: Parts, rects: Mapping[int, Rect]) -> list[Doorway]:
@@ -175,7 +175,10 @@ def _ways_out(parts: Parts, rects: Mapping[int, Rect]) -> Iterator[Doorway]:
 
 
 def _windows(parts: Parts, room: int, rects: Mapping[int, Rect]) -> tuple[Window, ...]:
-    """As many as the graph has, in the middle of outer walls and then beside the middle; curtains as it has them."""
+    """Return as many windows as the graph has, in the middle of outer walls and then next to the middle.
+
+    Curtains as it has them.
+    """
     walls = outer_walls(rects[room], [rect for other, rect in rects.items() if other != room])
     if parts.of_class(room, "maindoor"):
         walls = walls[:-1]

@@ -8,8 +8,8 @@ import numpy as np
 
 from hearth.homes.geometry import Rect, bottom, footprint
 from hearth.homes.plans import raster
+from hearth.homes.plans.home_shell import WALL, Shell, Thing, interior, strip
 from hearth.homes.plans.plan import Plan
-from hearth.homes.plans.shell import WALL, Shell, Thing, interior, strip
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box
@@ -21,7 +21,7 @@ LONGEST = 500.0
 BODY = 0.2
 """Half the width of someone walking."""
 HEAD = 1.8
-"""What hangs higher is walked under."""
+"""Agents walk under objects that hang higher than this, metres."""
 REACH = 0.9
 """Metres from a thing's outline within which it can be handled."""
 
@@ -58,7 +58,7 @@ class Floor:
 
     @cached_property
     def main(self) -> np.ndarray:
-        """Bool, same shape: the largest region; who is elsewhere on the floor can't leave its pocket."""
+        """Return bool, same shape: the largest region; a character elsewhere on the floor can't leave its pocket."""
         numbered = self.regions()
         sizes = np.bincount(numbered.ravel())
         sizes[0] = 0
@@ -78,7 +78,7 @@ def gaps(points: np.ndarray, box: Box) -> np.ndarray:
 
 
 def stands_on_floor(thing: Thing) -> bool:
-    """Whether a thing is in the way of someone walking."""
+    """Return whether a thing is in the way of someone walking."""
     if thing.mount in ("shell", "flat", "door", "ceiling", "item", "sunk"):
         return False
     return bottom(thing.box) < HEAD and thing.class_name != "curtain" and (

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from hearth.homes.forms import Form, scaled
 from hearth.homes.geometry import (
     DIRECTIONS,
     OPPOSITE_WALL,
@@ -17,8 +16,9 @@ from hearth.homes.geometry import (
     turned,
     wall_of,
 )  # fmt: skip
+from hearth.homes.object_shapes import Form, scaled
+from hearth.homes.plans.home_shell import Thing, interior, span, strip
 from hearth.homes.plans.plan import Piece, Room
-from hearth.homes.plans.shell import Thing, interior, span, strip
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_fields import Faults
@@ -27,7 +27,7 @@ GAP = 0.03
 """Between furniture and the wall behind it: a socket fits in."""
 
 Standing = tuple[Rect, float]
-"""Where a thing stands, and the way it faces."""
+"""The position of a thing, and the direction that it faces."""
 
 
 class Placed(NamedTuple):
@@ -64,7 +64,7 @@ class Furnishing:
 
 
 class NoPlaceError(Exception):
-    """Why a piece cannot be placed as the plan says."""
+    """A reason why a piece cannot be placed as the plan says."""
 
 
 def furnish(room: Room, height: float, knowledge: Knowledge, faults: Faults) -> Furnishing:
@@ -143,7 +143,7 @@ def _yaw(piece: Piece, usual: float) -> float:
 
 
 def _target(piece: Piece, key: str, room: Furnishing, side: str) -> tuple[Thing, float]:
-    """What a piece refers to, and its yaw.
+    """Return the thing to which a piece refers, and its yaw.
 
     Raises:
         NoPlaceError: it is not there, or has no such side.
@@ -297,4 +297,4 @@ PLACERS: dict[str, Callable[[Piece, Form, Furnishing], list[Standing]]] = {
     "above": _above,
     "spot": _at_spot,
 }
-"""How each key of the plan places furniture."""
+"""Ways of placing furniture, by the key of the plan."""

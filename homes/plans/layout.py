@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from hearth.homes.forms import form
 from hearth.homes.geometry import EPSILON, Rect, box_over, facing_from, footprint
-from hearth.homes.plans import checks, raster, shell
-from hearth.homes.plans.entries import read_plan
+from hearth.homes.object_shapes import form
+from hearth.homes.plans import home_shell, plan_checks, raster
 from hearth.homes.plans.floor import CELL, Floor, grid
 from hearth.homes.plans.furniture import Furnishing, furnish
-from hearth.homes.plans.packing import contents
+from hearth.homes.plans.home_shell import Shell, Thing, interior, span, strip
+from hearth.homes.plans.object_packing import contents
 from hearth.homes.plans.plan import Plan, Room
-from hearth.homes.plans.shell import Shell, Thing, interior, span, strip
+from hearth.homes.plans.plan_entries import read_plan
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box
@@ -23,7 +23,7 @@ PERSON = (0.45, 1.7, 0.35)
 """Width, height and depth of a character."""
 SWITCH_FROM_DOOR = 0.12
 SEATS = frozenset({"chair", "stool", "bench", "high_chair"})
-"""What one eats from."""
+"""Classes of vessels from which people eat."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Layout:
     Attributes:
         plan: the plan.
         shell: its walls, tiles, openings.
-        things: all but rooms and the character: the shell's things, then the furniture with what is on and in it.
+        things: all but rooms and the character: the shell's things, then the furniture with the things on and in it.
     """
 
     plan: Plan
@@ -61,15 +61,15 @@ def read(text: str, file: str, knowledge: Knowledge) -> Layout:
     """A plan's text with everything in its place.
 
     Raises:
-        HearthError: every fault of the plan, each naming the thing, the file, the line and what would mend it.
+        HearthError: every fault of the plan, each naming the thing, the file, the line and the remedy.
     """
     faults = Faults(file)
     plan = read_plan(text, file, knowledge, faults)
-    checks.check_rooms(plan, faults)
+    plan_checks.check_rooms(plan, faults)
     if faults and not plan.rooms:
         raise HearthError(faults.underlined(text))
     layout = arrange(plan, knowledge, faults)
-    checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
+    plan_checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
     if faults:
         raise HearthError(faults.underlined(text))
     return layout
@@ -87,7 +87,7 @@ def arrange(
         known: rooms arranged before by their `id`, with their things, which are taken as they are; rooms without
             faults are added.
     """
-    built = shell.build(plan, faults)
+    built = home_shell.build(plan, faults)
     things = list(built.things)
     for room in plan.rooms:
         before = len(faults)
@@ -101,7 +101,7 @@ def arrange(
 
 
 def _furnished(plan: Plan, room: Room, built: Shell, knowledge: Knowledge, faults: Faults) -> Iterator[Thing]:
-    """A room's furniture with what is on and in it, and what every room has."""
+    """Return a room's furniture with the things on and in it, and the things that every room has."""
     furnished = furnish(room, plan.height, knowledge, faults)
     yield from _implied(plan, room, built, furnished, knowledge)
     seats = [placed.thing for placed in furnished.placed if placed.thing.class_name in SEATS]
@@ -137,7 +137,10 @@ def _shell(built: Shell, room: str, class_name: str) -> Iterator[Thing]:
 
 
 def _implied(plan: Plan, room: Room, built: Shell, furnished: Furnishing, knowledge: Knowledge) -> Iterator[Thing]:
-    """What every room has though the plan need not say so: a lamp at the ceiling and a switch beside a door."""
+    """Return the things that every room has even if the plan lists none.
+
+    A lamp at the ceiling and a switch next to a door.
+    """
     classes = {placed.thing.class_name for placed in furnished.placed}
     if not classes & {"ceilinglamp", "ceilingfan"}:
         known = form("ceilinglamp", knowledge)
@@ -152,7 +155,9 @@ def _implied(plan: Plan, room: Room, built: Shell, furnished: Furnishing, knowle
 
 
 def _switch(room: Room, built: Shell, knowledge: Knowledge) -> Thing | None:
-    """A light switch beside the room's first doorway, on the side the door does not hang at, where there is wall."""
+    """Return a light switch next to the room's first doorway, on the side opposite to the door's hinges, where there is
+    wall.
+    """
     known = form("light", knowledge)
     inner = interior(room)
     for opening in built.openings:
@@ -171,7 +176,7 @@ def _switch(room: Room, built: Shell, knowledge: Knowledge) -> Thing | None:
     return None
 
 
-def _pierced(built: Shell, beside: shell.Opening, start: float, end: float) -> bool:
+def _pierced(built: Shell, beside: home_shell.Opening, start: float, end: float) -> bool:
     return any(
         (o.room, o.wall) == (beside.room, beside.wall) and o is not beside and o.start < end and start < o.end
         for o in built.openings

@@ -1,31 +1,31 @@
-"""Where in a room a thing may stand: free of others, of what is used from its front, of doors and windows."""
+"""Free places of a room: clear of other things, of the fronts of things in use, and of doors and windows."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from hearth.homes.forms import Form
 from hearth.homes.geometry import Rect, bottom, facing_from, footprint, top
+from hearth.homes.object_shapes import Form
 from hearth.homes.plans.floor import HEAD
+from hearth.homes.plans.home_shell import Opening, Thing, before, interior, strip
 from hearth.homes.plans.plan import Room
-from hearth.homes.plans.shell import Opening, Thing, before, interior, strip
 
 Stand = tuple[Rect, float, float]
-"""Where a thing may stand: the floor under it, its yaw, its underside."""
+"""A possible place of a thing: the floor under it, its yaw, its underside."""
 TOUCH = 0.005
 """Things that meet by less than this do not."""
 LOW = 1.0
-"""What is lower stands in the way of using something."""
+"""Things lower than this obstruct the use of the thing behind them."""
 SILL = 0.3
 """Metres above a window's sill that furniture before it may reach."""
 
 
 class Obstacles:
-    """What stands in a room.
+    """The things that stand in a room.
 
     Args:
         room: the room.
-        solids: what stands there; nothing else may stand in it, nor before what is used from its front.
+        solids: the standing things; nothing else may stand in them, nor at the front of those used from the front.
         kept: floor that doors need.
         openings: of the room's walls.
     """
@@ -76,7 +76,7 @@ class Obstacles:
         return found
 
     def _deep(self, hole: Opening) -> Rect:
-        """The floor before what opens in a wall."""
+        """The floor in front of an opening in a wall."""
         return strip(self._inner, hole.wall, hole.start - 0.03, hole.end + 0.03, 0.25)
 
 

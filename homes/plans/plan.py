@@ -1,6 +1,6 @@
 """Floor plans as people write them in YAML (README of data_raw/homes), read into records.
 
-Single entries are checked here: names, keys, numbers. Entries together are checked in `checks`.
+Single entries are checked here: names, keys, numbers. Entries together are checked in `plan_checks`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Window:
         at: where it begins, from the wall's west or south end; None: in the middle.
         width, height: of the glass, metres.
         sill: the height it begins at.
-        curtains: how many curtains hang beside it.
+        curtains: how many curtains hang at it.
         line: in the plan.
     """
 
@@ -38,13 +38,13 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """One entry of furniture or of what stands on and in it.
+    """One entry of furniture, or of a thing on or in it.
 
     Attributes:
         class_name: of the knowledge.
         name: what other entries call it.
         count: how many there are.
-        place: how it is placed: key -> value, as `entries.PLACE_KEYS` reads them.
+        place: how it is placed: key -> value, as `plan_entries.PLACE_KEYS` reads them.
         size: width, height and depth as far as the plan says so.
         on, inside: what stands on it and in it.
         lay: the table setting of each seat.
@@ -68,7 +68,7 @@ class Piece:
         return replace(self, on=change(self.on), inside=change(self.inside), lay=change(self.lay))
 
     def has(self, key: str) -> bool:
-        """Whether the plan places it by that key."""
+        """Return whether the plan places it by that key."""
         return key in self.place
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hearth.homes.geometry import OPPOSITE_WALL, Rect, along_x, footprint, front_of
-from hearth.homes.plans.shell import Thing, band, span
+from hearth.homes.plans.home_shell import Thing, band, span
 
 AT_TABLE = 0.35
 """A chair no further than this from a table's edge stands at it."""
@@ -13,7 +13,10 @@ BETWEEN = 0.025
 
 
 class Place(NamedTuple):
-    """Where somebody eats: the table, the side of it before a seat, and where along that side the seat's middle is."""
+    """A place at a table.
+
+    The table, the side of it in front of a seat, and the position of the seat's middle along that side.
+    """
 
     table: Rect
     side: str
@@ -36,7 +39,7 @@ def places(table: Thing, seats: Sequence[Thing]) -> list[Place]:
 
 
 def setting(place: Place, sizes: Sequence[tuple[float, float]]) -> list[Rect]:
-    """Where the things of one setting lie, given their (width, depth) as the person sees them.
+    """Return where the things of one setting lie, given their (width, depth) as the person sees them.
 
     The first lies before the person, the second to its left, the third to its right, the others beyond, from right to
     left.
@@ -54,7 +57,7 @@ def setting(place: Place, sizes: Sequence[tuple[float, float]]) -> list[Rect]:
         else:
             across, out = beyond - width, EDGE + first_depth + BETWEEN
             beyond -= width + BETWEEN
-        # Who sits at the north or the east side has the west or the south on the right.
+        # A person at the north or the east side has the west or the south on the right.
         start = place.along + across if place.side in ("south", "east") else place.along - across - width
         found.append(band(place.table, place.side, start, start + width, out, out + depth))
     return found

@@ -9,14 +9,14 @@ from random import Random
 from typing import Any
 
 from hearth.homes.geometry import DIRECTIONS, Rect, along_x, bottom, facing_from, footprint, front_of, wall_of
-from hearth.homes.plans.entries import PLACE_KEYS, SIZE_KEYS, read_piece
 from hearth.homes.plans.furniture import GAP, Furnishing, NoPlaceError, Placed, shape, stand, underside
+from hearth.homes.plans.home_shell import Opening, Shell, Thing, interior, span, strip
 from hearth.homes.plans.obstacles import Obstacles
 from hearth.homes.plans.plan import Piece, Room
-from hearth.homes.plans.shell import Opening, Shell, Thing, interior, span, strip
-from hearth.homes.procedural.stocking import stock
+from hearth.homes.plans.plan_entries import PLACE_KEYS, SIZE_KEYS, read_piece
+from hearth.homes.procedural.furniture_contents import stock
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas import located
+from hearth.schemas import located_yaml
 from hearth.schemas.yaml_fields import Faults
 
 TRIES = 8
@@ -24,7 +24,7 @@ TRIES = 8
 RUN = frozenset({"dishwasher", "freezer", "fridge", "kitchen_counter", "oven", "stove"})
 """Classes that stand side by side in a kitchen."""
 EDGE = 0.03
-"""Metres between a room's corner and what stands in it."""
+"""Distance between a room's corner and the furniture in it, metres."""
 OWN_KEYS = frozenset({"chance", "needed", "run", "with", "then", "more_on", "more_in", "within"})
 """Keys of furnishing.yaml that a plan's entry has not."""
 BED = "bed"
@@ -32,7 +32,7 @@ BED = "bed"
 
 
 class UnfurnishableError(Exception):
-    """A room has no place for what it needs."""
+    """A room has no place for a thing that it needs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Suite:
     obstacles: Obstacles | None = None
 
     def in_the_way(self, user: Thing | None) -> Obstacles:
-        """What stands there; where the user is used from is free: a chair stands before its desk."""
+        """Return the standing things; the place of the user is free: a chair stands in front of its desk."""
         if self.obstacles is None or user is not None:
             solids = [replace(t, front=0.0) if t is user else t for _, t in self.furnishing.placed if t.mount != "flat"]
             found = Obstacles(self.furnishing.room, solids, self.doors, self.openings)
@@ -80,7 +80,7 @@ class Suite:
 
 
 def furnish(room: Room, height: float, shell: Shell, knowledge: Knowledge, rng: Random) -> tuple[Piece, ...]:
-    """A room's furniture with what stands on and in it, as entries of a plan.
+    """Return a room's furniture with the things on and in it, as entries of a plan.
 
     Raises:
         UnfurnishableError: something that such a room needs found no place.
@@ -97,10 +97,10 @@ def furnish(room: Room, height: float, shell: Shell, knowledge: Knowledge, rng: 
 
 @lru_cache(maxsize=1)
 def recipes() -> Mapping[str, Sequence[Recipe]]:
-    """What each class of room holds."""
+    """Furniture of each class of room."""
     text = (files("hearth.data_raw") / "furnishing.yaml").read_text(encoding="utf-8")
     # Not by yaml.load: to it, the key `on` is the truth value.
-    found: Mapping[str, Sequence[Any]] = located.read(text, "furnishing.yaml")
+    found: Mapping[str, Sequence[Any]] = located_yaml.read(text, "furnishing.yaml")
     return {room: [_recipe(entry) for entry in entries] for room, entries in found.items()}
 
 
@@ -144,8 +144,8 @@ def _done(suite: Suite, recipe: Recipe) -> bool:
 def _piece(suite: Suite, recipe: Recipe) -> Piece:
     """A recipe's entry with everything drawn, stocked by the knowledge."""
     keys = {key: _drawn(value, suite.rng, key in SIZE_KEYS) for key, value in recipe.fields.items()}
-    entry = located.Mapping(0)
-    entry[_drawn(recipe.text, suite.rng)] = located.Mapping(0)
+    entry = located_yaml.Mapping(0)
+    entry[_drawn(recipe.text, suite.rng)] = located_yaml.Mapping(0)
     next(iter(entry.values())).update(keys)
     piece = read_piece(entry, suite.furnishing.knowledge)
     place = {key: _drawn(value, suite.rng, True) if key == "gap" else value for key, value in recipe.place.items()}
@@ -157,18 +157,18 @@ def _drawn(value: Any, rng: Random, metres: bool = False) -> Any:
     """A value as in a plan: one of `a|b`, a number of `cup*1-3`, metres between two; what is drawn 0 times is gone."""
     if isinstance(value, list):
         if metres:
-            return located.Number(round(rng.uniform(*value), 2))
+            return located_yaml.Number(round(rng.uniform(*value), 2))
         drawn = (_drawn(item, rng) for item in value)
-        return located.Sequence(item for item in drawn if not str(item).endswith("*0"))
+        return located_yaml.Sequence(item for item in drawn if not str(item).endswith("*0"))
     if isinstance(value, Mapping):
-        found = located.Mapping(0)
+        found = located_yaml.Mapping(0)
         found.update((_drawn(key, rng), _drawn(item, rng, key in SIZE_KEYS)) for key, item in value.items())
         return found
     if not isinstance(value, str):
         return value
     one = rng.choice(value.split("|"))
     if metres:
-        return located.Number(one)
+        return located_yaml.Number(one)
     text, _, amount = one.partition("*")
     least, _, most = amount.partition("-")
     return f"{text}*{rng.randint(int(least), int(most))}" if most else one
@@ -178,7 +178,7 @@ def _drawn(value: Any, rng: Random, metres: bool = False) -> Any:
 
 
 def _anywhere(suite: Suite, piece: Piece, run: bool) -> Iterator[Piece]:
-    """The piece at the places to be tried: its own, else beside others of a run, else along the walls."""
+    """Yield the piece at its candidate places: its own, else next to others of a run, else along the walls."""
     rng, inner = suite.rng, suite.furnishing.inner
     if piece.place.get("spot") == "free":
         for _ in range(2 * TRIES):
@@ -195,7 +195,7 @@ def _anywhere(suite: Suite, piece: Piece, run: bool) -> Iterator[Piece]:
 
 
 def _in_a_run(suite: Suite, piece: Piece) -> Iterator[Mapping[str, Any]]:
-    """Directly beside what stands at a wall already, on both its sides."""
+    """Yield places directly next to the things at a wall, on both their sides."""
     width = shape(piece, suite.furnishing.knowledge).size[0]
     for other, thing in reversed(suite.furnishing.placed):
         if other.class_name in RUN:
@@ -205,7 +205,7 @@ def _in_a_run(suite: Suite, piece: Piece) -> Iterator[Mapping[str, Any]]:
 
 
 def _along_walls(suite: Suite, piece: Piece) -> Iterator[Mapping[str, Any]]:
-    """What is free at both ends of each wall first, as people do, then between."""
+    """Yield the free ends of each wall first, as people furnish rooms, then the places between."""
     rng, room = suite.rng, suite.furnishing
     form = shape(piece, room.knowledge)
     low, (width, _, depth) = underside(piece, form, room), form.size
@@ -238,7 +238,7 @@ def _put(suite: Suite, pieces: Sequence[Piece]) -> bool:
 
 
 def _ways(suite: Suite, piece: Piece) -> Iterator[Piece]:
-    """The piece on either side, where any will do; before what it looks at, where the wall opposite is too far."""
+    """Yield the piece on either side, where any will do; in front of its target, where the wall opposite is too far."""
     place = dict(piece.place)
     if place.get("side") == "any" and (other := suite.furnishing.find(place["beside"])):
         along = along_x(wall_of(other.yaw or 0.0))

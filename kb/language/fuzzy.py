@@ -4,7 +4,7 @@ from enum import StrEnum
 
 
 class Fuzzy(StrEnum):
-    """How far a sentence may be from one that is known.
+    """The accepted distance of a sentence from a known one.
 
     Attributes:
         OFF: not at all: templates, synonyms, inflections and usual phrasings; nothing is left out or corrected.

@@ -48,7 +48,7 @@ _WORD = re.compile(r"[A-Za-z]+")
 
 
 def verb_phrase(sentence: str) -> str:
-    """Return a sentence from its verb on: without subject, duty, tense, courtesy and what orders it among others.
+    """Return a sentence from its verb on: without subject, duty, tense, courtesy and words of order.
 
     `Then you should open the fridge, please!` is `open the fridge`. A possibility ("you can open it") is not a duty.
     """

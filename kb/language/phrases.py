@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 
 Parse = tuple[Action, tuple[str, ...]]
 """An action with the names of its objects, as the sentence has them."""

@@ -1,4 +1,4 @@
-"""Phrasings: usual ways of asking for a step, beside the synonyms of actions, and the words that actions know."""
+"""Phrasings: usual ways of asking for a step, in addition to the synonyms of actions, and the words of actions."""
 
 import re
 from collections.abc import Iterator
@@ -81,7 +81,7 @@ _PHRASINGS = _by_verb()
 _ALIVE = ("animal", "person")
 _RISING = ("get", "stand", "rise")
 _INTO = re.compile(r"(?:back )?(?:in)?to (.+)")
-"""What has wheels goes so."""
+"""Objects on wheels move in this way."""
 
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE = "SURFACES"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from hearth.schemas.blocks import TITLE, is_sentence
+from hearth.schemas.program_blocks import TITLE, is_sentence
 
 _COUNTED = (
     ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"],
@@ -34,7 +34,7 @@ _MARKER = re.compile(
     rf"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|{_TIME}(?:\s*[–—-]\s*{_TIME})?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])|@[\w-]+[:,]?\s+(?=[a-z])",
     re.IGNORECASE,
 )
-"""What stands before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
+"""Marks before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
 
 _HTML = re.compile(
     r"\s*</?(?:ol|ul|li|p|div|h[1-6]|b|i|strong|em|br|html|body|span|title|head|meta|!doctype)\b[^<>]*>", re.IGNORECASE
@@ -80,13 +80,13 @@ META = re.compile(
     r"|language|seed|explanation|reasoning)\s*:\s*\S",
     re.IGNORECASE,
 )
-"""What is said about a program, which is neither its title nor a step."""
+"""Remarks about a program, which are neither its title nor a step."""
 
 _INLINE = re.compile(r"(?:^|(?<=\s))(?:0[.)]\s+\S.*?\s1|1[.)]\s+\S.*?\s2)[.)]\s+\S")
 """The beginning of numbered steps on one line: `Plan: 1. walk to kitchen 2. open fridge`."""
 
 CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
-"""What joins the steps of a line: `walk to kitchen -> open fridge`."""
+"""Separators of the steps of a line: `walk to kitchen -> open fridge`."""
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
@@ -125,7 +125,7 @@ class PlanLine(NamedTuple):
 
     @property
     def bracketed(self) -> bool:
-        """Whether it is a step in the syntax of programs, `[Walk] <kitchen> (1)`."""
+        """Return whether it is a step in the syntax of programs, `[Walk] <kitchen> (1)`."""
         return self.number is not None and _BRACKETED.match(self.text) is not None
 
 
@@ -299,17 +299,17 @@ def is_answer(line: PlanLine) -> bool:
 
 
 def ordered(lines: Sequence[PlanLine]) -> bool:
-    """Whether a plan has numbered steps; its bullets then only explain them."""
+    """Return whether a plan has numbered steps; its bullets then only explain them."""
     return any(line.numbered for line in lines)
 
 
 def is_step(line: PlanLine, is_ordered: bool) -> bool:
-    """Whether a line is a step of its own in a plan that is numbered or not."""
+    """Return whether a line is a step of its own in a plan that is numbered or not."""
     return (line.numbered or line.bracketed) if is_ordered else line.number is not None
 
 
 def is_plan(lines: Sequence[str]) -> bool:
-    """Whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
+    """Return whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
     found = list(map(plan_line, lines))
     pairs = zip(found, lines, strict=True)
     written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and _BRACKETED.match(raw.strip())]

@@ -21,7 +21,7 @@ from hearth.kb.language.unmarked_lines import (
     is_title,
     sentences,
 )
-from hearth.schemas.blocks import is_sentence
+from hearth.schemas.program_blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
 _END = re.compile(
@@ -34,13 +34,13 @@ _MAY_END = re.compile(r"done|end|finish|complete", re.IGNORECASE)
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
 _SEVERAL = re.compile(r"[>→⟶➔➡;]|\d[.):\]]")
-"""What a line of several steps has in any case."""
+"""A mark that every line of several steps has."""
 
 _THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>\s*$", re.IGNORECASE)
 
 
 class Kind(StrEnum):
-    """What a line of a program is.
+    """The kind of a line of a program.
 
     A detail is a line that may explain the step above: an item below a step, or a line without a number. It is a step
     if it reads exactly as one, else a note. A missing step is a line between numbered ones that is not a sentence.
@@ -270,7 +270,7 @@ _LABEL = re.compile(
     r"(?:plan|steps|answer|actions?|action sequence|sequence|procedure|instructions|method|solution|program)\s*[:=]\s*",
     re.IGNORECASE,
 )
-"""What stands before the steps of a line, `Plan: walk to sofa; sit on sofa`."""
+"""Words before the steps of a line, `Plan: walk to sofa; sit on sofa`."""
 
 
 def _after_label(text: str) -> str:

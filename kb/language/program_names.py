@@ -48,7 +48,7 @@ def action_of(name: str, objects: Sequence[str], relation: str = "") -> str:
 
 
 def _put(known: Knowledge, place: str, relation: str) -> str:
-    """Return whether a thing is put in or on a place: in what is hollow and has no top, unless it says `on`."""
+    """Return whether a thing is put in or on a place: in a hollow place without a top, unless the name says `on`."""
     if relation.lower() in ("on", "onto", "ontop"):
         return "PutBack"
     name = place.replace("_", " ")

@@ -39,7 +39,7 @@ class Sentence(NamedTuple):
 def sentences_of(lines: Sequence[tuple[int, str]]) -> list[Sentence]:
     """Return the sentences of lines, each with its index in the text; those that run on are joined.
 
-    A robot or person that was spoken of is `it` in the next sentences: `it` is left out before what it does.
+    A robot or person that was mentioned is `it` in the next sentences: `it` is left out before its verb.
     """
     found: list[Sentence] = []
     is_about = False

@@ -25,7 +25,7 @@ _PLURAL = re.compile(r"\b[a-z]+es\b")
 _OBSERVED = re.compile(
     r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|notice|notices)\b", re.IGNORECASE
 )
-"""A sentence about what somebody sees asks for nothing."""
+"""A sentence about a person's observation asks for nothing."""
 
 _INSIDE = re.compile(r"((?:put|place|drop|set|lay|store)(?:s|ing|ped)?(?: back)? .+?)(?: back)? inside", re.IGNORECASE)
 _CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
@@ -60,7 +60,7 @@ class Asked(NamedTuple):
 
     @property
     def fuzzy(self) -> bool:
-        """Whether words were corrected or left out."""
+        """Return whether words were corrected or left out."""
         return self.meant.score < 1 or bool(self.left_out)
 
 
@@ -207,7 +207,7 @@ def _are_of_a_kind(known: Knowledge, one: str, other: str) -> bool:
 
 
 def _is_bare(known: Knowledge, words: str) -> bool:
-    """Whether words are a thing without the place where it is."""
+    """Return whether words are a thing without the place where it is."""
     return thing_of(known, _uncounted(words.split())) is not None and not _BETWEEN.search(words)
 
 

@@ -28,7 +28,7 @@ def thing_of(known: Knowledge, words: str) -> str | None:
     """Return the class that some words mean; None where they mean none.
 
     The thing may be in the plural, after an article or a possessive, and before the known place from which it is taken;
-    the door of what opens is the thing itself.
+    a thing that opens is also its door.
     """
     name = _named(known, words)
     if name is not None:

@@ -36,7 +36,7 @@ _ENDINGS = tuple(
 )
 _BEGINNING = re.compile(rf"(?:{_MANNER})\s+")
 _WAITING = re.compile(r"((?:wait|pause)(?:s|ed|ing|d)?) (?:until|till|for) .+")
-"""What one waits for may be left out, even where it is a condition."""
+"""The object of waiting may be left out, even where it is a condition."""
 
 _INSTEAD = " instead"
 """At the end of a step it says only that another one was thought of; `instead of` names the other."""
@@ -45,7 +45,7 @@ _WITH_IT = re.compile(
     r"((?:walk|go|run|move|head|return|come|take|bring|grab|carry|leave)(?:s|ing|ed)? .+?)"
     r"\s+(?:along )?(with (?:it|them|you|me))"
 )
-"""What is in the hands goes along, and what is taken is with one."""
+"""Held objects go along, and taken objects are with the character."""
 
 _ASLEEP = re.compile(r"((?:fall|falls|fell|falling) asleep|sleep|sleeps|slept|nap|naps) ((?:on|in|at) .+)")
 _POINTED = re.compile(r"(?:point|aim)(?:s|ing|ed)? (?!at |to )(.+) (?:at|to|towards?) (.+)")
@@ -74,7 +74,7 @@ def changes_act(text: str) -> bool:
 
 
 def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
-    """Yield what is left of a clause, and what is left out: an adverb, a duration, a purpose, a tool or an adjective.
+    """Yield the rest of a clause, and the part left out: an adverb, a duration, a purpose, a tool or an adjective.
 
     Args:
         known: the grammar.

@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge_records import Action
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.idioms import is_idiom
 from hearth.kb.language.lexicon import verb_lemmas
@@ -14,9 +15,8 @@ from hearth.kb.language.phrases import Parse, parses
 from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.things import thing_of
 from hearth.kb.language.typos import corrected, near_words
-from hearth.kb.records import Action
 from hearth.kb.spelling import key_of
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 
 ACCEPTED = 0.75
 """The similarity from which the nearest valid instruction is accepted as the meaning where `fuzzy` is loose."""

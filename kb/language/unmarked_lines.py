@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from hearth.kb.language.lexicon import is_noun, is_verb
-from hearth.schemas.blocks import is_sentence
+from hearth.schemas.program_blocks import is_sentence
 
 _SUBJECT = r"(?:i|you|he|she|we|they|the (?:robot|person|agent|character|man|woman|child|user))"
 _NO_MANNER = (
@@ -31,10 +31,10 @@ _NO_ACT = frozenset((
     "let", "thank", "sorry", "like", "enjoy", "it", "this", "that", "these", "those", "there", "here", "no", "not",
     "we",
 ))  # fmt: skip
-"""Beginnings of what explains, as `Make sure`, `Note`, `It is`, though some are verbs."""
+"""Beginnings of explanations, such as `Make sure`, `Note`, `It is`, though some are verbs."""
 
 _STRONG = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡|>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?then\s+", re.IGNORECASE)
-"""What joins steps of a line and nothing else."""
+"""Separators of steps in a line, and nothing else."""
 
 _WEAK = re.compile(r"\s*,\s*(?:and\s+)?(?:finally\s+)?|\s+and\s+(?:finally\s+)?", re.IGNORECASE)
 _SENTENCES = re.compile(r"(?<=[a-z)][.!])\s+(?=[A-Z])")

@@ -7,11 +7,11 @@ from typing import Any
 
 from hearth.kb.formula import TRUE, And, Effect, Formula, Term, parse_atom, parse_effect, parse_formula
 from hearth.kb.groups import DECLARED
+from hearth.kb.knowledge_records import Action, Condition, Consequence, Repair, Requirement
 from hearth.kb.loading.entry_shapes import LIST, NAMES, REASONS, TEXT, fits, parts
 from hearth.kb.loading.formula_checks import Derived, check_derived, check_literals
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed, yaml_entries
 from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
-from hearth.kb.records import Action, Condition, Consequence, Repair, Requirement
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 
@@ -195,7 +195,7 @@ MOST_EFFECTS = 1_000
 
 @dataclass(slots=True)
 class _Left:
-    """How many effects of an action may still be read."""
+    """The number of an action's effects that may still be read."""
 
     rows: int = MOST_EFFECTS
 

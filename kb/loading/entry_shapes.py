@@ -7,7 +7,7 @@ from hearth.kb.loading.source_files import Entry, Faults
 
 
 class Shape(NamedTuple):
-    """A test that a value passes, and what such a value is, in words."""
+    """A test that a value passes, and the name of such values in words."""
 
     fits: Callable[[Any], bool]
     meaning: str
@@ -53,7 +53,7 @@ SHOWN = 60
 
 
 def fits(value: Any, shape: Shape, name: str, at: Entry, faults: Faults) -> bool:
-    """Whether a value has a shape; else that is a fault."""
+    """Return whether a value has a shape; else that is a fault."""
     if shape.fits(value):
         return True
     text = str(value) if len(str(value)) <= SHOWN else f"{str(value)[:SHOWN]}..."

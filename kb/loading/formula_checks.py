@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 
 from hearth.kb.formula import GONE, OPTION, And, Count, Effect, Formula, Or, Term, free
+from hearth.kb.knowledge_records import Action
 from hearth.kb.loading.source_files import Entry, Faults
-from hearth.kb.records import Action
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE, RELATIONS
 
@@ -18,7 +18,8 @@ TERMS: Mapping[str, tuple[int, ...]] = {
     **dict.fromkeys(("affords", "is_room", OPTION), (1,)),
     "REMEMBERS": (1, 2),
 }
-"""How many terms relations and built-in predicates have; what remembers its place may leave open which it is."""
+"""Numbers of terms of relations and built-in predicates; a predicate that remembers its place may leave the place open.
+"""
 
 LIMITS = ("seat_limit", "bed_limit")
 """Numbers that are known of a thing."""
@@ -98,7 +99,7 @@ def _asked(formula: Formula) -> Iterator[Literal[Term]]:
 
 
 def _size(name: str, derived: Derived, sizes: dict[str, int], within: tuple[str, ...]) -> int:
-    """How many predicates a definition stands for; more than `MOST` where it follows from itself."""
+    """Return how many predicates a definition stands for; more than `MOST` where it follows from itself."""
     if name not in derived:
         return 1
     if name in within:

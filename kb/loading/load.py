@@ -7,6 +7,7 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 
 from hearth.kb.knowledge import Knowledge, grouped
+from hearth.kb.knowledge_records import Action, ObjectClass, Placement
 from hearth.kb.loading.actions import load_actions, load_derived, load_repairs
 from hearth.kb.loading.objects import (
     OBJECT_FILES,
@@ -19,7 +20,6 @@ from hearth.kb.loading.objects import (
 from hearth.kb.loading.process_rows import load_processes
 from hearth.kb.loading.small_tables import load_limits, load_rooms, load_tables
 from hearth.kb.loading.source_files import Faults, check_extent
-from hearth.kb.records import Action, ObjectClass, Placement
 from hearth.kb.spelling import key_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -3,10 +3,10 @@
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
+from hearth.kb.knowledge_records import EDGES, Association, Kind, ObjectClass, Placement, StateGroup
 from hearth.kb.loading.entry_shapes import NAMES, parts
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, csv_rows, cycles, yaml_entries
 from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
-from hearth.kb.records import EDGES, Association, Kind, ObjectClass, Placement, StateGroup
 from hearth.schemas.failures import Code
 
 OBJECT_FILES = (
@@ -164,7 +164,10 @@ def load_placements(layers: Layers, known: Container[str], faults: Faults) -> li
 def load_associations(
     layers: Layers, objects: Container[str], actions: Container[str], faults: Faults
 ) -> tuple[Association, ...]:
-    """What goes with what, and what serves which action. A row whose weight is 0 takes an earlier layer's away."""
+    """Classes that are used together, and classes that serve an action.
+
+    A row whose weight is 0 removes an earlier layer's.
+    """
     columns = ("name", "relation", "other", "weight", "evidence")
     result = []
     for entry in csv_rows(layers, ("associations.csv",), columns, (0, 1, 2), faults).values():

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 from itertools import permutations
 
 from hearth.kb.formula import GONE, TRUE, And, Effect, Formula, Term, free, parse_effect, parse_formula
+from hearth.kb.knowledge_records import Process, StateGroup
 from hearth.kb.loading.entry_shapes import LIST, TEXT, parts
 from hearth.kb.loading.formula_checks import Derived, check_effect, check_formula
 from hearth.kb.loading.layers import Layers, parsed, yaml_entries
 from hearth.kb.loading.source_files import Entry, Faults, strings
-from hearth.kb.records import Process, StateGroup
 from hearth.schemas.literals import Literal
 
 _KEYS = ("while", "after", "becomes", "seen")

@@ -13,7 +13,7 @@ _WHOLE = "an entry of yours replaces ours as a whole: copy ours, and change it"
 
 
 class Tables(NamedTuple):
-    """What `tables.yaml` has: see the attributes of these names of `Knowledge`."""
+    """The parts of `tables.yaml`: see the attributes of these names of `Knowledge`."""
 
     table_like: frozenset[str]
     default_states: Mapping[str, Mapping[str, tuple[str, ...]]]

@@ -1,1 +1,1 @@
-"""What one does with the knowledge: find, show, mine, compare, export."""
+"""Tools for the knowledge: find, show, mine, compare, export."""

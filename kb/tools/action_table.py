@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 
 
 def action_table(knowledge: Knowledge) -> str:

@@ -1,4 +1,4 @@
-"""Our knowledge against another's, fact by fact, with the reason beside every deliberate difference.
+"""Our knowledge against another's, fact by fact, with the reason for every deliberate difference.
 
 The other may be a directory of our own files, or of the release's five JSON files (properties_data, object_states,
 object_script_placing, class_name_equivalence, affordances), as many as there are.
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import load
-from hearth.kb.tools.reasons import FIELDS, Reasons, root_of
+from hearth.kb.tools.correction_reasons import FIELDS, Reasons, root_of
 from hearth.kb.tools.release_facts import Fact, is_release, read_release
 
 
@@ -33,12 +33,12 @@ class Difference(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What differs, and how much there is.
+    """The differences, and their number.
 
     Attributes:
         theirs: facts of the other, by table.
         held: how many of them we hold, by table.
-        differences: the rest, and what we add, in order.
+        differences: the rest, and our additions, in order.
         cells: for affordances, how many accepted cells of the other come `by rule` and `by exception`, by position.
     """
 
@@ -48,7 +48,7 @@ class Comparison:
     cells: Mapping[str, Mapping[str, int]]
 
     def count(self, table: str, kind: str, explained: bool) -> int:
-        """How many differences of a table are of a kind, with or without a reason."""
+        """Return how many differences of a table are of a kind, with or without a reason."""
         return sum(1 for d in self.differences if d.table == table and d.kind == kind and bool(d.why) == explained)
 
 
@@ -131,7 +131,7 @@ def _ours(knowledge: Knowledge, reasons: Reasons, table: str, fact: Fact) -> Fac
 
 
 def _cells(knowledge: Knowledge, accepted: Iterable[Fact]) -> dict[str, dict[str, int]]:
-    """How the other's accepted cells come about here: from properties, or from being listed one by one."""
+    """Return how the other's accepted cells come about here: from properties, or from being listed one by one."""
     counts: dict[str, dict[str, int]] = {}
     for action_name, position, class_name in accepted:
         action, thing = knowledge.action(action_name), knowledge.object_class(class_name)

@@ -4,16 +4,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import ObjectClass
-from hearth.schemas.brief import brief
+from hearth.kb.knowledge_records import ObjectClass
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import PROPERTIES
 
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """What is looked for; everything given must hold.
+    """A query; everything given must hold.
 
     Attributes:
         can: actions that take it as their first object.
@@ -64,7 +64,10 @@ def _places(query: Query) -> tuple[tuple[str, str], ...]:
 
 
 def _weights(knowledge: Knowledge, place: str, relation: str) -> dict[str, int]:
-    """What may stand in the relation to the place, and how usual that is; second names as their first ones."""
+    """Return the classes that may stand in the relation to the place, and how usual that is.
+
+    Second names as their first ones.
+    """
     own: dict[str, int] = {}
     for placement in knowledge.holds(place):
         if placement.relation == relation:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.tools.reasons import Reasons
+from hearth.kb.tools.correction_reasons import Reasons
 from hearth.schemas.row_types import Row
 
 if TYPE_CHECKING:
@@ -20,10 +20,10 @@ Edge = tuple[str, str, str, dict[str, Any]]
 def graph(knowledge: Knowledge) -> networkx.MultiDiGraph[str]:
     """Everything as a networkx MultiDiGraph.
 
-    Nodes are names: classes as they are, others with what they are in front (`action:Open`, `property:CAN_OPEN`,
-    `state:OPEN`, `kind:appliance`), each with a `type`. Edges have a `relation`: is_a, has, may_be, found_in,
-    ON, IN, NEARBY (weight, room, evidence), same_as, stands_in, goes_with, serves (weight, evidence), takes_1 and
-    takes_2 (an action its objects).
+    Nodes are names: classes as they are, others with their kind in front (`action:Open`, `property:CAN_OPEN`,
+    `state:OPEN`, `kind:appliance`), each with a `type`. Edges have a `relation`: is_a, has, may_be, found_in, ON, IN,
+    NEARBY (weight, room, evidence), same_as, stands_in, goes_with, serves (weight, evidence), takes_1 and takes_2 (an
+    action its objects).
     """
     import networkx
 

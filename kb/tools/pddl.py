@@ -13,12 +13,12 @@ from itertools import combinations
 
 from hearth.kb.formula import OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, Requirement
+from hearth.kb.knowledge_records import Action, Requirement
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS, STATES
 
 Names = Mapping[str, str]
-"""What each variable of a formula is called in PDDL."""
+"""Names of a formula's variables in PDDL."""
 
 LIMITS = ("seat_limit", "bed_limit")
 
@@ -60,7 +60,7 @@ def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> li
 
 
 def option_predicate(name: str) -> str:
-    """`made_bed` -> `option-made-bed`: a fact of a problem whose executions go by that rule."""
+    """`made_bed` -> `option-made-bed`: a fact of a problem whose executions use that rule."""
     return f"{OPTION}-{dashed(name)}"
 
 
@@ -284,7 +284,7 @@ _PLACES = """\
       (and (inside ?x ?p) (not (exists (?q) (and (on ?x ?q) (not (is-room ?q))))))
       (and (close ?x ?p) (not (exists (?q) (and (on ?x ?q) (not (is-room ?q)))))\
  (not (exists (?q) (and (inside ?x ?q) (not (is-room ?q)))))))))"""
-"""What the functions `room` and `place` find."""
+"""Results of the functions `room` and `place`."""
 
 
 class _AxiomWriter(Writer):

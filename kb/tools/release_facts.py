@@ -15,7 +15,7 @@ Fact = tuple[str, ...]
 
 
 def is_release(directory: Path) -> bool:
-    """Whether any of the release's files stands there."""
+    """Return whether any of the release's files stands there."""
     return any((directory / file).exists() for file, _, _ in _FILES)
 
 

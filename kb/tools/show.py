@@ -3,12 +3,12 @@
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, Consequence, ObjectClass, Placement
-from hearth.kb.tools.reasons import Reasons
+from hearth.kb.knowledge_records import Action, Consequence, ObjectClass, Placement
+from hearth.kb.tools.correction_reasons import Reasons
 
 
 def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
-    """Everything about a class; placements and what is done with it, most usual first."""
+    """Return everything about a class; placements and uses, most usual first."""
     name = thing.name
     taken = [[a.name for a in knowledge.actions.values() if knowledge.affords(a.name, n, name)] for n in (0, 1)]
     return {
@@ -71,14 +71,15 @@ def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
     }
 
 
-def _set_3(later: Consequence | None) -> list[dict[str, Any]]:
-    """What action set 3 adds to an action, as rows of checks and effects."""
+def _set_3(later: Consequence | None) -> list[dict[str, str]]:
+    """Return what action set 3 adds to an action: its checks, its effects, its length and what others notice."""
     if later is None:
         return []
-    rows: list[dict[str, Any]] = [{"like": later.like}] if later.like else []
-    rows += [{"holds": str(check.formula), "else": check.code.value} for check in later.preconditions]
-    rows += [{"effect": str(effect)} for effect in later.effects]
-    return [*rows, {"ticks": later.ticks, "notice": later.notice}]
+    rows = [("like", later.like, "")] if later.like else []
+    rows += [("before", str(check.formula), check.code.value) for check in later.preconditions]
+    rows += [("effect", str(effect), "") for effect in later.effects]
+    rows += [("ticks", str(later.ticks), ""), ("notice", later.notice, "")]
+    return [{"part": part, "is": text, "else": code} for part, text, code in rows]
 
 
 def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[dict[str, str]]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from hearth.models.decoding.options import Options, Partial
+from hearth.models.decoding.next_step_options import Options, Partial
 from hearth.schemas.program import Step
 from hearth.simulation.world.world import World
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from hearth.models.decoding.equal_scores import best_places
-from hearth.models.decoding.options import NONE, NOTHING, Grammar, Options, Partial
+from hearth.models.decoding.next_step_options import NONE, NOTHING, Grammar, Options, Partial
 from hearth.models.decoding.scorers import Asked, Part, Scorer, Scores
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import ObjectRef, Step

@@ -10,9 +10,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from hearth.models.demonstrations.above_facts import Above
 from hearth.models.demonstrations.frame_network import FrameBatch
 from hearth.models.demonstrations.mask_classes import MaskClasses
+from hearth.models.demonstrations.overhead_features import Above
 
 Numbers = tuple[int, int, int]
 

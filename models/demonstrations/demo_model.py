@@ -12,20 +12,20 @@ import torch
 from torch.nn import functional
 
 from hearth.models.checkpoint import Checkpoint
-from hearth.models.demonstrations.above_facts import Above, above
+from hearth.models.checkpoint_weights import filled
 from hearth.models.demonstrations.demo_batches import Done, DoneBatch, done_batch, frame_batch
 from hearth.models.demonstrations.demonstration_data import Demonstrations, Pictures, shown
 from hearth.models.demonstrations.frame_network import FrameBatch, FrameBody, FrameMemory
 from hearth.models.demonstrations.mask_classes import MaskClasses
+from hearth.models.demonstrations.overhead_features import Above, above
 from hearth.models.devices import device
-from hearth.models.filled import filled
 from hearth.models.films.clip_data import no_programs
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.program_writer import Numbers, Writer, beam
 from hearth.models.text.seq2seq import WAYS
 from hearth.models.text.step_heads import ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import StepBatch, encoded, step_batch
-from hearth.models.text.writer import Numbers, Writer, beam
 from hearth.models.training import Task, train
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -34,7 +34,7 @@ from hearth.scoring.metrics.lcs import score_pairs
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus, Example
+    from hearth.models.text_examples import Corpus, Example
 
 NAME = "demo2sketch"
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.models.data import examples
 from hearth.models.demonstrations.demonstration_data import Demonstrations, shown
 from hearth.models.interface import Steps
 from hearth.models.model_registry import MODELS, restore
+from hearth.models.text_examples import examples
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng

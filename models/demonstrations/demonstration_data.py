@@ -20,7 +20,7 @@ from hearth.storage.names import inside
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
-    from hearth.models.data import Example
+    from hearth.models.text_examples import Example
 
 FILE = "above.npz"
 """Name of a demonstration's arrays in its folder."""
@@ -117,7 +117,7 @@ def read_pictures(path: Path) -> Pictures:
 
 
 def is_demonstration(text: str) -> bool:
-    """Whether an argument names pictures from above: their file, or a folder with one."""
+    """Return whether an argument names pictures from above: their file, or a folder with one."""
     try:
         path = Path(text)
         return bool(text) and (path.name == FILE or (path / FILE).is_file())

@@ -15,7 +15,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
 
-from hearth.models.demonstrations.above_facts import NUMBERS, PEOPLE
+from hearth.models.demonstrations.overhead_features import NUMBERS, PEOPLE
 from hearth.models.text.seq2seq import Seq2SeqBody, State
 
 VECTOR = 24

@@ -12,16 +12,16 @@ import torch
 from numpy.typing import NDArray
 
 from hearth.models.checkpoint import Checkpoint
-from hearth.models.data import facts_of
+from hearth.models.checkpoint_weights import filled
 from hearth.models.devices import device, moved, place_of
-from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clips, Instruction, no_programs
 from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
 from hearth.models.films.film_arrays import COLOURS
-from hearth.models.films.film_readings import Reading
 from hearth.models.films.frame_data import Labels, Pictures, frames_of, pictures_of
+from hearth.models.films.instruction_scores import Reading
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text_examples import facts_of
 from hearth.models.training import Task, train
 from hearth.storage.parallel import Seen, unseen
 

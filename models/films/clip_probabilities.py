@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.models.films.class_table import PLACES, ClassTable
-from hearth.models.films.film_shown import cut
-from hearth.models.films.seen_model import Scored, TrainedSeenModel
+from hearth.models.films.film_prediction import cut
+from hearth.models.films.mask_clip_model import Scored, TrainedSeenModel
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,10 +12,10 @@ from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.clip_model import TrainedClipModel
 from hearth.models.films.film_arrays import COLOURS, MASKS
+from hearth.models.films.film_smoothing import named_in_films
+from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.films.mask_model import TrainedMaskModel
 from hearth.models.films.predicted_masks import PredictedMasks
-from hearth.models.films.seen_model import TrainedSeenModel
-from hearth.models.films.whole_films import named_in_films
 from hearth.models.model_registry import restore
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

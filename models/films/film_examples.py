@@ -6,13 +6,13 @@ from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from hearth.models.data import facts_of
+from hearth.models.execution_trials import Trial
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
 from hearth.models.films.film_executions import shown_films
-from hearth.models.films.seen_model import TrainedSeenModel
+from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.interface import Steps
-from hearth.models.tried_programs import Trial
+from hearth.models.text_examples import facts_of
 from hearth.storage.files import value_digest
 
 if TYPE_CHECKING:

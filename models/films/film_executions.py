@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from hearth.models.execution_trials import Trial, trials
 from hearth.models.interface import Steps
-from hearth.models.tried_programs import Trial, trials
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef

@@ -15,10 +15,10 @@ from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_tables import classifier
 from hearth.models.films.film_arrays import COLOURS, FORMS
 from hearth.models.films.film_executions import shown_films
+from hearth.models.films.film_prediction import cut
 from hearth.models.films.film_programs import followed
-from hearth.models.films.film_shown import cut
 from hearth.models.interface import Steps
-from hearth.models.showing import side_by_side
+from hearth.models.prediction_stages import side_by_side
 from hearth.rendering.film.clips import RATE
 from hearth.rendering.film.png import encode
 from hearth.schemas.syntax import print_step

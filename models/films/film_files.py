@@ -16,7 +16,10 @@ ARRAYS = ".npz"
 
 
 def is_film(text: str) -> bool:
-    """Whether an argument names a film: by its suffix, or a folder with one; a text may be the name of any folder."""
+    """Return whether an argument names a film.
+
+    By its suffix, or a folder with one; a text may be the name of any folder.
+    """
     try:
         folder = bool(text) and Path(text).is_dir()
     except (OSError, ValueError):  # a long text, or one with a null, names nothing

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hearth.models.films.film_arrays import LARGEST, film_array
 from hearth.rendering.film.clips import RATE, SIZE
-from hearth.rendering.film.quiet import quiet
+from hearth.rendering.film.stderr_suppression import quiet
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library

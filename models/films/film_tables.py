@@ -12,11 +12,11 @@ from hearth.models.films.clip_probabilities import ClipProbabilities
 from hearth.models.films.clip_tables import HOMES, looks_at_masks, standard_error
 from hearth.models.films.film_examples import film_probabilities
 from hearth.models.films.film_executions import Shown, by_class, shown_films
+from hearth.models.films.film_prediction import cut
 from hearth.models.films.film_programs import FilmProgram, alone, described, followed
-from hearth.models.films.film_readings import Reading
-from hearth.models.films.film_shown import cut
 from hearth.models.films.film_writer import TrainedFilmWriter
-from hearth.models.films.seen_model import TrainedSeenModel
+from hearth.models.films.instruction_scores import Reading
+from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
 from hearth.models.model_registry import restore

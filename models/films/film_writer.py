@@ -17,25 +17,25 @@ import torch
 from numpy.typing import NDArray
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.checkpoint_weights import filled
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.devices import device
-from hearth.models.filled import filled
 from hearth.models.films.clip_batches import clip_batch, rows_of, traits_of
 from hearth.models.films.clip_data import no_programs
 from hearth.models.films.clip_probabilities import ClipProbabilities
 from hearth.models.films.clip_reader import ClipReader
 from hearth.models.films.clip_tables import classifier
 from hearth.models.films.film_examples import FilmExample, film_examples
-from hearth.models.films.seen_model import SeenModel, TrainedSeenModel
+from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.likelihood import likelihood, written
+from hearth.models.text.likelihood_training import likelihood, written
+from hearth.models.text.program_writer import Numbers, Writer
 from hearth.models.text.seq2seq import WAYS, Seq2SeqBody
 from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import InputBatch, encoded
 from hearth.models.text.text_models import listed, mean_lcs
 from hearth.models.text.text_scorer import TextScorer
-from hearth.models.text.writer import Numbers, Writer
 from hearth.models.training import train
 from hearth.schemas.rng import derive
 from hearth.simulation.world.world import World

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from torch.nn import functional
 
 from hearth.models.checkpoint import Checkpoint
-from hearth.models.data import facts_of
+from hearth.models.checkpoint_weights import filled
 from hearth.models.devices import device, moved, place_of
-from hearth.models.filled import filled
 from hearth.models.films.clip_data import Clips, no_programs
 from hearth.models.films.film_arrays import COLOURS, MASKS
 from hearth.models.films.mask_network import GROUPS, MaskNetwork
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text_examples import facts_of
 from hearth.models.training import Task, train
 from hearth.storage.parallel import Seen, unseen
 

@@ -73,7 +73,7 @@ class StepOrder:
         return float(np.log((found.get(kind, 0) + TRUST * self._any(kind)) / (total + TRUST)))
 
     def _any(self, kind: tuple[str, tuple[int, ...]]) -> float:
-        """How probable a next step is after any step."""
+        """Return how probable a next step is after any step."""
         return (self._all.get(kind, 0) + 0.01) / (sum(self._all.values()) + 1)
 
     @cached_property

@@ -65,7 +65,7 @@ def _value_error(seen: Outlook, batch: Batch, there: Tensor) -> Tensor:
 
 
 def _close_error(seen: Outlook, batch: Batch, there: Tensor) -> Tensor | float:
-    """How well the low-level policy knows what is within its reach (B.3.4)."""
+    """Return how well the low-level policy knows what is within its reach (B.3.4)."""
     if seen.close is None:
         return 0.0
     nodes = there[..., None] & (torch.as_tensor(batch.classes) > 0)

@@ -51,7 +51,7 @@ class HelpingPolicy(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedPolicy:
         """The trained policy of a checkpoint."""
-        from hearth.models.filled import filled
+        from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
         if settings.chooses not in NAMES or NAMES[settings.chooses] != checkpoint.model:

@@ -111,7 +111,7 @@ class GoalProposals(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGoalProposals:
         """The trained network of a checkpoint."""
-        from hearth.models.filled import filled
+        from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
         network = filled(settings.network, checkpoint.weights)

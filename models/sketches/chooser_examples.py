@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from hearth.models.decoding.options import Grammar
-from hearth.models.sketches.choices import Choice
-from hearth.models.sketches.grounded import Grounded
+from hearth.models.decoding.next_step_options import Grammar
+from hearth.models.sketches.candidate_choices import Choice
+from hearth.models.sketches.grounded_programs import Grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import Habits
 from hearth.models.sketches.node_features import Places, node_choice
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Offer
-from hearth.models.sketches.text_clues import NO_CLUES, Clues
+from hearth.models.sketches.text_features import NO_CLUES, Clues
 from hearth.schemas.failures import Failure
 from hearth.schemas.rng import rng
 from hearth.simulation.engine import act

@@ -11,16 +11,16 @@ import numpy as np
 import torch
 
 from hearth.models.checkpoint import Checkpoint
-from hearth.models.data import Corpus, Example
+from hearth.models.checkpoint_weights import filled
 from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.devices import device
-from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training, texts
 from hearth.models.sketches.graph_inputs import NO_NODE, Batch, GraphInput, batched, graph_input, targets
 from hearth.models.sketches.graph_network import Change, GraphNetwork, Memory, loss_of
-from hearth.models.sketches.grounded import grounded
+from hearth.models.sketches.grounded_programs import grounded
 from hearth.models.sketches.name_numbers import Words
+from hearth.models.text_examples import Corpus, Example
 from hearth.models.training import Task, train
 from hearth.schemas.program import Program, Step
 from hearth.simulation.world.world import World

@@ -33,7 +33,7 @@ class Words:
 
     @cached_property
     def size(self) -> int:
-        """How many numbers there are."""
+        """Return how many numbers there are."""
         return CODES + len(self.classes) + len(self.actions) + len(self.words)
 
     def thing(self, name: str) -> int:

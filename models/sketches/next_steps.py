@@ -12,9 +12,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.models.decoding.options import Options
+from hearth.models.decoding.next_step_options import Options
 from hearth.models.sketches.sketch_progress import Progress
-from hearth.models.sketches.text_clues import MOST
+from hearth.models.sketches.text_features import MOST
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices

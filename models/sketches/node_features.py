@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hearth.models.sketches.choices import Candidate, Choice
+from hearth.models.sketches.candidate_choices import Candidate, Choice
 from hearth.models.sketches.name_numbers import Words
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Step

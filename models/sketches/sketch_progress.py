@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hearth.models.sketches.text_clues import NO_CLUES, Clues
+from hearth.models.sketches.text_features import NO_CLUES, Clues
 from hearth.repair.sketch_plan import Planned, plan
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.rules import DEFAULT, Rules

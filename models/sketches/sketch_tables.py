@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.format.sketch_choice import ANNOTATED
-from hearth.models.data import requests
 from hearth.models.demonstrations.demo_sketches import demonstrated
 from hearth.models.demonstrations.demonstration_data import Demonstrations
 from hearth.models.evaluation import by_group
 from hearth.models.interface import Request, Steps
+from hearth.models.method_scores import Entrant, Row, scored_rows
 from hearth.models.model_registry import MODELS, restore
-from hearth.models.predicting import predict
-from hearth.models.scored_rows import Entrant, Row, scored_rows
-from hearth.models.seen_programs import refuse_seen
+from hearth.models.prediction_files import predict
 from hearth.models.table_models import refuse_others
+from hearth.models.text_examples import requests
+from hearth.models.training_overlap import refuse_seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
@@ -176,7 +176,7 @@ def _with_sketches(
 def _other_person(
     test: Sequence[baselines.Example], every: Sequence[baselines.Example], groups: Sequence[str], seed: int
 ) -> Row:
-    """How alike the sketches of two people are who had the same text: a bound for what a model can write."""
+    """Return how alike the sketches of two people are who had the same text: a bound for what a model can write."""
     others = [next((one for one in every if one.text == each.text and one is not each), None) for each in test]
     pairs = [(other.sketch, each.sketch) for each, other in zip(test, others, strict=True) if other]
     scores = iter(score_pairs(pairs))

@@ -8,12 +8,12 @@ from functools import cached_property
 from random import Random
 from typing import NamedTuple
 
-from hearth.models.decoding.options import Options
-from hearth.models.sketches.choices import Candidate, Choice
+from hearth.models.decoding.next_step_options import Options
+from hearth.models.sketches.candidate_choices import Candidate, Choice
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import ROLES, STYLE, Deed, Habits, NextSteps
 from hearth.models.sketches.sketch_progress import Progress, plain
-from hearth.models.sketches.text_clues import AROUND, TextState
+from hearth.models.sketches.text_features import AROUND, TextState
 from hearth.schemas.program import Step
 from hearth.simulation.observation import reach
 from hearth.simulation.world import rows
@@ -137,7 +137,7 @@ class Offer:
 
     @cached_property
     def _text(self) -> TextState:
-        """How far the text is done."""
+        """Return how far the text is done."""
         steps = self.progress.steps
         return TextState.of(self.progress.clues, (ref.name for step in steps for ref in step.objects[::-1]))
 
@@ -223,7 +223,7 @@ class Past:
         self.last = deeds[-1] if deeds else ("", -2, -2)
 
     def of(self, deed: Deed) -> list[float]:
-        """Whether a step, its action and its object have come before, and how lately."""
+        """Return whether a step, its action and its object have come before, and how lately."""
         action, first, _ = deed
         about = self.about.get(first, []) if first >= 0 else []
         return [

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.first_phase import first_phase
+from hearth.models.text.pretrained_model import first_phase
 from hearth.models.text.retrieve_edit import RetrieveEdit, TrainedRetrieveEdit, consensus
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.text_scorer import TextScorer
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Consensus(Settings):
         """Train the network, unless it is trained, and remember the training texts and programs.
 
         Raises:
-            HearthError: errors of `first_phase`, and of the network's training.
+            HearthError: errors of `pretrained_model`, and of the network's training.
         """
         if self.start:
             writer = first_phase(self.start, corpus)

@@ -23,7 +23,7 @@ from hearth.storage.parallel import Seen, unseen
 if TYPE_CHECKING:
     import numpy as np
 
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ import numpy as np
 
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.mentions import mentions
+from hearth.models.text.object_mentions import mentions
 from hearth.models.text.retrieval import Memory, Similarity, text_of
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_words import words
@@ -25,7 +25,7 @@ from hearth.scoring.metrics.lcs import LEVELS, matrix
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class TrainedRetrieveEdit:
         return renamed(program, swaps)
 
     def _fits(self, program: Steps, old: str, new: str) -> bool:
-        """Whether each action that a program does with an object takes another in its place."""
+        """Return whether each action that a program does with an object takes another in its place."""
         known, number = self.vocabulary, self.vocabulary.class_numbers[new]
         uses = {(step.action, place) for step in program for place, ref in enumerate(step.objects) if ref.name == old}
         return all(number in known.takes[known.action_numbers[action] - 1][place] for action, place in uses)

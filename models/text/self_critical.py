@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 import torch
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.execution_trials import trials
 from hearth.models.interface import Settings, Steps, Training
-from hearth.models.text.first_phase import first_phase
+from hearth.models.text.pretrained_model import first_phase
+from hearth.models.text.program_writer import Numbers, Writer, beam, sample
 from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
-from hearth.models.text.writer import Numbers, Writer, beam, sample
 from hearth.models.training import Task, train, weights_digest
-from hearth.models.tried_programs import trials
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
 SIM = 0.1
 """The weight of running in the reward."""
@@ -81,7 +81,7 @@ class SelfCritical(Settings):
         """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS.
 
         Raises:
-            HearthError: BAD_ARGUMENT, if there is nothing for validation; errors of `first_phase`.
+            HearthError: BAD_ARGUMENT, if there is nothing for validation; errors of `pretrained_model`.
         """
         checked = corpus.checked()
         if self.start:

@@ -10,7 +10,7 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.interface import Request, Steps
-from hearth.models.text.mentions import mentions, spellings
+from hearth.models.text.object_mentions import mentions, spellings
 from hearth.models.text.text_words import words_of
 from hearth.schemas.program import ObjectRef, Step
 
@@ -100,7 +100,7 @@ class StepVocabulary:
         return found
 
     def _fits(self) -> dict[str, bool]:
-        """Whether each part is what the others need it to be."""
+        """Return whether each part is what the others need it to be."""
         last = len(self.classes)
         return {
             "words": _names(self.words),
@@ -155,5 +155,5 @@ class StepVocabulary:
 
 
 def _names(given: Sequence[Any]) -> bool:
-    """Whether these are different texts."""
+    """Return whether these are different texts."""
     return all(isinstance(name, str) for name in given) and len({*given}) == len(given)

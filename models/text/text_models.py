@@ -11,10 +11,11 @@ import numpy as np
 import torch
 
 from hearth.models.checkpoint import Checkpoint
+from hearth.models.checkpoint_weights import filled
 from hearth.models.devices import device
-from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.likelihood import likelihood, written
+from hearth.models.text.likelihood_training import likelihood, written
+from hearth.models.text.program_writer import Numbers, Writer, sample
 from hearth.models.text.seq2seq import WAYS, Seq2SeqBody, word_embedding
 from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import UNKNOWN, StepVocabulary
@@ -23,14 +24,13 @@ from hearth.models.text.text_scorer import TextScorer
 from hearth.models.text.text_words import words, words_of
 from hearth.models.text.transformer import HEADS, TransformerBody
 from hearth.models.text.word_vectors import word_vectors
-from hearth.models.text.writer import Numbers, Writer, sample
 from hearth.models.training import train
 from hearth.schemas.rng import derive
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus, Example
+    from hearth.models.text_examples import Corpus, Example
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,11 +10,11 @@ import torch
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.decoding.scorers import Asked, Part, Scores
+from hearth.models.text.program_writer import Draft, Writer
 from hearth.models.text.seq2seq import Memory
 from hearth.models.text.step_heads import NEVER, ComposedHead, Context
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import InputBatch
-from hearth.models.text.writer import Draft, Writer
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step

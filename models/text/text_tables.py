@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hearth.models.data import Example, examples
 from hearth.models.interface import Steps
+from hearth.models.method_scores import Entrant, Row, scored_rows
 from hearth.models.model_registry import restore
-from hearth.models.predicting import completed
-from hearth.models.scored_rows import Entrant, Row, scored_rows
-from hearth.models.seen_programs import refuse_seen
+from hearth.models.prediction_files import completed
 from hearth.models.table_models import refuse_others
+from hearth.models.text_examples import Example, examples
+from hearth.models.training_overlap import refuse_seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring import baselines

@@ -57,7 +57,7 @@ def word_vectors(
 
 
 def _pairs(documents: Iterable[tuple[Sequence[str], Sequence[str]]], place: dict[str, int]) -> Counter[tuple[int, int]]:
-    """How often two words are near each other, or one in a text and one in its program; both ways."""
+    """Return how often two words are near each other, or one in a text and one in its program; both ways."""
     counts: Counter[tuple[int, int]] = Counter()
     for text, names in documents:
         numbers = [place[word] for word in text if word in place]

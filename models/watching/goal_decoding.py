@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from hearth.models.watching.watched_batches import Counts
+from hearth.models.watching.demonstration_batches import Counts
 from hearth.schemas.goals import Goal
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def _scores(goals: np.ndarray, logs: np.ndarray) -> np.ndarray:
 
 
 def counts_of(goal: Goal, predicates: Sequence[str]) -> Counts:
-    """How often a goal wants each predicate."""
+    """Return how often a goal wants each predicate."""
     wanted = {str(literal): number for literal, number in goal}
     return tuple(wanted.get(each, 0) for each in predicates)
 

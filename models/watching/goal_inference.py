@@ -10,9 +10,9 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from hearth.models.interface import Settings, Training, texts
+from hearth.models.watching.demonstration_batches import Counts, Joining, Watched, epoch, in_batches, packed
 from hearth.models.watching.goal_decoding import PossibleGoals, possible_goals
-from hearth.models.watching.sightings import Layout, Predicate, sightings
-from hearth.models.watching.watched_batches import Counts, Joining, Watched, epoch, in_batches, packed
+from hearth.models.watching.object_sightings import Layout, Predicate, sightings
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
@@ -23,8 +23,8 @@ from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.checkpoint import Checkpoint
-    from hearth.models.watching.moment_network import MomentNetwork
-    from hearth.models.watching.thing_network import ThingNetwork
+    from hearth.models.watching.object_network import ThingNetwork
+    from hearth.models.watching.state_network import MomentNetwork
 
 NAME = "goal-inference"
 
@@ -57,8 +57,8 @@ class GoalInference(Settings):
 
     def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:
         """A network that has learnt nothing."""
-        from hearth.models.watching.moment_network import MomentNetwork
-        from hearth.models.watching.thing_network import ThingNetwork
+        from hearth.models.watching.object_network import ThingNetwork
+        from hearth.models.watching.state_network import MomentNetwork
 
         shapes: dict[str, type[ThingNetwork | MomentNetwork]] = {"things": ThingNetwork, "moments": MomentNetwork}
         kind = shapes[self.shape]
@@ -99,7 +99,7 @@ class GoalInference(Settings):
             return in_batches(epoch(learnt, joining, self.joined, chooser), self.batch, len(predicates))
 
         def loss(batch: Any) -> torch.Tensor:
-            from hearth.models.watching.thing_network import loss_of
+            from hearth.models.watching.object_network import loss_of
 
             return loss_of(network, batch)
 
@@ -114,7 +114,7 @@ class GoalInference(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGoalInference:
         """The trained network of a checkpoint."""
-        from hearth.models.filled import filled
+        from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
         content = checkpoint.content

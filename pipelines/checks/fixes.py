@@ -7,7 +7,7 @@ from difflib import unified_diff
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
-from hearth.pipelines.checks import programs, special
+from hearth.pipelines.checks import program_checks, special_blocks
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_programs, print_step
@@ -65,7 +65,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
                 yield fault.line - 1, 1, [line]
         if found or faults:
             continue
-        for finding in (*programs.contradictions(canonical, known), *programs.not_close(canonical, known)):
+        for finding in (*program_checks.contradictions(canonical, known), *program_checks.not_close(canonical, known)):
             at = canonical.line(finding.step) - 1
             if at < 0 or "|" in lines[at]:
                 continue
@@ -75,7 +75,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
 def _written(fault: Diagnostic, line: str) -> list[str] | None:
     """The lines that replace a line which is not a step."""
     if fault.code is Code.SPECIAL_BLOCK:
-        expanded = special.expand(line, 0).text
+        expanded = special_blocks.expand(line, 0).text
         return expanded.split("\n") if expanded != line else None
     if fault.code is Code.SYNTAX and "lacks its instance" in fault.message:
         start, end = fault.column - 1, fault.column - 1 + fault.length

@@ -7,7 +7,7 @@ from hashlib import blake2b
 from itertools import pairwise
 from typing import Any
 
-from hearth.pipelines.crowd.seen import SeenSet, digest
+from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.readers import crowd
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import orjson
 
-from hearth.pipelines.engine.context import knowledge
+from hearth.pipelines.engine.build_context import knowledge
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
 from hearth.simulation.world.home import Home
@@ -72,7 +72,7 @@ class Homes:
         return library.load_graph(name, self.knowledge, self._settings.homes_folder)
 
     def in_catalog(self, name: str) -> bool:
-        """Whether a home is one of the catalog's."""
+        """Return whether a home is one of the catalog's."""
         return name in self.catalog()
 
     def _edges(self, name: str) -> frozenset[Edge]:

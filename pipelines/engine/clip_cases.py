@@ -23,7 +23,7 @@ COLOURED = 0.25
 
 
 def home_kinds(homes: Sequence[str]) -> dict[str, str]:
-    """Whether a home is seen in training, by home; of three homes or more the last two are not."""
+    """Return whether a home is seen in training, by home; of three homes or more the last two are not."""
     unseen = homes[-2:] if len(homes) > 2 else homes[1:]
     rest = homes[: len(homes) - len(unseen)]
     between = rest[-1:] if len(rest) > 1 else ()
@@ -95,5 +95,5 @@ def _shuffled(runs: Sequence[tuple[str, str]], kind: str, program: str, seed: in
 
 
 def coloured(execution: str, seed: int) -> bool:
-    """Whether a film also has colours and depth."""
+    """Return whether a film also has colours and depth."""
     return rng(seed, "clip colours", execution).random() < COLOURED

@@ -125,7 +125,7 @@ def _annotated(job: Job) -> Annotations:
 
 
 def _steps_of(job: Job, names: list[str]) -> dict[str, int]:
-    """How many steps these programs have, by id, as far as they are published."""
+    """Return how many steps these programs have, by id, as far as they are published."""
     found: dict[str, int] = {}
     for path in sorted((job.folder / "programs").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["program_id", "steps"], filters=[("program_id", "in", names)])

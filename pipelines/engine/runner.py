@@ -233,7 +233,7 @@ def _forget(job: Job, number: int) -> None:
 
 
 def _is_whole(job: Job, number: int, counts: Counts) -> bool:
-    """Whether a partition's rejects are stored and none of its records timed out."""
+    """Return whether a partition's rejects are stored and none of its records timed out."""
     if not counts.rejected and not counts.partial:
         return True
     if counts.codes[Code.TIMED_OUT]:

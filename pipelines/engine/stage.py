@@ -17,8 +17,8 @@ from typing import Any
 
 import pyarrow as pa
 
-from hearth.pipelines.engine.deadline import Deadline, OverTime
 from hearth.pipelines.engine.dependencies import code_digest
+from hearth.pipelines.engine.record_deadline import Deadline, OverTime
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
@@ -239,7 +239,10 @@ def _attempt(stage: Stage, record: Any, context: Any, deadline: Deadline) -> lis
 
 
 def _stops_the_stage(error: BaseException) -> bool:
-    """Whether the disk is full: the stage stops, complete parts are kept, and the next run continues from there."""
+    """Return whether the disk is full.
+
+    The stage stops, complete parts are kept, and the next run continues from there.
+    """
     return isinstance(error, OSError) and error.errno in _FULL
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Container, Mapping
 from typing import Any
 
-from hearth.repair.strengths import MILD, strength
+from hearth.repair.perturbation_strengths import MILD, strength
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

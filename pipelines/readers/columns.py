@@ -90,7 +90,7 @@ class Found(dict[str, str]):
 
     @property
     def is_ours(self) -> bool:
-        """Whether every key has the name that it has in our own records, and no other key may hold its field."""
+        """Return whether every key has the name that it has in our own records, and no other key may hold its field."""
         return (
             not self.is_table
             and not self.rivals

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypedDict
 
-from hearth.pipelines.crowd.seen import SeenSet, digest
+from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.crowd.topics import no_activity
 from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, record, refused, worker_hash

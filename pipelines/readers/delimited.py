@@ -43,7 +43,7 @@ def layout_of(line: str, delimiter: str = "") -> Layout:
 
 
 def row_fault(line: int, raw: str, cells: list[str] | None, layout: Layout, place: str) -> Diagnostic | None:
-    """Why a row can't be read."""
+    """Return why a row can't be read."""
     if cells is None:
         message = "cells that can't be separated: a quote that is never closed, or too many cells"
         suggestion = "quote cells that hold separators or line breaks, and double the quotes inside"
@@ -102,7 +102,7 @@ def _even(taken: list[tuple[int, str]]) -> bool:
 
 
 def _whole(taken: list[tuple[int, str]], layout: Layout) -> bool:
-    """Whether these lines begin with a record of the right number of cells."""
+    """Return whether these lines begin with a record of the right number of cells."""
     text = ""
     for _, piece in taken[:_LOOK_AHEAD]:
         text += piece

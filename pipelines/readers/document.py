@@ -19,7 +19,7 @@ _LOOKS_JSON = re.compile(r"""\s*(?:\{\s*(?:["}]|$)|\[\s*(?:["\{\[\]\d-]|$))""")
 
 
 def looks_like_json(line: str) -> bool:
-    """Whether a text's first line begins a JSON object or list; `[Walk] <bed> (1)` begins neither."""
+    """Return whether a text's first line begins a JSON object or list; `[Walk] <bed> (1)` begins neither."""
     return _LOOKS_JSON.match(line) is not None
 
 

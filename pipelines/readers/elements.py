@@ -126,7 +126,7 @@ class _Scanner:
             self.kinds.setdefault(self._key, kind)
 
     def _listed(self) -> bool:
-        """Whether the next value is an entry of the requested list."""
+        """Return whether the next value is an entry of the requested list."""
         stack = self._stack
         if len(stack) != self._level or stack[-1] != "[":
             return False

@@ -10,8 +10,8 @@ from hearth.pipelines.readers.models import of_others
 from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
 from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
 from hearth.pipelines.readers.step_texts import IN_LINE
-from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
+from hearth.schemas.program_blocks import STEP
 from hearth.storage.rejects import Reject, as_text
 
 
@@ -40,7 +40,7 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
 
 
 def _are_plans(value: dict[str, Any], given: FieldColumns) -> bool:
-    """Whether an object has several texts and no other values, which all read as steps and whose keys are no fields."""
+    """Return whether an object has only several texts, which all read as steps, under keys that are not fields."""
     if len(value) < 2 or given or not all(map(is_line, value.values())) or guessed(value, {}, exact=True):
         return False
     return all(reading_of([text]).are_steps for text in value.values())
@@ -87,13 +87,13 @@ _NO_TITLES = frozenset({
 
 
 def holds_program(value: Any) -> bool:
-    """Whether steps are among the records of a value."""
+    """Return whether steps are among the records of a value."""
     records = (entry for _, entry in records_in(value, {}) if isinstance(entry, dict))
     return any(not _PROGRAMS.isdisjoint(named(entry, {})) for entry in records)
 
 
 def is_record(value: dict[str, Any], given: FieldColumns) -> bool:
-    """Whether an object has a program or a description, by whatever name."""
+    """Return whether an object has a program or a description, by whatever name."""
     return not FIELDS.isdisjoint(named(value, given))
 
 

@@ -35,7 +35,7 @@ _OF_MAPPING = re.compile(r"""\s*(?:```\w*\s*)?\{\s*["'][A-Z][A-Z_]+["']\s*:\s*\[
 
 
 def is_action(value: Any) -> bool:
-    """Whether a value is an object with an action and perhaps objects, or a call of a tool.
+    """Return whether a value is an object with an action and perhaps objects, or a call of a tool.
 
     A row of a dataset's steps, whose objects are objects with a name, is none.
     """
@@ -169,7 +169,7 @@ def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:
 
 
 def is_mapping(value: Any) -> bool:
-    """Whether an object maps names of actions in capitals to lists of names and numbers, and knows one of them."""
+    """Return whether an object maps action names in capitals, one of them known, to lists of names and numbers."""
     pairs = pairs_of(value) if isinstance(value, dict) else []
     if not pairs or not all(_ACTION.fullmatch(key) and _are_names(part) for key, part in pairs):
         return False
@@ -216,7 +216,7 @@ def _as_is(value: Any) -> str:
 
 
 def looks_like_mapping(text: str) -> bool:
-    """Whether a text begins a mapping of actions, perhaps in a code fence."""
+    """Return whether a text begins a mapping of actions, perhaps in a code fence."""
     return _OF_MAPPING.match(text) is not None
 
 
@@ -266,7 +266,7 @@ _ACTION_NAME = re.compile(r"[a-z]+(?:_[a-z]+)*")
 
 
 def of_planner(plans: Iterable[Any]) -> bool:
-    """Whether lists are all actions of BEHAVIOR's planner, whose things have names of WordNet, or names of actions."""
+    """Return whether lists are all actions of BEHAVIOR's planner, with WordNet's names of things, or action names."""
     steps = [step for plan in plans if isinstance(plan, list) for step in plan]
     if not steps or not all(isinstance(step, str) for step in steps):
         return False

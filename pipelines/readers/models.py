@@ -3,7 +3,7 @@
 from typing import Any
 
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
-from hearth.schemas.blocks import TITLE
+from hearth.schemas.program_blocks import TITLE
 
 
 def of_others(value: dict[str, Any]) -> dict[str, Any] | None:

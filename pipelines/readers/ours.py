@@ -22,11 +22,11 @@ from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
 from hearth.pipelines.readers.step_texts import Places, numbered, places_of, steps_of
 from hearth.pipelines.readers.text import header
-from hearth.schemas.blocks import STEP
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.program_blocks import STEP
 from hearth.schemas.row_types import QuantityRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.syntax import normal_name, print_lines
@@ -127,7 +127,7 @@ def _version(value: dict[str, Any]) -> str:
 
 
 def id_fault(own: str, place: str, line: int = 0) -> Reject | None:
-    """Why an id that comes with a record is not taken."""
+    """Return why an id that comes with a record is not taken."""
     if not any(map(leaves, own.split(":"))) and own.isprintable():
         return None
     message = "an id that is a path out of its folder, or not printable"

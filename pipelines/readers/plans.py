@@ -13,8 +13,8 @@ from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.placed_texts import Text
 from hearth.pipelines.readers.unmarked_plans import unmarked_blocks
-from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
+from hearth.schemas.program_blocks import is_sentence
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
@@ -200,7 +200,7 @@ class _Block:
 
     @property
     def has_steps(self) -> bool:
-        """Whether the program has steps, and lines below them."""
+        """Return whether the program has steps, and lines below them."""
         return self._below > 0
 
     def is_without_steps(self, raw: str, line: PlanLine) -> bool:
@@ -215,7 +215,7 @@ class _Block:
         return level_of(raw) <= self._level or are_steps([each.text for each in self._texts if not each.heading])
 
     def ends_before(self, step: PlanLine) -> bool:
-        """Whether a step belongs to the next program."""
+        """Return whether a step belongs to the next program."""
         if self._by_headings and not step.heading and not self._below:
             return False
         if self._has_heading_below and (not step.number or step.number <= self._number):

@@ -34,7 +34,7 @@ DESCRIPTION_COLUMNS = [
 
 
 def names_it(path: Path) -> bool:
-    """Whether a folder is a dataset."""
+    """Return whether a folder is a dataset."""
     manifest = read_json(path / "manifest.json")
     return isinstance(manifest, dict) and manifest.get("stage") == "publish"
 

@@ -27,10 +27,10 @@ from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
 from hearth.pipelines.readers.json_actions import is_only_action
 from hearth.pipelines.readers.relaxed_json import uncommented
-from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph_wrappers import graph_in
+from hearth.schemas.program_blocks import TITLE
 from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
 from hearth.storage.files import SERVED, links_not_followed, walk
 from hearth.storage.rejects import Reject, as_text

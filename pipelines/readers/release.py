@@ -44,7 +44,7 @@ _HOME = re.compile(r"(.*?)(_graph)?")
 
 
 def names_it(path: str) -> bool:
-    """Whether a path inside an archive or folder belongs to the release's layout."""
+    """Return whether a path inside an archive or folder belongs to the release's layout."""
     return _located(path) is not None
 
 

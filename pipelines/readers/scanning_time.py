@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from hearth.pipelines.engine.deadline import Deadline, OverTime
+from hearth.pipelines.engine.record_deadline import Deadline, OverTime
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.archives import GZIP, ZSTD, Member, Place

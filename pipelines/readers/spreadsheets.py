@@ -23,7 +23,7 @@ NAME = "spreadsheet"
 
 
 def names_it(line: str) -> bool:
-    """Whether a first line names the columns of such a table; a file called `.csv` is one whatever it says."""
+    """Return whether a first line names the columns of such a table; a file called `.csv` is one whatever it says."""
     columns = layout_of(line).columns
     return len(columns) > 1 and {"program", "description"} & guessed(columns, {}, exact=True).keys() != set()
 
@@ -111,7 +111,7 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
 
 
 def _row_is_step(layout: Layout, found: FieldColumns) -> bool:
-    """Whether the names of columns say that a row is a step: it is an action, or has one `step`."""
+    """Return whether the names of columns say that a row is a step: it is an action, or has one `step`."""
     return _is_action(layout, found) or plain_name(found.get("program", "")) in ("step", "action")
 
 
@@ -120,7 +120,7 @@ def _is_action(layout: Layout, found: FieldColumns) -> bool:
 
 
 def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
-    """Whether most rows hold one step and stand beside another row of their title, which is nowhere else."""
+    """Return whether most rows hold one step and stand beside another row of their title, which is nowhere else."""
     if "title" not in found and "program" in found and _row_is_step(layout, found):
         program = layout.columns.index(found["program"])
         return len(sample) > 1 and all(is_one_step(row[program]) for row in sample if row[program])
@@ -160,7 +160,7 @@ _WORDS = re.compile(r"(?!@)[^\d_]{2,}")
 
 
 def _is_title(cells: Sequence[str]) -> bool:
-    """Whether cells are words, as names of tasks are, and ids such as `w_12` and `@kim` are not."""
+    """Return whether cells are words, as names of tasks are, and ids such as `w_12` and `@kim` are not."""
     return bool(cells) and 2 * sum(bool(_WORDS.fullmatch(cell.strip())) for cell in cells) >= len(cells)
 
 

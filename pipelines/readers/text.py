@@ -22,7 +22,7 @@ _FIRST_STEP = re.compile(r"^[^\S\n]*+[\[<(|]", re.MULTILINE)
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a file.
 
-    `hearth.schemas.blocks` decides where the next program begins; a title without steps is a record of its own.
+    `hearth.schemas.program_blocks` decides where the next program begins; a title without steps is a record of its own.
     """
     number = 0
     for number, block in enumerate(blocks(pieces(path)), 1):

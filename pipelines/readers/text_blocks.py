@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from hearth.schemas.blocks import Splitter
+from hearth.schemas.program_blocks import Splitter
 from hearth.schemas.syntax import MAX_LINE
 
 LONGEST_PROGRAM = 1_000_000
@@ -28,7 +28,7 @@ class Block(NamedTuple):
 
 
 def blocks(pieces: Iterable[str]) -> Iterator[Block]:
-    """Split a text into programs as `hearth.schemas.blocks` does, looking only at blank lines."""
+    """Split a text into programs as `hearth.schemas.program_blocks` does, looking only at blank lines."""
     cutter = _Cutter()
     for piece in pieces:
         yield from cutter.take(piece)
@@ -74,7 +74,10 @@ class _Cutter:
             self._shorten()
 
     def _begins(self, end: int, start: int, final: bool) -> bool | None:
-        """Whether the line at `start`, after a gap from `end`, begins a program; None while that is undecided."""
+        """Return whether the line at `start`, after a gap from `end`, begins a program.
+
+        None while that is undecided.
+        """
         buffer, splitter = self._buffer, self._splitter
         if not splitter.has_steps and self._has_steps(end):
             splitter.has_steps = True
@@ -95,7 +98,7 @@ class _Cutter:
         return splitter.begins(buffer[start : stop if stop >= 0 else len(buffer)][: MAX_LINE + 1], is_step=long)
 
     def _has_steps(self, end: int) -> bool:
-        """Whether there is a step before `end`; a line that is too long counts as one."""
+        """Return whether there is a step before `end`; a line that is too long counts as one."""
         if _STEP.search(self._buffer, self._seen, end):
             return True
         if end - self._seen <= MAX_LINE:

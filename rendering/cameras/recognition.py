@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hearth.rendering.rays.camera_shot import Shot
 from hearth.rendering.rays.first_hits import Canvas
-from hearth.rendering.rays.shot import Shot
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 
 PERSON, OBJECT = 0.015, 0.001
@@ -30,12 +30,12 @@ class Recognition(NamedTuple):
     unhidden: float
 
     def suffices(self, least: float) -> bool:
-        """Whether it covers a share of the picture, and others hide less than half of it."""
+        """Return whether it covers a share of the picture, and others hide less than half of it."""
         return self.share >= least and self.unhidden > HIDDEN
 
 
 def recognition(shot: Shot, node: int) -> Recognition:
-    """How well a picture shows a node, by what it covers and by what it would cover alone."""
+    """Return how well a picture shows a node, from its visible pixels and the pixels that it would cover alone."""
     things = shot.geometry.things
     numbers = [number for number, thing in enumerate(things) if thing.id == node]
     if not numbers:
@@ -54,7 +54,7 @@ def least_share(class_name: str) -> float:
 
 
 def shows(shot: Shot, person: int, objects: tuple[int, ...]) -> bool:
-    """Whether a person and all of some objects can be recognised."""
+    """Return whether a person and all of some objects can be recognised."""
     found = recognition(shot, person).suffices(PERSON)
     others = (node for node in objects if node != person)
     names = {thing.id: thing.class_name for thing in shot.geometry.things} if found else {}
@@ -62,6 +62,6 @@ def shows(shot: Shot, person: int, objects: tuple[int, ...]) -> bool:
 
 
 def in_the_way(shot: Shot) -> bool:
-    """Whether one thing nearer than `CLOSE` fills a share of `FILLING` of the picture."""
+    """Return whether one thing nearer than `CLOSE` fills a share of `FILLING` of the picture."""
     near = shot.owner[(shot.distance < CLOSE) & (shot.owner >= 0)]
     return len(near) > 0 and int(np.bincount(near).max()) >= FILLING * len(shot.owner)

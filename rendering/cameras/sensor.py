@@ -10,14 +10,14 @@ from hearth.rendering.cameras.viewpoints import home_box
 from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at, standing
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
-from hearth.rendering.people.acting import Actor, initial_actors
+from hearth.rendering.people.action_poses import Actor, initial_actors
 from hearth.rendering.people.bedding import turned_back
-from hearth.rendering.people.reaching import posed
+from hearth.rendering.people.hand_reach import posed
 from hearth.rendering.scene.added_furniture import furnished
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import prepared_scene
+from hearth.rendering.scene.door_sweep import Floors
+from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene import Scene
-from hearth.rendering.scene.swept import Floors
+from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.simulation.env import Env
 from hearth.simulation.world.world import World
@@ -69,7 +69,7 @@ class CameraSensor:
         return render(self.scene(env), self.camera(env, agent), modalities, **how)
 
     def scene(self, env: Env) -> Scene:
-        """What there is to picture now."""
+        """The current content of a picture: the scene and its moving parts."""
         self._follow(env)
         if self._scene is None:
             self._scene = scene_at(self.prepared, self.places, self.actors)

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from hearth.rendering.cameras.camera import Camera, follow, room_cameras
-from hearth.rendering.cameras.candidates import around, free, preference
+from hearth.rendering.cameras.camera_candidates import around, free, preference
 from hearth.rendering.cameras.recognition import in_the_way, shows
-from hearth.rendering.cameras.sight import Obstacles, Target, person, thing, values
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.cameras.visibility_estimates import Obstacles, Target, person, thing, values
+from hearth.rendering.people.action_poses import Actor
+from hearth.rendering.rays.camera_shot import shoot
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.vocabulary import ROOM_CATEGORY

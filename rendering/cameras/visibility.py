@@ -9,8 +9,8 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.recognition import shows
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.film.snapshots import TOP, Keyframe, Trajectory, named_nodes
-from hearth.rendering.rays.shot import shoot
-from hearth.rendering.scene.places import Places
+from hearth.rendering.rays.camera_shot import shoot
+from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -28,7 +28,7 @@ class TickVisibility(NamedTuple):
         missed: those of `named` that the chosen camera's picture does not show.
         unseen: those of `missed` that the picture from above does not show either.
         in_closed: those of `unseen` in a closed container, where no camera could see them.
-        shown: whether the person and what the objects are seen by (see `seen_as`) can be recognised in the chosen
+        shown: whether the person and the nodes that show the objects (see `seen_as`) can be recognised in the chosen
             camera's picture: 1.5 % and 0.1 % of it, and less than half hidden.
     """
 
@@ -73,7 +73,7 @@ def _shown_as(node: int, keyframe: Keyframe) -> int:
 def seen_as(node: int, places: Places) -> int:
     """The node by which an onlooker sees a node.
 
-    Body parts and worn clothes are drawn with their wearer, and what is in a closed container is seen by that.
+    Body parts and worn clothes are drawn with their wearer; a closed container shows the objects inside it.
     """
     states: Mapping[int, tuple[str, ...]] = {known.id: known.states for known in places.graph.nodes}
     if any(known.id == node and known.category == "BodyParts" for known in places.graph.nodes):
@@ -107,7 +107,7 @@ def _missed(keyframe: Keyframe, camera: Camera, named: tuple[int, ...]) -> tuple
 
 
 def _is_in_closed(node: int, places: Places) -> bool:
-    """Whether a closed container holds the node."""
+    """Return whether a closed container holds the node."""
     states = {known.id: known.states for known in places.graph.nodes}
     for _ in range(8):
         location = places.locations.get(node)

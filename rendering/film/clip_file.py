@@ -1,4 +1,4 @@
-"""Where a film of a dataset of clips has its arrays; readers need no more of the renderer."""
+"""The place of a film's arrays in a dataset of clips; readers need no other part of the renderer."""
 
 FILE = "clips.npz"
 """Name of a film's arrays in its folder."""

@@ -16,8 +16,8 @@ from hearth.rendering.film.snapshots import AUTO, Trajectory
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.modalities import pictures_of
 from hearth.rendering.people.motion import Frame, frames
-from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
-from hearth.rendering.rays.shot import Shot, shoot, shoot_after
+from hearth.rendering.rays.camera_shot import Shot, shoot, shoot_after
+from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 
@@ -25,7 +25,7 @@ FRAMES = 9
 """Frames of a clip."""
 
 SECONDS = 2.0
-"""How long a clip is."""
+"""Length of a clip."""
 
 RATE = FRAMES / SECONDS
 """Frames a second."""

@@ -27,7 +27,7 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
 class FrameTime(NamedTuple):
-    """When a frame is, and what it shows."""
+    """The time and the content of a frame."""
 
     time: float
     tick: int

@@ -1,7 +1,7 @@
 """Demonstrations from above: a picture of the whole home after each tick of an execution, with class masks.
 
-The thesis predicts sketches from such pictures (5.4.3). Homes look the same in all of them, at ten in the morning: what
-differs is who acts, and what is done. That a home's things are drawn once makes it twice as fast.
+The thesis predicts sketches from such pictures (5.4.3). Homes look the same in all of them, at ten in the morning; only
+the person and the act differ. Each home's objects are drawn once, which halves the time.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import home_box
 from hearth.rendering.film.snapshots import TOP, trajectory_of
 from hearth.rendering.modalities import pictures_of
-from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
+from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.simulation.engine import Execution
 

@@ -1,4 +1,4 @@
-"""A page that plays a video with its steps beside it: the current one is highlighted, a click jumps to one."""
+"""A page that plays a video next to its steps: the current step is highlighted, and a click jumps to a step."""
 
 from collections.abc import Sequence
 from importlib.resources import files as of_package
@@ -9,7 +9,7 @@ from hearth.schemas.row_types import FilmedStepRow
 
 
 def page(title: str, files: Sequence[str], steps: Sequence[FilmedStepRow]) -> str:
-    """One HTML document that plays the video files beside it.
+    """Return one HTML document that plays the video files of its folder.
 
     Args:
         title: over the video.

@@ -11,14 +11,23 @@ from typing import NamedTuple
 import numpy as np
 
 from hearth.rendering.cameras.camera import Camera
-from hearth.rendering.cameras.candidates import around, free, preference
+from hearth.rendering.cameras.camera_candidates import around, free, preference
 from hearth.rendering.cameras.recognition import in_the_way, shows
-from hearth.rendering.cameras.sight import Obstacles, Target, Worth, ahead, person, thing, too_near, values
 from hearth.rendering.cameras.visibility import objects_of
-from hearth.rendering.film.cuts import Acts, States, Worths, best_cut
+from hearth.rendering.cameras.visibility_estimates import (
+    Obstacles,
+    Target,
+    Worth,
+    ahead,
+    person,
+    thing,
+    too_near,
+    values,
+)
+from hearth.rendering.film.shot_sequence import Acts, States, Worths, best_cut
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
-from hearth.rendering.rays.still_cameras import StillCameras
+from hearth.rendering.rays.fixed_cameras import StillCameras
 from hearth.schemas.graph import Box, EnvironmentGraph, Spot
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -51,7 +60,7 @@ IN_THE_WAY = 1.5
 """Loss of value of a camera at a moment at which a person is close in front of it."""
 
 SEEN, HALF = 8.0, 2.0
-"""Value of seeing an act, and how many times as much the acts count of who is seen in less than half of them."""
+"""Value of seeing an act, and the factor for acts of a person that is visible in less than half of its acts."""
 
 MOST = 3
 """Agents whose acts are counted apart."""
@@ -141,7 +150,7 @@ class Planner:
             self.tried.append(near)
 
     def worth(self, rows: Sequence[int]) -> tuple[Worths, States]:
-        """(rows, moments) values of cameras, and the acts that they seem to show, bit by bit (see `cuts.Acts`)."""
+        """(rows, moments) values of cameras, and the acts that they seem to show, bit by bit: `shot_sequence.Acts`."""
         total = np.full((len(rows), len(self.moments)), ELSEWHERE)
         shown = np.zeros((len(rows), len(self.moments)), np.int64)
         for number in range(len(self.moments)):
@@ -173,7 +182,7 @@ class Planner:
         return [step for step in frame.steps if step.agent == agent]
 
     def _obstacles(self, frame: Frame) -> Obstacles:
-        """What hides things at a moment: what moves least is looked at once a tick."""
+        """Occluders at a moment; slow ones are computed once a tick."""
         if frame.tick not in self.obstacles:
             keyframe = self.keyframes[frame.tick]
             held = frozenset(node for things in keyframe.places.holds.values() for node in things)
@@ -259,7 +268,7 @@ class Planner:
         return np.array([known[camera] for camera in cameras])
 
     def shows(self, camera: Camera, number: int, agent: int) -> bool:
-        """Whether a camera's picture at a moment shows the act of an agent, by its pixels."""
+        """Return whether a camera's picture at a moment shows the act of an agent, by its pixels."""
         frame = self.moments[number].frame
         step = next((step for step in frame.steps if step.agent == agent), None)
         shot = self.pictures.shoot(frame.scene, replace(camera, width=JUDGED[0], height=JUDGED[1]))
@@ -319,7 +328,7 @@ class Verified:
         ]
 
     def _rare(self, missed: Sequence[tuple[int, int]]) -> set[int]:
-        """Who is seen in less than half of its acts."""
+        """Persons that are visible in less than half of their acts."""
         acts, unseen = Counter(bit for _, bit in self._acts()), Counter(bit for _, bit in missed)
         return {bit for bit in acts if unseen[bit] > acts[bit] / 2}
 
@@ -347,7 +356,7 @@ class Verified:
         return missed, wrong
 
     def _verified(self, row: int, number: int, bit: int) -> bool:
-        """Whether a camera shows an act, by pixels; if not, this is remembered."""
+        """Return whether a camera shows an act, by pixels; if not, this is remembered."""
         key = row, number, bit
         if key not in self.known:
             planner = self.planner

@@ -12,27 +12,27 @@ from hearth.kb.modifiers import numbers
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
-from hearth.rendering.people.acting import Actor, elsewhere, initial_actors, moved, outermost
+from hearth.rendering.people.action_poses import Actor, elsewhere, initial_actors, moved, outermost
 from hearth.rendering.people.bedding import turned_back
 from hearth.rendering.people.clearance import faults
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.people.holding import held_things
-from hearth.rendering.people.pushing import slid
-from hearth.rendering.people.reaching import posed, reach_for
+from hearth.rendering.people.hand_reach import posed, reach_for
+from hearth.rendering.people.held_objects import held_things
+from hearth.rendering.people.pushed_objects import slid
 from hearth.rendering.people.skeleton import effort_of
-from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
-from hearth.rendering.rays.shot import Shot, shoot
+from hearth.rendering.rays.camera_shot import Shot, shoot
+from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.rendering.scene.added_furniture import furnished
+from hearth.rendering.scene.door_sweep import Floors
 from hearth.rendering.scene.effects import at_time, changes
-from hearth.rendering.scene.history import graphs
+from hearth.rendering.scene.film_variation import PLAIN, Variation, scattered
+from hearth.rendering.scene.graph_history import graphs
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import PreparedScene, prepared_scene
+from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import PreparedScene, prepared_scene
 from hearth.rendering.scene.standing_places import FreeFloor
-from hearth.rendering.scene.swept import Floors
 from hearth.rendering.scene.triangles import StaticThings
-from hearth.rendering.scene.variation import PLAIN, Variation, scattered
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Point, to_release
@@ -207,7 +207,7 @@ def _keyframes(
 
 
 def people_seed(execution: Execution, seed: int) -> int:
-    """The seed of who performs an execution: other programs and homes have other people."""
+    """Return the seed of the person who performs an execution: other programs and homes have other people."""
     return derive(seed, "people", execution.worlds[0].home.name, execution.program.title)
 
 
@@ -258,7 +258,7 @@ def advanced(
 
 
 def _settled(places: Places, graph: EnvironmentGraph, actors: Sequence[Actor], steps: Sequence[Step]) -> Places:
-    """The places after steps: what is put down is put down beside the actors, or where the steps say."""
+    """Yield the places after each step: objects are put down next to the actors, or where the steps say."""
     near = {actor.node.id: _put_down_at(actor) for actor in actors}
     put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}
     return places.settled(graph, near, {node: (at[0], at[1]) for node, at in put.items() if node is not None and at})
@@ -269,7 +269,7 @@ BESIDE = (0.42, 0.0, 0.12)
 
 
 def _put_down_at(actor: Actor) -> Point:
-    """Where an actor puts things down: near itself; who sits or lies, not under itself."""
+    """Return where an actor puts things down: near itself, and not under itself if it sits or lies."""
     return actor.position if actor.body_pose.posture == "standing" else actor.world(BESIDE)
 
 

@@ -18,10 +18,10 @@ from hearth.rendering.film.shots import Planner, Shots, room_at
 from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory
 from hearth.rendering.film.video_file import Writer
 from hearth.rendering.modalities import check_modalities, pictures_of
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.motion import Frame, Span, frames, spans
-from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
-from hearth.rendering.rays.shot import Shot, shoot
+from hearth.rendering.rays.camera_shot import Shot, shoot
+from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
@@ -113,8 +113,8 @@ def _with_next(found: Iterable[tuple[Frame, Camera]]) -> Iterator[tuple[tuple[Fr
 class CameraSelector:
     """Selects the camera of each frame.
 
-    `auto` shows each act so that the person and what it acts on can be recognised, in shots of at least three seconds;
-    see `shots`.
+    `auto` shows each act so that the person and its objects can be recognised, in shots of at least three seconds; see
+    `shots`.
     """
 
     def __init__(self, trajectory: Trajectory, home: EnvironmentGraph, view: str, size: tuple[int, int]) -> None:
@@ -162,7 +162,7 @@ class CameraSelector:
 def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Camera:
     """A camera between the actor's eyes, along its gaze; without a gaze it looks `pitch` degrees down.
 
-    A slight pitch shows the hands and what they hold.
+    A slight pitch shows the hands and the objects in them.
     """
     found = actor.figure().joints()
     head, face = found["head"], found["face"]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.rendering.arrays import Image
-from hearth.rendering.film.quiet import quiet
+from hearth.rendering.film.stderr_suppression import quiet
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library

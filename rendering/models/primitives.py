@@ -5,13 +5,13 @@ from functools import partial
 from typing import TypeVar
 
 from hearth.rendering.models import shapes
-from hearth.rendering.models.drape import drape
-from hearth.rendering.models.expressions import MATH, Values
-from hearth.rendering.models.leaf import leaf
-from hearth.rendering.models.look import Look, Region, nowhere, over, shelves, top
+from hearth.rendering.models.appearance import Look, Region, nowhere, over, shelves, top
+from hearth.rendering.models.blanket import drape
 from hearth.rendering.models.mesh import Mesh
+from hearth.rendering.models.model_expressions import MATH, Values
+from hearth.rendering.models.object_pictures import DESKTOPS, PAINTINGS, PROGRAMMES
 from hearth.rendering.models.paint import PAINTS, Paint
-from hearth.rendering.models.pictures import DESKTOPS, PAINTINGS, PROGRAMMES
+from hearth.rendering.models.plant_leaf import leaf
 
 Value = TypeVar("Value")
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.models import pictures
-from hearth.rendering.models.weave import SIDE, blend, grid_lines, noise, squares
+from hearth.rendering.models import object_pictures
+from hearth.rendering.models.texture_patterns import SIDE, blend, grid_lines, noise, squares
 
 
 def _grey(values: Floats) -> Floats:
@@ -119,7 +119,7 @@ TILES: dict[str, Callable[[], Floats]] = {
 }
 """Repeating textures that modulate the colour; linear values about 1."""
 
-SLOTS: dict[str, int] = {name: slot for slot, name in enumerate([*TILES, *pictures.PICTURES])}
+SLOTS: dict[str, int] = {name: slot for slot, name in enumerate([*TILES, *object_pictures.PICTURES])}
 """Index of each texture in the atlas."""
 
 LEVELS = 6
@@ -143,7 +143,7 @@ def atlas() -> NDArray[np.uint8]:
     """(slots, texels, 3) bytes: every texture with its mipmaps, level by level."""
     rows = np.empty((len(SLOTS), OFFSETS[-1], 3), np.uint8)
     for name, slot in SLOTS.items():
-        level = TILES[name]() if name in TILES else pictures.picture(name)
+        level = TILES[name]() if name in TILES else object_pictures.picture(name)
         for number in range(LEVELS):
             code = np.sqrt(np.clip(level, 0, RANGE) / RANGE) * 255 + 0.5
             rows[slot, OFFSETS[number] : OFFSETS[number + 1]] = code.astype(np.uint8).reshape(-1, 3)

@@ -1,4 +1,7 @@
-"""Bedding around who lies in a bed: a pillow under the head, a blanket over the legs, the rest beside or on top."""
+"""Bedding around a person who lies in a bed.
+
+A pillow under the head, a blanket over the legs, the rest next to the body or on top.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import cos, pi, radians, sin
 
-from hearth.homes.forms import form
-from hearth.rendering.models.drape import EMPTY
-from hearth.rendering.people.acting import Actor
+from hearth.homes.object_shapes import form
+from hearth.rendering.models.blanket import EMPTY
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.scene.free_poses import Pose
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import local_size
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.scene_preparation import local_size
 from hearth.schemas.graph import Box, Node, Point
 from hearth.simulation.world.affordance import is_of_kind
 
@@ -29,7 +32,7 @@ OPENED = 0.34
 """Depth in metres of a blanket that is folded back to the foot of the bed."""
 
 HEAD, HIPS = -0.43, 0.01
-"""Where a lying body's head and hips are along it, as shares of its height; its feet are towards +."""
+"""Positions of a lying body's head and hips along it, as shares of its height; its feet are towards +."""
 
 RAISED = 0.3
 """Share of the way of a blanket in which it rises over the feet."""
@@ -38,7 +41,7 @@ GRASPED = 0.7
 """Height at which hands hold a blanket's edge, as a share of its greatest."""
 
 PALM = 0.05
-"""Metres from what hands hold up to the middle of a palm."""
+"""Distance from a held object up to the middle of a palm, metres."""
 
 LIFTED = 0.12
 """Metres by which bedding is lifted where it is moved."""
@@ -63,7 +66,7 @@ def turned_back(places: Places, actors: Sequence[Actor]) -> Places:
 
 
 def _bedding_on(places: Places) -> dict[int, list[Node]]:
-    """Bedding by the id of what it lies on."""
+    """Bedding by the id of the bed."""
     on: dict[int, list[Node]] = {}
     for node in places.graph.nodes:
         location = places.locations.get(node.id)
@@ -74,7 +77,7 @@ def _bedding_on(places: Places) -> dict[int, list[Node]]:
 
 
 def covers(pose: Pose) -> bool:
-    """Whether bedding is a blanket over somebody's legs."""
+    """Return whether bedding is a blanket over somebody's legs."""
     return pose.box.size[1] > EMPTY and local_size(pose.box.size, pose.yaw or 0.0)[2] >= SPREAD
 
 
@@ -112,7 +115,7 @@ class Remade:
 
     @classmethod
     def between(cls, before: Places, after: Places, bed: int) -> Remade:
-        """What differs in a bed between two keyframes' places."""
+        """Differences in a bed between two keyframes' places."""
         moved: dict[int, tuple[Pose, Pose]] = {}
         cover, over = 0, None
         for node in _bedding_on(before).get(bed, ()):
@@ -128,7 +131,7 @@ class Remade:
         return cls(moved, cover, over)
 
     def at(self, made: float | None, covered: float | None) -> dict[int, Pose]:
-        """The poses of what lies otherwise than in the keyframes, by id.
+        """Return the poses of bedding that lies otherwise than in the keyframes, by id.
 
         Args:
             made: share of the way on which things are; None if nobody moves them.
@@ -154,10 +157,10 @@ def glided(start: Pose, end: Pose, share: float) -> Pose:
 
 @dataclass(frozen=True, slots=True)
 class _Bed:
-    """A bed in the frame of who lies in it: x to the side, z towards the feet.
+    """A bed in the frame of the person lying in it: x to the side, z towards the feet.
 
     Attributes:
-        actor: who lies there.
+        actor: the lying actor.
         top: height of the mattress in that frame.
         middle, size: of the bed's box.
     """
@@ -174,7 +177,7 @@ class _Bed:
 
     @property
     def free(self) -> tuple[float, float]:
-        """From where to where across there is room beside who lies there, on the wider side."""
+        """Return the range across the bed that is free on the wider side of the lying person."""
         low, high = self.middle[0] - self.size[0] / 2, self.middle[0] + self.size[0] / 2
         return (BESIDE, high) if high > -low else (low, -BESIDE)
 

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from hearth.rendering.people.body_shape import Shape, proportions
 from hearth.rendering.people.proportions import Proportions, standard
-from hearth.rendering.people.shape import Shape, proportions
 from hearth.schemas.yaml_extent import packaged
 
 
@@ -15,11 +15,11 @@ class Body:
         height: metres.
         build: scale of the width of limbs and trunk of the simple figure; 1 is average.
         skin, hair, top, bottom, shoes, iris: colours as `#rrggbb`.
-        style: of the hair, one of `HAIR` (dressed.py).
+        style: of the hair, one of `HAIR` (clothed_body.py).
         weave: texture of the top.
         skirt: whether a skirt replaces the simple figure's trousers.
         sleeves: covered share of the simple figure's arms, 0 to 1.
-        garment, legwear: what is worn above and below, of `UNDER` (dressed.py).
+        garment, legwear: what is worn above and below, of `UNDER` (clothed_body.py).
         shape: of the body; None draws the simple figure.
     """
 

@@ -1,4 +1,4 @@
-"""Places on one's own body to which hands go: where a garment is put on, and what is washed."""
+"""Targets for hands on the person's own body, to put on a garment or to wash."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.aims import OTHER, SIDES, Aim
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Hand
+from hearth.rendering.people.palm_targets import OTHER, SIDES, Aim
 from hearth.schemas.graph import Point
 from hearth.schemas.yaml_extent import packaged
 
@@ -18,7 +18,7 @@ CHEST = "chest"
 
 
 class At(NamedTuple):
-    """Where a palm is, from a joint, metres, and where it looks; of the right hand."""
+    """Position of a palm relative to a joint, metres, and its direction; of the right hand."""
 
     palm: Point
     facing: Point

@@ -28,7 +28,7 @@ class Foot(NamedTuple):
 
 
 class Held(NamedTuple):
-    """How a held thing differs from the way in which it is usually held.
+    """The difference of a held thing's pose from its usual pose in the hand.
 
     Attributes:
         turn: degrees about y by which it is turned further.
@@ -126,7 +126,7 @@ class BodyPose:
         return self.right_hand if side == "r" else self.left_hand
 
     def tuck(self, side: str) -> float:
-        """How far the `r` or `l` arm is drawn in."""
+        """Return how far the `r` or `l` arm is drawn in."""
         return self.tucked[side == "l"]
 
 

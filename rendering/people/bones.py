@@ -6,10 +6,10 @@ import numpy as np
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.people.body_pose import BodyPose, Foot
+from hearth.rendering.people.body_shape import FORWARD, LOWERED, Shape, body_data, proportions, shaped
 from hearth.rendering.people.grips import GRIPS
 from hearth.rendering.people.proportions import Proportions
 from hearth.rendering.people.rotations import Vector, about, leaning, unit, yawed
-from hearth.rendering.people.shape import FORWARD, LOWERED, Shape, body_data, proportions, shaped
 from hearth.rendering.people.skeleton import Joints, bend, feet_of, laid, upright
 
 RIG_SIDE = {"r": "l", "l": "r"}
@@ -57,7 +57,7 @@ def _motions(body_pose: BodyPose, shape: Shape, height: float, body: Proportions
 
 @lru_cache(maxsize=64)
 def _rest(shape: Shape, height: float) -> Joints:
-    """Joints and ends of bones in the rest pose; Hearth's names, and those of the rig for what only it has."""
+    """Joints and ends of bones in the rest pose, by Hearth's names, and by the rig's names where Hearth has none."""
     data, person, body = body_data(), shaped(shape, height), proportions(shape, height)
     found: Joints = {name: person.heads[number] for number, name in enumerate(data.bones)}
     found |= {f"{name}_end": person.tails[number] for number, name in enumerate(data.bones)}
@@ -139,7 +139,7 @@ def _arm(
 
 
 def _natural(side: str, elbow: Vector, wrist: Vector) -> Vector:
-    """Where the palm of an arm that hangs looks: inwards and a little back; down if the forearm is level."""
+    """Return where the palm of an arm that hangs looks: inwards and a little back; down if the forearm is level."""
     level = 1 - abs(float(unit(wrist - elbow)[1]))
     inwards = np.array((-1.0 if side == "r" else 1.0, 0.0, -0.35))
     found: Vector = inwards * (1 - level) + np.array((0.0, -1.0, 0.0)) * level

@@ -11,7 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import drawn_in
 from hearth.rendering.people.gait import SAMPLED, Place, eased
 from hearth.rendering.people.rotations import yawed
@@ -122,8 +122,9 @@ def _soft(inside: NDArray[np.bool_]) -> NDArray[np.float64]:
 
 
 def faults(actor: Actor, solids: Solids, reached: Collection[int] = ()) -> int:
-    """How many joints of an actor are in solid things, those of the trunk counted twice; hands out of reach of their
-    targets count like those.
+    """Return the number of an actor's joints that are inside solid things.
+
+    Joints of the trunk count twice, and so do hands out of reach of their targets.
 
     Args:
         actor: in a pose.

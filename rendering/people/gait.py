@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Foot, drawn_in
 from hearth.rendering.people.skeleton import STEP, effort_of, feet_of, sinking
 from hearth.schemas.graph import Spot
@@ -21,7 +21,10 @@ STEP_TIME = 0.52
 """Seconds of a walking step."""
 
 LONGEST = 0.62
-"""Metres of a step of an adult, at most: who runs takes quicker steps; for longer ones the hips would drop."""
+"""Longest step of an adult, metres.
+
+A running person takes quicker steps instead, because longer ones would lower the hips.
+"""
 
 ADULT = 1.65
 """Metres of height below which steps are shorter."""
@@ -33,10 +36,13 @@ TURNING = 130.0
 """Degrees per second."""
 
 CORNERING = 170.0
-"""Degrees per second at most of who walks round a corner: one slows down for sharp ones, where the head would fly."""
+"""Fastest turn of a person walking round a corner, degrees per second.
+
+The person slows down at sharp corners, so that the head does not jerk.
+"""
 
 SWUNG = 1.5
-"""Metres per second of hands at most as the body turns: who carries something wide turns slowly."""
+"""Fastest movement of hands while the body turns, metres per second: a person carrying a wide object turns slowly."""
 
 BRIEF = 0.6
 """Share of `TURNING` at which one turns, on average, on a way of a few steps."""
@@ -186,7 +192,7 @@ def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float, reac
         ends = eased(way / 0.45) * eased((route.length - way) / 0.45) * turned
         straight = place.yaw + angle(place.yaw, yaw) * eased(way / route.length)
         aside = angle(straight, route.heading(way))
-        # Who walks backwards does not flip from one side to the other.
+        # A person walking backwards does not flip from one side to the other.
         return Place(*route.spot(way), straight + aside * ends * min(1.0, (180 - abs(aside)) / 120))
 
     return slowed(Movement(route.seconds * slower, at), reach)
@@ -237,7 +243,7 @@ class Gait:
     """The motion of a body and its feet over the floor.
 
     Args:
-        actor: who moves, standing; its feet begin where they are.
+        actor: the walking actor, standing; its feet begin where they are.
         moves: what its body does.
         arms: how far both arms are drawn in at places every `SAMPLED` seconds, (n, 2); None draws in none.
         end: how far they are drawn in at the end.
@@ -251,7 +257,7 @@ class Gait:
         self.actor, self.moves, self.end = actor, moves, end
         self.effort = effort_of(actor.body_pose, actor.body.proportions)
         self.moving = sum(move.seconds for move in moves)
-        # Who has shorter legs takes more steps.
+        # A person with shorter legs takes more steps.
         step = min(STEP_TIME, LONGEST / speed) * min(actor.body.height / ADULT, 1.0)
         self.count = max(1, ceil(self.moving / step))
         self.step = self.moving / self.count
@@ -264,7 +270,7 @@ class Gait:
             self.arms = arms([self.place(min(k * SAMPLED, self.moving)) for k in range(count)])
 
     def tucked(self, time: float) -> tuple[float, float]:
-        """How far the right and the left arm are drawn in."""
+        """Return how far the right and the left arm are drawn in."""
         early, late = eased(time / SETTLING), eased((self.seconds - time) / SETTLING)
         brief = min(1.0, self.seconds / (4 * SETTLING))
         found: list[float] = []
@@ -287,7 +293,7 @@ class Gait:
         return self.moves[-1].at(self.moves[-1].seconds)
 
     def _prints(self) -> tuple[list[Print], list[Print]]:
-        """Where the right and the left foot stand, and from when."""
+        """Return where the right and the left foot stand, and from when."""
         own = self.actor.body.proportions
         start = Place(*self.actor.spot, self.actor.yaw)
         rest = feet_of(replace(self.actor.body_pose, posture="standing", stride=0.0, feet=None), own)
@@ -337,7 +343,10 @@ class Gait:
         return local(place, here.place, 0.0, pitch)
 
     def _sinks(self) -> Floats:
-        """How low the hips are every `BOBBING` seconds: as low as feet that are far apart need, without haste."""
+        """Return how low the hips are every `BOBBING` seconds.
+
+        As low as feet that are far apart need, without haste.
+        """
         pose, own = replace(self.actor.body_pose, stride=0.0), self.actor.body.proportions
         found = np.zeros(ceil(self.seconds / BOBBING) + 1)
         for number in range(len(found)):
@@ -382,7 +391,7 @@ class Gait:
 
 
 def in_world(place: Place, foot: Foot) -> Place:
-    """Where a foot of a body at a place is."""
+    """Return where a foot of a body at a place is."""
     c, s = cos(place.yaw * pi / 180), sin(place.yaw * pi / 180)
     return Place(place.x + foot.x * c + foot.z * s, place.z - foot.x * s + foot.z * c, place.yaw + foot.yaw)
 

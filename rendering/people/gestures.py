@@ -11,8 +11,8 @@ class Gesture:
     """The gesture of an action.
 
     Attributes:
-        hand: what the hands do (reaching.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`, `push`, `wear`,
-            `wave`, or "" (nothing but carrying).
+        hand: what the hands do (hand_reach.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`, `push`,
+            `wear`, `wave`, or "" (nothing but carrying).
         grip: form of the hand that touches an object, of `GRIPS`.
         motion: of the hands while they act: `rub`, `keys`, or "" (none).
         seconds: for which they act.
@@ -22,7 +22,7 @@ class Gesture:
         about: index of the object that hands or gaze go to.
         rests: whether the object is a seat or bed to sit or lie on.
         asleep: whether the eyes stay closed until the next action.
-        tools: classes and kinds of what acts if a hand holds it.
+        tools: classes and kinds of the tools that act if a hand holds them.
         moves: metres by which the object slides away from the actor; below 0 towards it.
         swings: whether doors or drawers of the object swing.
         into: whether hands go into an open container, that of the object or the object itself.

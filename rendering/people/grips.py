@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Bends(NamedTuple):
-    """How far the joints of a hand are bent, degrees.
+    """Bend of the joints of a hand, degrees.
 
     Attributes:
         fingers: of the three joints of each finger.

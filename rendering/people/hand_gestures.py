@@ -8,8 +8,12 @@ from math import radians, sin
 import numpy as np
 
 from hearth.kb.modifiers import value
-from hearth.rendering.people.acting import Actor, reachable
-from hearth.rendering.people.aims import (
+from hearth.rendering.people.action_poses import Actor, reachable
+from hearth.rendering.people.body_places import PLACE_OF, at_body
+from hearth.rendering.people.body_pose import Hand, Held
+from hearth.rendering.people.gestures import Gesture
+from hearth.rendering.people.held_objects import hold_of_node
+from hearth.rendering.people.palm_targets import (
     OTHER,
     SIDES,
     Aim,
@@ -21,12 +25,8 @@ from hearth.rendering.people.aims import (
     raised,
     thing_aim,
 )  # fmt: skip
-from hearth.rendering.people.body_places import PLACE_OF, at_body
-from hearth.rendering.people.body_pose import Hand, Held
-from hearth.rendering.people.gestures import Gesture
-from hearth.rendering.people.holding import hold_of_node
 from hearth.rendering.people.rotations import unit
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 
@@ -92,7 +92,7 @@ def _putting(actor: Actor, thing: int, side: str, graph: EnvironmentGraph, place
 def _pouring(
     actor: Actor, held: Mapping[str, int], side: str, target: int, graph: EnvironmentGraph, places: Places
 ) -> dict[str, Aim]:
-    """What is held tilts over the target."""
+    """Tilt the held object over the target."""
     pose = places.poses.get(target) or reachable(target, places)[0]
     if pose is None or side not in held:
         return {}
@@ -100,7 +100,7 @@ def _pouring(
     hold, size, sign = hold_of_node(node, places, side), places.size_of(node), SIDES[side]
     x, y, z = actor.local(pose.box.center)
     top = y + pose.box.size[1] / 2
-    # Tilted to the other side the lip is beside the hand.
+    # Tilted to the other side, the lip is next to the hand.
     out = 0.5 * size[1] * sin(radians(TILTED)) + 0.02
     palm = (x + sign * out, top + ABOVE + 0.35 * size[1], z - 0.02)
     stream = (x, y, z)
@@ -111,7 +111,7 @@ def _pouring(
 def _to_mouth(
     actor: Actor, held: Mapping[str, int], side: str, graph: EnvironmentGraph, places: Places
 ) -> dict[str, Aim]:
-    """What is held with its rim at the mouth; without anything the hand itself."""
+    """Bring the rim of the held object to the mouth; an empty hand goes there itself."""
     joints, h, sign = actor.figure().joints(), actor.body.height, SIDES[side]
     head = joints["head"]
     mouth = (float(head[0]), float(head[1]) - 0.045 * h, float(head[2]) + 0.085 * h / 1.7)
@@ -134,7 +134,7 @@ def _to_mouth(
 
 
 def _waving(actor: Actor, side: str) -> dict[str, Aim]:
-    """A hand raised beside the head."""
+    """Raise a hand next to the head."""
     sign = SIDES[side]
     return {side: Aim((sign * 0.3, 0.94 * actor.body.height + raised(actor), 0.2), Hand("flat", (0.0, 0.0, 1.0)))}
 
@@ -157,7 +157,7 @@ def _typing(actor: Actor, target: int, places: Places) -> dict[str, Aim]:
 def _reading(
     actor: Actor, held: Mapping[str, int], side: str, graph: EnvironmentGraph, places: Places
 ) -> dict[str, Aim]:
-    """What is held open before the chest, with both hands if the other is free."""
+    """Hold the object open before the chest, with both hands if the other is free."""
     if side not in held:
         return {}
     node, h, lower, sign = node_of(graph, held[side]), actor.body.height, raised(actor), SIDES[side]
@@ -174,7 +174,7 @@ def _reading(
 def _rubbing(
     actor: Actor, held: Mapping[str, int], side: str, target: int, graph: EnvironmentGraph, places: Places
 ) -> dict[str, Aim]:
-    """A hand, or the tool in it, on what is wiped or washed; what is held itself is rubbed by the other hand."""
+    """Move a hand, or the tool in it, on the wiped or washed object; a held object is rubbed by the other hand."""
     if target in held.values():
         holder = next(s for s, node in held.items() if node == target)
         found = carrying(actor, {holder: target}, graph, places)
@@ -214,7 +214,7 @@ def _on_body(
 
 
 def _pushing(actor: Actor, held: Mapping[str, int], target: int, places: Places) -> dict[str, Aim]:
-    """Flat hands on the near side of what is pushed or pulled."""
+    """Lay flat hands on the near side of the pushed or pulled object."""
     pose = places.poses.get(target) or reachable(target, places)[0]
     if pose is None:
         return {}

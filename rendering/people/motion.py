@@ -5,11 +5,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from hearth.rendering.film.snapshots import Keyframe, Trajectory
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.arrivals import Arrivals, arrivals
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.bedding import Remade
-from hearth.rendering.people.holding import held_things
-from hearth.rendering.people.tracks import HOLD, Track, motionless, track
+from hearth.rendering.people.held_objects import held_things
+from hearth.rendering.people.motion_tracks import HOLD, Track, motionless, track
+from hearth.rendering.people.object_arrivals import Arrivals, arrivals
 from hearth.rendering.scene.effects import at_time
 from hearth.rendering.scene.free_poses import Pose
 from hearth.rendering.scene.instances import Thing
@@ -87,7 +87,7 @@ def _bedding(before: Keyframe, after: Keyframe, tracks: Sequence[Track], past: f
 
 
 def _arrivals(trajectory: Trajectory, before: Keyframe, after: Keyframe, tracks: Sequence[Track]) -> Arrivals:
-    """What has a way left when all hands have arrived; bedding that people move is not counted."""
+    """Objects that still move when all hands have arrived; bedding that people move is not counted."""
     change = _change(tracks)
     actors = tuple(track.at(change) for track in tracks)
     moved = _bedding(before, after, tracks, change).keys()

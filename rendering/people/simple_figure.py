@@ -1,4 +1,4 @@
-"""The simple figure: a body of balls and rods around the joints, for who is drawn without a shape."""
+"""The simple figure: a body of balls and rods around the joints, for persons without a shape."""
 
 from __future__ import annotations
 

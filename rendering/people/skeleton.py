@@ -71,7 +71,7 @@ def bend(body_pose: BodyPose, body: Proportions) -> tuple[float, float]:
 
 @lru_cache(maxsize=64)
 def effort_of(body_pose: BodyPose, body: Proportions) -> float:
-    """How far a body stoops: as its pose says, else the least with which the hands reach their targets."""
+    """Return how far a body stoops: as its pose says, else the least with which the hands reach their targets."""
     if body_pose.effort is not None:
         return body_pose.effort
     targets = [np.array(t) for t in (body_pose.right, body_pose.left) if t is not None]
@@ -167,7 +167,7 @@ def _hips(body_pose: BodyPose, body: Proportions, drop: float) -> Vector:
 
 
 def sinking(body_pose: BodyPose, body: Proportions) -> float:
-    """Metres by which the hips of who walks upright are lower than standing, so that both feet are reached."""
+    """Drop of the hips of an upright walking person below standing, metres, so that both feet are reached."""
     return body.pelvis - float(_hips(body_pose, body, 0.0)[1])
 
 
@@ -249,10 +249,10 @@ def _relaxed_hand(found: Joints, side: str, sign: float, body: Proportions, body
     hanging: Vector = shoulder + np.array((sign * out, -body.arm * 0.955, 0.03 * h + swing))
     share = seated(body_pose, body)
     hip = found[f"hip_{side}"]
-    # Hands rest where the knees will be: those of who sits down follow the feet, which step.
+    # Hands rest where the knees will be: a person's hands follow the stepping feet as it sits down.
     foot = feet_of(replace(body_pose, feet=None), body)[side == "l"] if share else None
     knee = _leg(hip, foot, sign, body)[0] if foot else hip
-    # Of who sits on the floor, with the knees up, hands are before the knees, not between them and the chest.
+    # A person on the floor with the knees up has the hands before the knees, not between knees and chest.
     raised = min(max(float(knee[1] - hip[1]) / (0.25 * h), 0.0), 1.0)
     on_thigh: Vector = (
         hip + (knee - hip) * (0.62 + 0.36 * raised) + np.array((0, (0.05 - 0.07 * raised) * h, 0.13 * h * raised))
@@ -263,7 +263,7 @@ def _relaxed_hand(found: Joints, side: str, sign: float, body: Proportions, body
 
 
 def _before_belly(found: Joints, sign: float, body: Proportions) -> Vector:
-    """Where the hand of an arm that is drawn in rests."""
+    """Return where the hand of an arm that is drawn in rests."""
     up = unit(found["chest"] - found["spine"])
     forward = np.cross((1.0, 0.0, 0.0), up)
     here: Vector = found["spine"] + forward * 0.11 * body.height + (sign * 0.035 * body.height, 0.0, 0.0)

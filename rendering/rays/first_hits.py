@@ -1,6 +1,6 @@
 """First hits of a camera's rays by rasterising, several times as fast as casting them.
 
-Triangles and depths are those of `casting`, but where two triangles are equally near either may win.
+Triangles and depths are those of `ray_casting`, but where two triangles are equally near either may win.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.cameras.camera import NEAREST, Camera
-from hearth.rendering.rays import rasterising
-from hearth.rendering.rays.casting import Hits
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays import rasterizer
+from hearth.rendering.rays.ray_casting import Hits
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.threads import count, each
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ NO_TILES: Floats = np.zeros((0, 0), np.float32)
 
 
 def drawable(camera: Camera) -> bool:
-    """Whether a camera's rays begin at one depth: those of views from above do if they look straight down."""
+    """Return whether a camera's rays begin at one depth: those of views from above do if they look straight down."""
     return camera.cut is None or (camera.eye[0], camera.eye[2]) == (camera.target[0], camera.target[2])
 
 
@@ -57,13 +57,13 @@ class Canvas:
         """Those of some things that may cover pixels; hidden ones are left out if `tiles` are given."""
         found = np.empty(len(things), np.int64)
         where = (self.frame, self.camera.width, self.camera.height, self.near)
-        return found[: rasterising.in_view(part.extents, things, *where, tiles, found)]
+        return found[: rasterizer.in_view(part.extents, things, *where, tiles, found)]
 
     def tiles(self) -> Floats:
         """The least inverse depth of each tile."""
-        rows, columns = (-(-side // rasterising.TILE) for side in self.depth.shape)
+        rows, columns = (-(-side // rasterizer.TILE) for side in self.depth.shape)
         found = scratch(f"{self.use} tiles", rows, columns)
-        rasterising.farthest(self.depth, 0, len(self.depth), found)
+        rasterizer.farthest(self.depth, 0, len(self.depth), found)
         return found
 
     def draw(self, part: Part, things: Numbers) -> None:
@@ -78,20 +78,20 @@ class Canvas:
 
         def projected(number: int) -> int:
             where = (part.mesh.corners, part.starts, part.ends, shares[number], self.frame, *size, self.near)
-            return rasterising.project(*where, *memory[number])
+            return rasterizer.project(*where, *memory[number])
 
         filled = each(projected, range(len(shares)))
 
         def work(band: tuple[int, int]) -> None:
             for known, number in zip(memory, filled, strict=True):
-                rasterising.fill(*known, number, *band, self.depth, self.triangle)
+                rasterizer.fill(*known, number, *band, self.depth, self.triangle)
 
         each(work, bands(self.camera.height))
 
     def _memory(self, part: Part, things: Numbers, number: int) -> tuple[NDArray[Any], NDArray[Any]]:
         size = 2 * int((part.ends - part.starts)[things].sum())
-        records = scratch(f"{self.use} records {number}", size, rasterising.RECORD, dtype=np.float64)
-        return records, scratch(f"{self.use} places {number}", size, rasterising.PLACE, dtype=np.int32)
+        records = scratch(f"{self.use} records {number}", size, rasterizer.RECORD, dtype=np.float64)
+        return records, scratch(f"{self.use} places {number}", size, rasterizer.PLACE, dtype=np.int32)
 
 
 SEVERAL = 2000
@@ -112,7 +112,7 @@ def static_hits(part: Part, camera: Camera, rays: Floats, hits: Hits) -> None:
     flat, width, corners = canvas.triangle.reshape(-1), camera.width, part.mesh.corners
 
     def work(band: tuple[int, int]) -> None:
-        rasterising.resolve(flat, band[0] * width, band[1] * width, corners, rays, *hits)
+        rasterizer.resolve(flat, band[0] * width, band[1] * width, corners, rays, *hits)
 
     each(work, bands(camera.height))
 
@@ -133,5 +133,5 @@ def moving_hits(part: Part, camera: Camera, rays: Floats, first: int, hits: Hits
     (left, top), (right, bottom) = extents[:, :2].min(axis=0), extents[:, 2:].max(axis=0)
     won = np.empty(len(rays), np.int32)
     where = (int(top), int(bottom), int(left), int(right), camera.width)
-    changed = rasterising.nearer_hits(canvas.triangle.reshape(-1), *where, part.mesh.corners, first, rays, *hits, won)
+    changed = rasterizer.nearer_hits(canvas.triangle.reshape(-1), *where, part.mesh.corners, first, rays, *hits, won)
     return won[:changed].copy()

@@ -1,9 +1,9 @@
 """Basic loops over pixels and triangles, compiled by numba.
 
-They are compiled on first use and cached beside the source (or in the user's cache folder if that is not writable).
-They release the interpreter's lock, so that threads run in parallel. All numbers, constants included, are float32: one
-double would turn every result into doubles. Kernels called for every pixel take numbers, not arrays: reference counts
-of arrays cost more than the computation, and threads contend for them.
+They are compiled on first use and cached in the folder of the source (or in the user's cache folder if that is not
+writable). They release the interpreter's lock, so that threads run in parallel. All numbers, constants included, are
+float32: one double would turn every result into doubles. Kernels called for every pixel take numbers, not arrays:
+reference counts of arrays cost more than the computation, and threads contend for them.
 """
 
 from collections.abc import Callable

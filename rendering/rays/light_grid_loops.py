@@ -31,7 +31,7 @@ def middle(corners: Floats, chosen: Any) -> Floats:
 
 @kernel
 def seen_from(frame: Floats, is_sun: bool, x: Any, y: Any, z: Any) -> Any:
-    """Where a point lies from a light: across, up, and how far along the grid's axis."""
+    """Return where a point lies from a light: across, up, and how far along the grid's axis."""
     x, y, z = x - frame[0], y - frame[1], z - frame[2]
     right = x * frame[3] + y * frame[4] + z * frame[5]
     up = x * frame[6] + y * frame[7] + z * frame[8]
@@ -125,7 +125,7 @@ def crosses(
     ax: Any, ay: Any, az: Any, bx: Any, by: Any, bz: Any, cx: Any, cy: Any, cz: Any,
     x: Any, y: Any, z: Any, dx: Any, dy: Any, dz: Any, far: Any,
 ) -> Any:  # fmt: skip
-    """Whether a ray meets a triangle before `far` times its direction (Möller and Trumbore, without a division).
+    """Return whether a ray meets a triangle before `far` times its direction (Möller and Trumbore, without a division).
 
     The triangle is a corner, and the ways from there to the two others.
     """

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.rays import light_grid_loops as loops
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.threads import each
 
 LEAST_SIZE, GREATEST_SIZE = 8, 128

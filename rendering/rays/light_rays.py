@@ -209,7 +209,7 @@ def aim_around(points: Floats, flats: Floats, noise: Floats, number: int, share:
 
 @kernel
 def _meets(boxes: Floats, x: Any, y: Any, z: Any, dx: Any, dy: Any, dz: Any) -> bool:
-    """Whether a ray, up to its end, intersects one of (B, 6) boxes."""
+    """Return whether a ray, up to its end, intersects one of (B, 6) boxes."""
     for b in range(len(boxes)):
         near, far = slab(boxes[b, 0], boxes[b, 3], x, dx, ZERO, ONE)
         near, far = slab(boxes[b, 1], boxes[b, 4], y, dy, near, far)

@@ -6,7 +6,7 @@ import numpy as np
 
 from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.rays import shading
-from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays.ray_casting import Hits
 from hearth.rendering.rays.shading import Setting
 from hearth.rendering.scene.triangles import Geometry
 
@@ -17,7 +17,7 @@ SILVER = np.array((0.9, 0.93, 0.92))
 def mirrored(
     rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out: Bytes, among: Ints | None = None
 ) -> int:
-    """Replace the colours of pixels that show a mirror by what is seen in it; returns their number.
+    """Replace the colors of mirrors' pixels by their reflections; return the number of these pixels.
 
     Args:
         rays, hits, geometry: of all pixels.

@@ -1,7 +1,7 @@
 """Shading of hits: visibility of lights from each visible point, and the resulting colours.
 
 Pixels are processed in chunks that fit the processor's cache, by one thread per processor. The loops are in
-`light_rays` and `lamplight`.
+`light_rays` and `surface_lighting`.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.models.textures import decode, texels
-from hearth.rendering.rays import lamplight as loops
 from hearth.rendering.rays import light_rays
-from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays import surface_lighting as loops
 from hearth.rendering.rays.kernels import COLUMNS, FLAT, gather_rows
 from hearth.rendering.rays.light_rays import OPEN
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.ray_casting import Hits
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.shadow_loops import own_groups
 from hearth.rendering.rays.shadow_maps import occluded
 from hearth.rendering.rays.threads import each
@@ -73,7 +73,7 @@ class Setting:
         return np.flatnonzero((area[0] < x1) & (area[1] > x0) & (area[2] < z1) & (area[3] > z0)).astype(np.int32)
 
     def shadowed(self, number: int) -> bool:
-        """Whether a light casts shadows: windows are wide and cast only soft ones."""
+        """Return whether a light casts shadows: windows are wide and cast only soft ones."""
         return self.fine or self.lights[number].facing is None
 
 
@@ -214,7 +214,7 @@ def _own_groups(surface: SurfacePoints, geometry: Geometry) -> Ints:
 
 
 class Looked(NamedTuple):
-    """What rays to a light are looked up by: see `shadow_maps.occluded`."""
+    """Data by which rays to a light are looked up: see `shadow_maps.occluded`."""
 
     places: Ints
     own: Ints
@@ -294,12 +294,12 @@ def _target(setting: Setting, column: int) -> Floats:
 
 
 def _moves_before(moving: Part, setting: Setting, column: int) -> bool:
-    """Whether something that moves may lie between a light and what it lights."""
+    """Return whether something that moves may lie between a light and its lit objects."""
     return len(moving.mesh) > 0 and (column == SUN or _between(setting.rows[column - 1], moving.boxes))
 
 
 def _between(light: Floats, boxes: Floats) -> bool:
-    """Whether one of (B, 6) boxes may lie between a lamp and the area that it lights."""
+    """Return whether one of (B, 6) boxes may lie between a lamp and the area that it lights."""
     (x, _, z), (west, east, south, north) = light[:3], light[light_rays.L_AREA : light_rays.L_AREA + 4]
     across = (boxes[:, 0] <= max(east, x)) & (boxes[:, 3] >= min(west, x))
     return bool((across & (boxes[:, 2] <= max(north, z)) & (boxes[:, 5] >= min(south, z))).any())

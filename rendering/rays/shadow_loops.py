@@ -1,8 +1,8 @@
 """Compiled loops of shadow maps: triangles are drawn into them with bounds, and points are looked up.
 
-A map is a picture that a light has of the things: for each texel, bounds of how near they are to the light. Nearness is
-the inverse depth for a lamp, and the height towards the sun. Bounds hold for the whole texel, and for what touches it
-at a corner, so that what they say of a point is what a ray would say.
+A map is a picture of the things, taken from a light. Each texel has bounds of their nearness to the light. Nearness is
+the inverse depth for a lamp, and the height towards the sun. Bounds hold for the whole texel, and for everything that
+touches it at a corner, so that a bound and a ray agree about a point.
 """
 
 from typing import Any
@@ -183,7 +183,7 @@ def draw_plane(
 
 @kernel
 def judged(q: Any, own: int, first: Any, other: Any, covered: Any, group: int, slack: Any) -> int:
-    """Whether a point of nearness `q` and of a group is DARK, LIT or UNSURE, by a texel's bounds."""
+    """Return whether a point of nearness `q` and of a group is DARK, LIT or UNSURE, by a texel's bounds."""
     if q > (other if own >= 0 and own == group else first) + slack:
         return LIT
     return DARK if covered > q + np.float32(10) * slack else UNSURE

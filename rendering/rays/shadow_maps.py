@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.rays import shadow_loops as loops
-from hearth.rendering.rays.casting import Caster
-from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.ray_casting import Caster
+from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.threads import each
-from hearth.rendering.rays.unshaded_groups import unshaded_groups
+from hearth.rendering.rays.unshadowed_groups import unshaded_groups
 
 WORTH = 600_000
-"""Rays to a light from which on its map is made: about what making it costs."""
+"""Number of rays to a light from which on its map is made: about the cost of making it."""
 
 CUBE, PLANE = 256, 1024
 """Width in texels of a face of a lamp's map, and of the sun's."""
@@ -46,7 +46,7 @@ class ShadowMap(NamedTuple):
     scale: float = 0.0
 
     def certain(self, rays: Floats, index: Ints, own: Ints, blocked: Any, rest: Floats, places: Ints) -> int:
-        """Fill in what is certain; returns the number of rays left; see `shadow_loops.look_up_cube`."""
+        """Fill in the rays that are certain; return the number of the others; see `shadow_loops.look_up_cube`."""
         bounds = self.first, self.other, self.covered, self.groups
         if self.frame is None:
             return int(loops.look_up_cube(rays, index, own, *bounds, blocked, rest, places))
@@ -75,7 +75,7 @@ class ShadowMaps:
     _groups: Ints | None = None
 
     def groups(self) -> Ints:
-        """(T,) of the triangles that do not shade each other, see `unshaded_groups`; made at their first use."""
+        """(T,) of the triangles that do not shade each other, see `unshadowed_groups`; made at their first use."""
         if self._groups is None:
             self._groups = unshaded_groups(self.corners, self.owner)
         return self._groups

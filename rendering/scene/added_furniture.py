@@ -10,13 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from hearth.homes.plans import raster
+from hearth.rendering.scene.door_sweep import Floors
 from hearth.rendering.scene.floor_cells import CELL, cells_of, eroded, is_in_the_way
 from hearth.rendering.scene.free_poses import Pose
-from hearth.rendering.scene.locations import BUILDING, Location, locations_of
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.object_locations import BUILDING, Location, locations_of
 from hearth.rendering.scene.routes import NARROW, Cells
 from hearth.rendering.scene.standing_places import FreeFloor
-from hearth.rendering.scene.swept import Floors
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 
@@ -36,7 +36,7 @@ FREE = 0.55
 """Metres in front of furniture that stay free, so that one can use it."""
 
 LEGS = 0.45
-"""Metres in front of a seat that the legs of who sits there need."""
+"""Space in front of a seat for the legs of a sitting person, metres."""
 
 
 def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places:
@@ -66,8 +66,9 @@ def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places
 
 
 def _stands(node: Node, location: Location, nodes: Mapping[int, Node], places: Places) -> bool:
-    """Whether a node is furniture in a room, chairs that one can carry included: on its floor, said or not, or at one
-    of its walls.
+    """Return whether a node is furniture in a room, portable chairs included.
+
+    Furniture is on the room's floor, by an edge or without one, or at a wall of the room.
     """
     carried = "GRABBABLE" in node.properties and "SITTABLE" not in node.properties
     movable = carried or node.category in (CHARACTER_CATEGORY, ROOM_CATEGORY, "BodyParts")
@@ -139,7 +140,7 @@ def _cost(place: Place, room: Box) -> float:
 
 
 def _fits(place: Place, free: Cells, origin: Spot) -> bool:
-    """Whether nothing stands at a place, nor just in front of it."""
+    """Return whether nothing stands at a place, nor just in front of it."""
     front = (sin(radians(place.yaw)) * FREE / 2, cos(radians(place.yaw)) * FREE / 2)
     size = (place.size[0] + 2 * abs(front[0]), place.size[1] + 2 * abs(front[1]))
     part = free[_cells((place.spot[0] + front[0], place.spot[1] + front[1]), size, origin)]
@@ -162,7 +163,7 @@ def _with_legroom(free: Cells, origin: Spot, places: Places) -> Cells:
 
 
 def _leaves_ways(place: Place, free: Cells, origin: Spot, floor: FreeFloor) -> bool:
-    """Whether all that could be walked, and is still free, is still joined."""
+    """Return whether all that could be walked, and is still free, is still joined."""
     assert floor.walkable is not None
     left = free.copy()
     left[_cells(place.spot, place.size, origin)] = False

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from math import cos, pi, radians, sin
 from typing import Any
 
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.scene.instances import Thing
 from hearth.schemas.graph import Box, Point
 from hearth.schemas.rng import derive
@@ -43,7 +43,7 @@ class Shine:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What is seen of a thing in a state; the fields of `effects.yaml`."""
+    """The visible effect of a thing's state; the fields of `effects.yaml`."""
 
     light: Shine | None = None
     moments: int = 1
@@ -53,7 +53,7 @@ class Effect:
 
     @property
     def moves(self) -> bool:
-        """Whether it changes with time."""
+        """Return whether it changes with time."""
         return self.moments > 1 or self.shake > 0 or self.steam > 0
 
 
@@ -77,7 +77,7 @@ def effects_of(recipe: str, states: frozenset[str]) -> Iterator[Effect]:
 
 
 def changes(thing: Thing) -> bool:
-    """Whether a thing looks different from moment to moment."""
+    """Return whether a thing looks different from moment to moment."""
     if not isinstance(thing.model, Model):
         return False
     return thing.model.recipe == STEAM or any(
@@ -120,7 +120,7 @@ def shining(recipe: str, states: frozenset[str], lamp: float | None) -> Iterator
 
 
 def light_point(shine: Shine, up: float, box: Box, yaw: float) -> Point:
-    """Where a light is in the world."""
+    """Return where a light is in the world."""
     (x, y, z), (w, h, d) = box.center, box.size
     c, s = cos(radians(yaw)), sin(radians(yaw))
     deep = (abs(s) * w + abs(c) * d) / 2 + shine.out if shine.out else 0.0

@@ -15,7 +15,7 @@ IGNORED = frozenset({"floor", "ceiling", "mat", "carpet", "doorjamb", "window", 
 
 
 def is_in_the_way(node: Node, floor: float) -> bool:
-    """Whether a thing with a box blocks the floor of that height."""
+    """Return whether a thing with a box blocks the floor of that height."""
     assert node.box is not None
     low, high = node.box.center[1] - node.box.size[1] / 2 - floor, node.box.center[1] + node.box.size[1] / 2 - floor
     return node.class_name not in IGNORED and low < HEADROOM and high > STEP_OVER and node.category not in (

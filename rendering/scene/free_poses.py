@@ -1,4 +1,4 @@
-"""Free positions for things: on and in others, beside what stands there already."""
+"""Free positions for things, on and in others, next to the things that stand there already."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from math import cos, radians, sin
 from typing import NamedTuple
 
-from hearth.rendering.models.look import Region
+from hearth.rendering.models.appearance import Region
 from hearth.schemas.graph import Box, Point
 
 STEP = 0.04

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.models.looks import Model, draw
+from hearth.rendering.models.class_appearance import Model, draw
 from hearth.rendering.models.mesh import Mesh, rotation, transform
 from hearth.rendering.people.figure import Figure, figure_mesh
 from hearth.schemas.graph import Point

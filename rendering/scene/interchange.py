@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.models.looks import Model, draw
+from hearth.rendering.models.class_appearance import Model, draw
 from hearth.rendering.models.mesh import Mesh, rotation
+from hearth.rendering.models.texture_patterns import SIDE
 from hearth.rendering.models.textures import OFFSETS, SLOTS, atlas, decode
-from hearth.rendering.models.weave import SIDE
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.scene.instances import Thing, placed, tilted
 from hearth.rendering.scene.scene import Scene
@@ -24,7 +24,7 @@ from hearth.schemas.libraries import library
 from hearth.storage.files import replacing
 
 ENDINGS = {"gltf": ".glb", "obj": ".obj"}
-"""The file of each form. A `.glb` has its textures in it; an `.obj` has colours alone, in an `.mtl` beside it."""
+"""The file of each form. A `.glb` contains its textures; an `.obj` has colors alone, in a separate `.mtl`."""
 
 ROUGH, SMOOTH = 0.9, 0.25
 """Roughness of a matt and of a polished surface."""
@@ -38,7 +38,7 @@ def write(scene: Scene, path: Path, form: str = "gltf") -> int:
 
     Args:
         scene: with all its things.
-        path: the file; an OBJ's materials stand beside it.
+        path: the file; an OBJ's materials are in a second file of the same folder.
         form: one of `ENDINGS`.
 
     Raises:

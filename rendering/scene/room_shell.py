@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Iterator, Sequence
 from math import dist
 
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.scene.instances import Thing
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.rng import derive

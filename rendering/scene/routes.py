@@ -81,13 +81,13 @@ class WalkableFloor:
         return ~self._at(self.free, np.asarray(a) + shares[:, None] * (np.asarray(b) - np.asarray(a)))
 
     def clear(self, a: Spot, b: Spot, ways: Ways) -> bool:
-        """Whether the straight line is walkable."""
+        """Return whether the straight line is walkable."""
         shares = np.linspace(0, 1, max(2, int(np.ceil(dist(a, b) / CELL * 2)) + 1))
         points = np.asarray(a) + shares[:, None] * (np.asarray(b) - np.asarray(a))
         return bool(self._at(ways.floor.walkable, points).all())
 
     def has_room(self, spot: Spot) -> bool:
-        """Whether there is room for a body and its arms."""
+        """Return whether there is room for a body and its arms."""
         return bool(self._at(self.roomy, np.array([spot]))[0])
 
     def _at(self, cells: Cells, points: NDArray[np.float64]) -> Cells:
@@ -148,7 +148,7 @@ def ways_of(rooms: Iterable[Node], nodes: Sequence[Node], leaves: Floats | None 
 
 
 def blocks_walks(node: Node, floor: float) -> bool:
-    """Whether one walks around a thing."""
+    """Return whether one walks around a thing."""
     assert node.box is not None
     top = node.box.center[1] + node.box.size[1] / 2 - floor
     return is_in_the_way(node, floor) and not ("GRABBABLE" in node.properties and top < STEPPED_OVER)
@@ -184,9 +184,9 @@ def path(floor: WalkableFloor | None, start: Spot, goal: Spot, others: Sequence[
 def led_on(floor: WalkableFloor | None, route: Sequence[Spot], goal: Spot) -> tuple[Spot, ...]:
     """A route that may end before its goal, led on to it.
 
-    Where the world has somebody whom no way leads to by what is drawn, such as beside an open oven, one passes between
-    the things, however near they are. Where things or walls are all around, the way is the one that leads through them
-    for the fewest metres. Only where no floor is known, the rest is the straight line.
+    Where the world has a character that no drawn way leads to, such as next to an open oven, the way passes between the
+    things, however near they are. Where things or walls are all around, the way is the one that leads through them for
+    the fewest metres. Only where no floor is known, the rest is the straight line.
     """
     if dist(route[-1], goal) < SAME:
         return tuple(route)
@@ -240,7 +240,7 @@ def _found(
 
 
 def _roomier(floor: WalkableFloor, ways: Ways, before: Spot, corner: Spot, after: Spot) -> Spot:
-    """A point beside a corner of a path with room for arms, if the path can lead over it."""
+    """Return a point next to a corner of a path with room for arms, if the path can lead over it."""
     for x, z in BESIDE:
         point = corner[0] + x, corner[1] + z
         if floor.has_room(point) and floor.clear(before, point, ways) and floor.clear(point, after, ways):

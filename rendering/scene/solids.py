@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
-from hearth.rendering.models.look import Size
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Size
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.scene.floor_cells import IGNORED
 from hearth.rendering.scene.instances import Thing
 from hearth.schemas.graph import Node, Spot
 
 if TYPE_CHECKING:
-    from hearth.rendering.scene.prepared import PreparedScene
+    from hearth.rendering.scene.scene_preparation import PreparedScene
 
 FLAT = frozenset({"floor", "ceiling"})
 """Recipes below and above everything."""
@@ -61,7 +61,7 @@ class Solids:
         return Solids(self.all[k] for k in np.flatnonzero(far < reach) if self.all[k].node not in without)
 
     def contain(self, points: Floats, margin: float = 0.0) -> Found:
-        """(n,) whether points (n, 3) are in any of them, or less than `margin` metres beside it."""
+        """Return (n,) whether points (n, 3) are in any of them, or less than `margin` metres from it."""
         offset = points[:, None, (0, 2)] - self.middles
         x = offset[..., 0] * self.cosines - offset[..., 1] * self.sines
         z = offset[..., 0] * self.sines + offset[..., 1] * self.cosines

@@ -26,7 +26,10 @@ SIDE = 0.26
 
 
 AHEAD, CLOSE, TURN = 2.0, 0.9, 30
-"""Metres of floor that matter ahead of who reads, and up to which something is close; degrees between directions."""
+"""Length of floor that matters ahead of a reader, largest distance that counts as close, metres.
+
+And angle between directions, degrees.
+"""
 
 APART = 0.19
 """Metres between spots among which one chooses."""
@@ -165,7 +168,7 @@ class FreeFloor:
         return AHEAD * (int(blocked.argmax()) if blocked.any() else len(blocked)) / len(blocked)
 
     def in_the_way(self, spot: Spot, opens: int) -> bool:
-        """Whether a thing's doors or drawers would hit who stands at a spot."""
+        """Return whether a thing's doors or drawers would hit who stands at a spot."""
         return bool(self._hit(np.array([spot]), opens)[0])
 
     def _hit(self, centers: NDArray[np.float64], opens: int, still: bool = False) -> NDArray[np.float64]:

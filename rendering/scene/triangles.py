@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import Mesh, join
-from hearth.rendering.rays.casting import Caster, Hits
 from hearth.rendering.rays.kernels import COLUMNS, SHINE, nearer, triangle_rows
 from hearth.rendering.rays.light_grids import LightGrids
+from hearth.rendering.rays.ray_casting import Caster, Hits
 from hearth.rendering.rays.shadow_maps import ShadowMaps
 from hearth.rendering.scene.instances import Thing, placed
 
@@ -71,12 +71,12 @@ class Part:
 
     @cached_property
     def shadow_maps(self) -> ShadowMaps:
-        """What lights see of the things."""
+        """The lights' view of the things."""
         return ShadowMaps(self.mesh.corners, self.owner, self._lamps)
 
     @cached_property
     def light_grids(self) -> LightGrids:
-        """Which of the triangles lie in each direction from a light."""
+        """The triangles in each direction from a light."""
         return LightGrids(self.mesh.corners, self.owner, self._lamps)
 
     @cached_property

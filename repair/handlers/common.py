@@ -1,4 +1,4 @@
-"""What the handlers share: the context they are given, and the edits they answer with."""
+"""Shared parts of the handlers: the context given to them, and the edits that they return."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from hearth.grounding.failure_context import FailureContext
 from hearth.grounding.preconditions.postconditions import Postconditions
-from hearth.repair.circumstances import RESTING
+from hearth.repair.step_context import RESTING
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import Rules
@@ -20,7 +20,7 @@ class RepairContext(FailureContext):
     """A failure to repair.
 
     Attributes:
-        rules: what the execution goes by.
+        rules: those of the execution.
         goal: what the program has to reach (thesis eq. A.1).
         nodes: the nodes of the objects that the goal names.
         missed: the facts of the goal that do not hold, where the program ran to its end; or of the circumstances of a
@@ -43,7 +43,7 @@ class RepairContext(FailureContext):
 
     @property
     def resting(self) -> bool:
-        """Whether that character sits or lies."""
+        """Return whether that character sits or lies."""
         states = self.world.states
         return bool((states[SITTING] | states[LYING]) & self.agent.bit)
 
@@ -76,7 +76,7 @@ class RepairContext(FailureContext):
         return self.refs((index,))[0]
 
     def is_close(self, index: int) -> bool:
-        """Whether the character is close to a node."""
+        """Return whether the character is close to a node."""
         return rows.is_near(self.world, self.agent, index, self.rules.near_hands)
 
     def by_distance(self, things: Iterable[int]) -> list[int]:
@@ -99,11 +99,14 @@ class RepairContext(FailureContext):
         return self.group("rests") | self.group("rises") | self.group("walks")
 
     def is_inserted(self, number: int) -> bool:
-        """Whether a repair has inserted a step, which may be done in any circumstances."""
+        """Return whether a repair has inserted a step, which may be done in any circumstances."""
         return bool(self.wanted) and self.wanted[number] is None
 
     def rests_at(self, number: int) -> bool | None:
-        """Whether the original does a step sitting or lying; None where that is unknown, or the step inserted."""
+        """Return whether the original does a step sitting or lying.
+
+        None where that is unknown, or the step inserted.
+        """
         known = self.wanted[number] if self.wanted else None
         return None if known is None else any(f.name in RESTING and not f.negated for f in known)
 
@@ -113,7 +116,10 @@ class RepairContext(FailureContext):
         return self.worlds[ticks] if number < self.at else self.world
 
     def seat_taken(self) -> tuple[int, str, ObjectRef] | None:
-        """Where, how and on what the program itself has made the character rest: (number of the step, "Sit", couch)."""
+        """Return where, how and on what the program itself has made the character rest.
+
+        (number of the step, "Sit", couch).
+        """
         for number in range(self.at - 1, -1, -1):
             step = self.program.steps[number]
             if step.agent == self.failure.agent and step.action in self.group("rests"):

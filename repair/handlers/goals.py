@@ -18,7 +18,7 @@ def goal_lost(context: RepairContext) -> Edit | None:
 
 
 def circumstances_lost(context: RepairContext) -> Edit | None:
-    """Bring about what the step was done in: get up, then see to things, then take the seat."""
+    """Bring about the conditions in which the step was done: get up, then prepare things, then take the seat."""
     for fact in sorted(context.missed, key=lambda fact: (not fact.negated, _rank(fact))):
         steps = _undone(context, fact) if fact.negated else _steps(context, fact)
         if steps:
@@ -27,14 +27,14 @@ def circumstances_lost(context: RepairContext) -> Edit | None:
 
 
 def _undone(context: RepairContext, fact: Literal[Key]) -> tuple[Step, ...]:
-    """Let go of what is held, else get up."""
+    """Let go of the held object, else get up."""
     if fact.name == HOLDS and fact.target is not None:
         return (context.does("Release", context.ref(context.world.home.index[context.nodes[fact.target]])),)
     return (context.does("StandUp"),)
 
 
 def _rank(fact: Literal[Key]) -> tuple[bool, bool, bool]:
-    """What moves the character comes after what moves things; what it rests on comes last."""
+    """Edits that move the character come after those that move things; its seat comes last."""
     resting = fact.name in ("SITTING", "LYING") or (fact.name == "ON" and fact.subject[0] == CHARACTER_CLASS)
     return (resting, fact.name == HOLDS, fact.target is not None)
 

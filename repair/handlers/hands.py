@@ -8,7 +8,7 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import OPEN
 
 _CLOTHS = ("rag", "towel", "sponge", "paper_towel", "cloth_napkin", "napkin", "dish_towel", "toilet_paper")
-"""What one wipes with, best first."""
+"""Tools for wiping, best first."""
 
 
 def no_free_hand(context: RepairContext) -> Edit | None:
@@ -47,17 +47,17 @@ def no_origin(context: RepairContext) -> Edit | None:
 
 
 def _is_tool(context: RepairContext, thing: ObjectRef) -> bool:
-    """Whether the failing step is done with the thing: its own object, or the knife that cuts."""
+    """Return whether the failing step is done with the thing: its own object, or the knife that cuts."""
     return thing in context.step.objects or (context.step.action == "Cut" and "knife" in thing.name)
 
 
 def _priority(context: RepairContext, thing: ObjectRef) -> tuple[bool, int]:
-    """How little a thing is missed: what the program is to end up holding most, then what it needs soonest."""
+    """Return how little a thing is missed: what the program is to end up holding most, then what it needs soonest."""
     return (not _is_wanted(context, thing), _needed_in(context, thing))
 
 
 def _is_wanted(context: RepairContext, thing: ObjectRef) -> bool:
-    """Whether the program is to end up holding the thing."""
+    """Return whether the program is to end up holding the thing."""
     return any(fact.name == HOLDS and fact.target == thing.key for fact in context.goal)
 
 
@@ -93,7 +93,10 @@ def _hand_is_free(context: RepairContext, thing: ObjectRef) -> int | None:
 
 
 def _wanted(context: RepairContext) -> int | None:
-    """Index of what the step has to hold: a knife to cut with, a cloth to wipe with, else its object."""
+    """Return the index of the object that the step has to hold.
+
+    A knife to cut with, a cloth to wipe with, else its object.
+    """
     if context.step.action == "Cut":
         home = context.world.home
         knives = (i for name, mask in home.by_class.items() if "knife" in name for i in indices(mask))

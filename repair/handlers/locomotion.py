@@ -7,12 +7,12 @@ from hearth.schemas.program import ObjectRef, Step
 
 
 def not_close(context: RepairContext) -> Edit | None:
-    """Walk to what is not close."""
+    """Walk to an object that is not close."""
     return walked_to(context, "not_close", context.object())
 
 
 def not_in_room(context: RepairContext) -> Edit | None:
-    """Walk to what is to be watched and is in another room."""
+    """Walk to the object to be watched if it is in another room."""
     return walked_to(context, "not_in_room", context.object())
 
 
@@ -28,9 +28,9 @@ def door_closed(context: RepairContext) -> Edit | None:
 def walked_to(context: RepairContext, name: str, target: ObjectRef, *there: Step) -> Edit | None:
     """Walk to something first, and do more there.
 
-    Who sits or lies gets up for it, unless the program goes on in that seat. Then a step that the original does there
-    is done with what can be brought to the seat; what repairs have inserted, and any step of which the circumstances
-    are unknown, is done before the seat is taken.
+    A sitting or lying character gets up for it, unless the program goes on in that seat. Then a step that the original
+    does there is done with objects that can be brought to the seat. Inserted steps, and steps with unknown
+    circumstances, are done before the seat is taken.
     """
     walk = context.does("Walk", target)
     if not context.resting:
@@ -47,7 +47,10 @@ def walked_to(context: RepairContext, name: str, target: ObjectRef, *there: Step
 
 
 def _end_of_errand(context: RepairContext, target: ObjectRef) -> int:
-    """Number of the last step that is done beside the target: the failing one, and those after it that need to be."""
+    """Return the number of the last step that is done next to the target.
+
+    The failing one, and later ones that need to be.
+    """
     last = context.at
     for number in range(context.at + 1, len(context.program.steps)):
         step = context.program.steps[number]

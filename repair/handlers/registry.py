@@ -32,7 +32,7 @@ HANDLERS: dict[Code, Handler] = {
     Code.SITTING: posture.sitting,
     Code.WRONG_STATE: leaving_out("already_so"),
 }
-"""Handlers by failure code; all that table A.4 names, and what it leaves out."""
+"""Handlers by failure code: those of table A.4, and those that it leaves out."""
 
 UNREPAIRABLE: dict[Code, str] = {
     Code.NOT_AFFORDED: "nothing done before makes an object fit for what it is not made for",

@@ -1,7 +1,10 @@
-"""Who sits: errands are run before the seat is taken, and what is used there is brought within reach."""
+"""Repairs for seated characters.
 
-from hearth.repair.circumstances import RESTING
+Ways are walked before the seat is taken, and objects used there are brought within reach.
+"""
+
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, tick_start
+from hearth.repair.step_context import RESTING
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import run
@@ -23,7 +26,7 @@ def done_before_seat(context: RepairContext, name: str, last: int, *leading: Ste
 
 
 def stays(context: RepairContext, last: int) -> bool:
-    """Whether the character is to go on resting after step number `last`."""
+    """Return whether the character is to go on resting after step number `last`."""
     for number, step in enumerate(context.program.steps[last + 1 :], last + 1):
         if step.agent == context.failure.agent and not context.is_inserted(number):
             return step.action not in context.posture and context.rests_at(number) is not False
@@ -31,7 +34,7 @@ def stays(context: RepairContext, last: int) -> bool:
 
 
 def brought(context: RepairContext, name: str) -> Edit | None:
-    """Bring seat and thing together before the seat is taken: come from beside it, fetch it, or move the seat."""
+    """Bring seat and thing together before the seat is taken: come from its side, fetch it, or move the seat."""
     seat = context.seat_taken()
     if seat is None:
         return None
@@ -53,7 +56,7 @@ def brought(context: RepairContext, name: str) -> Edit | None:
 
 
 def _is_put(context: RepairContext, thing: ObjectRef, seat: ObjectRef) -> bool:
-    """Whether a repair has put a thing where the seat is, or the original has put it somewhere, or something on it.
+    """Return whether a repair has put a thing at the seat, or the original has put it, or something on it.
 
     What was brought before the seat was moved may be brought again.
     """
@@ -66,7 +69,7 @@ def _is_put(context: RepairContext, thing: ObjectRef, seat: ObjectRef) -> bool:
 
 
 def _supports(world: World, i: int) -> int:
-    """What bears a thing, and what bears that."""
+    """Return the supports of a thing, and the supports of these."""
     found = rows.on(world, i)
     for j in indices(found):
         found |= rows.on(world, j)
@@ -87,7 +90,7 @@ def _fetched(context: RepairContext, name: str, thing: ObjectRef, seat: int) -> 
 
 
 def _can_fetch(context: RepairContext, number: int) -> bool:
-    """Whether a hand is free before a step, and the step does not depend on where the character is."""
+    """Return whether a hand is free before a step, and the step does not depend on where the character is."""
     agent = context.world_before(number).agents[context.failure.agent]
     return not (agent.right and agent.left) and (_walks(context, number) or number == context.at)
 
@@ -98,7 +101,7 @@ def _approach(context: RepairContext, seat: int) -> int:
 
 
 def _walks(context: RepairContext, number: int) -> bool:
-    """Whether the character goes somewhere else in a step: not by a Find of what is close."""
+    """Return whether the character goes somewhere else in a step: not by a Find of a close object."""
     step, world = context.program.steps[number], context.world_before(number)
     if step.agent != context.failure.agent or step.action not in context.group("goes") or step.joins:
         return False

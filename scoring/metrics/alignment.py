@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
 from hearth.schemas.graph import Edge
-from hearth.scoring.metrics.counts import Match, Matches, matched, shared
 from hearth.scoring.metrics.final_graph import Label, View
+from hearth.scoring.metrics.precision_recall import Match, Matches, matched, shared
 from hearth.simulation.world.bits import indices
 
 Tuples = Counter[object]

@@ -7,10 +7,10 @@ from functools import lru_cache
 
 from hearth.kb.grammar import affordances, check
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.scoring.lines import Lines, steps_of
+from hearth.schemas.short_repr import brief
+from hearth.scoring.line_sequences import Lines, steps_of
 from hearth.scoring.metrics.final_graph import nodes_of
 from hearth.scoring.metrics.parsability import parsability
 from hearth.scoring.predicted_nodes import bind
@@ -118,7 +118,7 @@ def executability(
         rules: of simulation.
 
     Examples:
-        >>> from hearth.scoring.lines import read
+        >>> from hearth.scoring.line_sequences import read
         >>> found = hearth.executability(read(["[Walk] <fridge> (1)", "[Close] <fridge> (1)"]), world)
         >>> found.executable, found.failed_line, str(found.code)
         (False, 1, 'IS_CLOSED')
@@ -162,7 +162,7 @@ def _names(action: str, names: tuple[str, ...], knowledge: Knowledge) -> tuple[s
 
 
 def _fits(step: Step, knowledge: Knowledge) -> bool:
-    """Whether the grammar allows the step's objects in their roles."""
+    """Return whether the grammar allows the step's objects in their roles."""
     return _afforded(step.action, tuple([ref.name for ref in step.objects]), knowledge)
 
 
@@ -194,14 +194,14 @@ def _classify(
 
 
 def _is_so(action: str, code: Code, knowledge: Knowledge) -> bool:
-    """Whether a failure implies that the action's effect already holds."""
+    """Return whether a failure implies that the action's effect already holds."""
     if code in ALREADY_IN:
         return action in knowledge.achieving(ALREADY_IN[code])
     return code in ALREADY_SO and action in knowledge.group(ALREADY_SO[code])
 
 
 def _is_put(step: Step, world: World) -> bool:
-    """Whether the object of a put is already at its destination."""
+    """Return whether the object of a put is already at its destination."""
     read = PLACED.get(world.home.knowledge.relation_of(step.action))
     if read is None:
         return False
@@ -210,7 +210,7 @@ def _is_put(step: Step, world: World) -> bool:
 
 
 def _mended_by_order(steps: Sequence[Step], failed: int, worlds: Sequence[World], rules: Rules) -> bool:
-    """Whether the failing step succeeds after moving one step: a later one before it, or itself forward."""
+    """Return whether the failing step succeeds after moving one step: a later one before it, or itself forward."""
     step = steps[failed]
     later = dict.fromkeys(steps[failed + 1 :])
     if any(_runs(worlds[failed], (other, step), rules) for other in later):

@@ -8,8 +8,8 @@ from typing import Literal, get_args
 
 from hearth.schemas.program import Program
 from hearth.scoring.metrics.alignment import LIMIT, PERFECT, Pair, Problem
-from hearth.scoring.metrics.counts import NOTHING, Match, Matches, Prf
 from hearth.scoring.metrics.final_graph import Final, View, views_of
+from hearth.scoring.metrics.precision_recall import NOTHING, Match, Matches, Prf
 from hearth.scoring.signature import signature
 from hearth.simulation.world.bits import indices
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.lines import Line, Lines
+from hearth.scoring.line_sequences import Line, Lines
 from hearth.scoring.signature import signature
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsSco
     """The scores of one pair at every level, from 0 to 1 (thesis eq. 4.1).
 
     Examples:
-        >>> from hearth.scoring.lines import read
+        >>> from hearth.scoring.line_sequences import read
         >>> from hearth.scoring.metrics import lcs
         >>> lcs.score(read(["[Walk] <sofa> (1)", "[Sit] <sofa> (1)"]), read(["[Walk] <sofa> (1)", "[Lie] <sofa> (1)"]))
         LcsScore(step=0.5, action=0.5, object=1.0)

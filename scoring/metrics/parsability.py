@@ -7,7 +7,7 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.lines import Line, Lines, Refused
+from hearth.scoring.line_sequences import Line, Lines, Refused
 from hearth.scoring.signature import signature
 
 SIGNATURE = signature("parsable", 2, level="program", empty=0)

@@ -1,1 +1,1 @@
-"""One function an action, grouped by what is acted on; `registry` names them all."""
+"""Actions, one function each, grouped by the kind of their objects; `registry` names them all."""

@@ -36,7 +36,7 @@ ACTIONS = (
     checked("SwitchOn", able, close, in_state(OFF, Code.IS_ON), _not_unplugged, effect=becomes(ON)),
     checked("SwitchOff", able, close, in_state(ON, Code.IS_OFF), effect=becomes(OFF)),
     checked("PlugIn", able, close, free_hand, in_state(PLUGGED_OUT, Code.IS_PLUGGED), effect=becomes(PLUGGED_IN)),
-    # The plug of what is on may be pulled, as the release allows.
+    # The plug of a running device may be pulled, as the release allows.
     checked("PlugOut", able, close, free_hand, in_state(PLUGGED_IN, Code.IS_UNPLUGGED), effect=becomes(PLUGGED_OUT)),
     checked("Type", close, able),
 )

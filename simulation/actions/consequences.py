@@ -12,8 +12,8 @@ from functools import lru_cache
 
 from hearth.kb.formula import Formula, free
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action as Known
-from hearth.kb.records import Condition, Consequence
+from hearth.kb.knowledge_records import Action as Known
+from hearth.kb.knowledge_records import Condition, Consequence
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import common
 from hearth.simulation.actions.common import Action, Masks, refuse

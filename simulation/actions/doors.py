@@ -1,4 +1,4 @@
-"""Which rooms can be walked between, through doors that are open."""
+"""Rooms that a character can walk between, through open doors."""
 
 from __future__ import annotations
 

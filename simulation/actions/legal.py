@@ -1,4 +1,4 @@
-"""Which instructions could be done now: a bit set for each argument of each action, instructions listed lazily."""
+"""The instructions possible now: a bit set for each argument of each action, instructions listed lazily."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
-from hearth.schemas.brief import brief
 from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.short_repr import brief
 from hearth.simulation.actions.common import Action
 from hearth.simulation.actions.consequences import actions as consequent
 from hearth.simulation.actions.registry import ACTIONS, EVERY
@@ -61,7 +61,7 @@ class Legal:
         return sum(map(self.count, self.masks))
 
     def count(self, action: str) -> int:
-        """How many instructions of an action there are; no thing is named twice in one."""
+        """Return how many instructions of an action there are; no thing is named twice in one."""
         masks = self.masks.get(action, (0,))
         count = masks[0].bit_count() if masks else 1
         if len(masks) > 1:
@@ -87,18 +87,18 @@ def legal(
     only_reachable: bool = False,
     actions: Collection[str] | None = None,
 ) -> Legal:
-    """What an agent could do now: exactly the instructions that `engine.act` would not refuse.
+    """The legal instructions of an agent: exactly those that `engine.act` would not refuse.
 
-    With `only_visible` it is what the agent can know of that: instructions about what it sees, possible as far as it
-    sees. Nothing out of its sight changes the answer, so a door that it does not see stops nobody here, and an
+    With `only_visible` it is the agent's knowledge of them: instructions about visible nodes, possible as far as the
+    agent sees. Nothing out of its sight changes the answer. An unseen door therefore stops nobody here, and an
     instruction may be refused when it is tried.
 
     Args:
         world: now.
         agent: number of the agent.
         rules: of the engine.
-        only_visible: answer by what the agent sees alone (see `reach.visible` and `as_seen`).
-        only_reachable: leave out instructions about what closed doors or containers keep from it, even where the
+        only_visible: answer from the agent's view alone (see `reach.visible` and `as_seen`).
+        only_reachable: leave out instructions about nodes behind closed doors or in closed containers, even where the
             action itself would not mind.
         actions: only these; all where None.
 

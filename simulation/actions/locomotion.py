@@ -1,4 +1,4 @@
-"""Walk, Run, Find, TurnTo: where the character is and what it faces."""
+"""Walk, Run, Find, TurnTo: the character's place and the nodes that it faces."""
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import doors
@@ -104,7 +104,7 @@ def arrived(world: World, number: int, o: int, room: int, pose: Pose | None, rul
 
 
 def _near_today(world: World, o: int) -> int:
-    """What a walk to o brings the character close to by the rules `evolving_graph`."""
+    """Return the nodes to which a walk to o brings the character close by the rules `evolving_graph`."""
     home, bit = world.home, 1 << o
     if home.rooms & bit:
         return 0
@@ -121,7 +121,10 @@ def _near_today(world: World, o: int) -> int:
 
 
 def gone(world: World, number: int, near: int, room: int, pose: Pose | None) -> World:
-    """The world once a character has moved: it is CLOSE to some nodes and what it holds, and INSIDE a room (or -1)."""
+    """Return the world after a character has moved.
+
+    It is CLOSE to some nodes and its held objects, and INSIDE a room (or -1).
+    """
     moved = world.moved
     index, bit, _close, _facing, _faced, _inside, _contents, on, worn, right, left, origins, _pose, stride = (
         world.agents[number]
@@ -137,7 +140,10 @@ def gone(world: World, number: int, near: int, room: int, pose: Pose | None) -> 
 
 
 def _characters_near(world: World, o: int) -> int:
-    """What a walk to o brings the character close to besides things: who is ON o, who o is INSIDE, what o is INSIDE."""
+    """Return the further nodes to which a walk to o brings the character close.
+
+    Characters ON o, nodes that o is INSIDE, and its contents.
+    """
     bit = 1 << o
     surface = world.home.properties["SURFACES"] & bit
     near = 0
@@ -156,7 +162,9 @@ def _seen_by_others(agents: tuple[Agent, ...], number: int, arrived: Agent, held
 
 
 def _left(other: Agent, arrived: Agent, gone: int) -> Agent:
-    """Another character without the edges to what has walked away, and CLOSE to who has arrived near it."""
+    """Return another character without the edges to a character that has left, and CLOSE to one that has arrived near
+    it.
+    """
     index, bit, close, facing, faced, inside, contents, *rest = other
     now = close & ~gone | (arrived.bit if arrived.close & bit else 0)
     if now == close and not (facing | faced | inside | contents) & gone:

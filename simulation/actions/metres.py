@@ -1,7 +1,7 @@
 """Walktowards, Walkforward, Turnleft, Turnright: moving by metres and degrees where there is geometry (table 2.2).
 
-They need characters at places (see `motion.positions`). The symbolic world follows: who is under way is CLOSE to what
-it passes, in the room that it crosses, and who has arrived has walked there.
+They need characters at places (see `motion.positions`). The symbolic world follows. A character under way is CLOSE to
+the things that it passes, in the room that it crosses. A character that has arrived has walked there.
 """
 
 from __future__ import annotations
@@ -26,7 +26,10 @@ TURN = 30.0
 
 
 def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """A stride along the shortest way; at its end one has walked there. Who can't pass another character waits."""
+    """Make a stride along the shortest way.
+
+    At its end the character has walked there. A character that can't pass another one waits.
+    """
     agent = world.agents[number]
     room = destination(world, agent, o, rules)
     if isinstance(room, Failure):
@@ -98,7 +101,7 @@ def _others(world: World, number: int) -> list[Agent]:
 
 
 def _in_the_way(world: World, number: int, leg: tuple[Pose, Pose]) -> bool:
-    """Whether a stride comes nearer to another character than both bodies need, and not only away from it."""
+    """Return whether a stride comes nearer to another character than both bodies need, and not only away from it."""
     start, end = leg
     dx, dz = end.x - start.x, end.z - start.z
     square = dx * dx + dz * dz
@@ -149,8 +152,8 @@ ACTIONS = (
 
 
 def followed(before: World, world: World, number: int, action: str, o: int) -> World:
-    """The world after an action that was done, its character turned to what it looks at, on what it rests on, or
-    beside what it was on before and has got up from.
+    """Return the world after an action, its character turned to its target, on its seat, or next to the seat that it
+    was on before and has left.
     """
     agent = world.agents[number]
     pose = agent.pose

@@ -48,10 +48,11 @@ def _by_hand(before: World, after: World, step: Step, o: int, hand: str) -> Worl
 
 
 def _lies_on(world: World, s: int, point: tuple[float, float]) -> World | Failure:
-    """Put at a point of something: checked here, drawn by films, and not part of the world, which knows ON and no
-    point. No action, no predicate and no observation asks where on a table a thing is (a place is that of what it
-    stands on, `positions.spot`), and worlds that differ in nothing else have one digest; a replay of the same steps
-    draws it at the same point.
+    """Put an object at a point of something.
+
+    Checked here, drawn by films, and not part of the world, which knows ON and no point. No action, no predicate and no
+    observation asks where on a table a thing is (its place is that of its support, `positions.spot`), and worlds that
+    differ in nothing else have one digest; a replay of the same steps draws it at the same point.
     """
     here = ground_of(world.home)
     box = None if here is None else here.ground.box(s)

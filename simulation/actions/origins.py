@@ -1,4 +1,4 @@
-"""Where a grabbed thing came from, for PutObjBack to bring it back to."""
+"""Origins of grabbed things, to which PutObjBack brings them back."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _RELATIONS = (
     (kinds.INSIDE, rows.inside, attrgetter("contents")),
     (kinds.CLOSE, rows.close, attrgetter("close")),
 )
-"""Where to look, in this order: what it is ON, INSIDE, CLOSE to; among things, then among characters."""
+"""Relations of an origin in the order of search: ON, INSIDE, CLOSE; among things, then among characters."""
 
 
 def remembered(world: World, agent: Agent, o: int, rules: Rules) -> tuple[int, int]:

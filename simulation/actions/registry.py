@@ -33,4 +33,4 @@ MOVES: dict[str, Action] = {action.name: action for action in metres.ACTIONS}
 """The actions of characters at places; programs may use them, and in homes without geometry nothing executes them."""
 
 EVERY = ACTIONS | MOVES
-"""What a character at a place can do."""
+"""Options of a character at a place."""

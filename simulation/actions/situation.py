@@ -58,5 +58,5 @@ class Situation:
         return mask_of(a.index for a in others if a.right and a.left)
 
     def able(self, action: str, position: int = 0) -> int:
-        """What the knowledge allows for an argument."""
+        """Objects that the knowledge allows for an argument."""
         return self.home.able(action, position)

@@ -7,13 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from hearth.homes.forms import form
-from hearth.homes.from_graph.measured import measured
+from hearth.homes.from_graph.layout_from_boxes import measured
 from hearth.homes.geometry import Rect, bottom
+from hearth.homes.object_shapes import form
 from hearth.homes.plans import raster
 from hearth.homes.plans.floor import HEAD, REACH, Floor, gaps
+from hearth.homes.plans.home_shell import WALL, interior, strip
 from hearth.homes.plans.layout import Layout
-from hearth.homes.plans.shell import WALL, interior, strip
 from hearth.schemas.graph import Box, Spot
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 from hearth.simulation.motion.navigation import BODY_RADIUS, Ways, digest_of
@@ -68,9 +68,9 @@ class Ground:
     def stands(self, node: int) -> tuple[int, ...]:
         """The cells of the main region at which one stands for a node as it is at the start; none without a box.
 
-        For what has a front, the one nearest to it, else those beside it; for a room the one nearest to its middle;
-        for a door one on either side. Cells in the node's room go before others; where none is within reach, it is
-        the nearest that there is.
+        For a thing with a front, the place nearest to it, else those next to it; for a room the one nearest to its
+        middle; for a door one on either side. Cells in the node's room go before others; where none is within reach, it
+        is the nearest that there is.
         """
         try:
             return self._stands[node]
@@ -132,7 +132,7 @@ class Ground:
         return self._reached[key]
 
     def joined(self, one: int, other: int, doors: int) -> bool:
-        """Whether a way leads from one cell to another while these doors are closed."""
+        """Return whether a way leads from one cell to another while these doors are closed."""
         region = self._regions(doors)
         return region[one] == region[other]
 
@@ -223,7 +223,7 @@ class Here:
         self._standing: tuple[Moved, dict[int, int], dict[tuple[int, int], int]] = NOTHING, {}, {}
 
     def displaced(self, world: World) -> int:
-        """The nodes that are elsewhere now: what was carried away is, and what is back where it was is not."""
+        """Return the nodes that are elsewhere now: a removed thing is, and a returned one is not."""
         moved, found = self._last
         if world.moved is not moved:
             found = self.elsewhere
@@ -235,11 +235,11 @@ class Here:
         return found
 
     def standing(self, world: World) -> dict[int, int]:
-        """What is known of where displaced nodes are (see `positions`), for as long as nothing moves."""
+        """The known places of displaced nodes (see `positions`), for as long as nothing moves."""
         return self._known(world)[1]
 
     def among(self, world: World) -> dict[tuple[int, int], int]:
-        """What is known of which of some displaced nodes are at some places, for as long as nothing moves."""
+        """The displaced nodes known to be at some places, for as long as nothing moves."""
         return self._known(world)[2]
 
     def _known(self, world: World) -> tuple[Moved, dict[int, int], dict[tuple[int, int], int]]:

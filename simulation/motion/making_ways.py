@@ -35,7 +35,7 @@ class Wanted:
 
 
 class Made(NamedTuple):
-    """What was stored: the home, how many fields, of how many cells each, bytes, and the file."""
+    """The stored ways: the home, the number of fields, the cells of each, bytes, and the file."""
 
     home: str
     fields: int

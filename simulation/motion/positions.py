@@ -1,4 +1,4 @@
-"""Characters at places: where they stand at first and for each thing, and what they are close to by distance."""
+"""Characters at places: their first place, their place for each thing, and their neighbors by distance."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from hearth.simulation.world.world import World
 def placed(world: World, chooser: Random | None = None) -> World:
     """The world with all its characters at places of the main region; those that have one keep it.
 
-    Who has a box stands where it is, or at the nearest place in its room; who has none, because it was added, stands
-    somewhere in its room, apart from the others. A home without geometry stays as it is.
+    A character with a box stands at its place, or at the nearest place in its room. A character without one, because it
+    was added, stands somewhere in its room, apart from the others. A home without geometry stays as it is.
 
     Args:
         world: at any moment.
@@ -61,8 +61,9 @@ def _first(world: World, agent: Agent, here: Here, others: list[Spot], chooser: 
 
 
 def spot(world: World, node: int) -> Spot | None:
-    """The point over the floor at which a node is: with who holds it, where the home has it, or where that is on or in
-    which it was put; None where no place of it is known.
+    """Return the point of the floor at which a node is.
+
+    At its holder, at its place in the home, or at its support or container; None where no place of it is known.
     """
     for agent in world.agents:
         if (agent.index == node or agent.held >> node & 1) and agent.pose is not None:
@@ -88,7 +89,7 @@ def _standing(world: World, here: Here, node: int) -> int:
 
 
 def _place(world: World, moved: int, node: int) -> tuple[int, bool]:
-    """The same for what has been moved, and whether it follows from what things are on and in alone."""
+    """Return the same for a moved node, and whether the answer follows from ON and INSIDE alone."""
     for _ in range(8):
         if not moved >> node & 1:
             return node, True
@@ -131,7 +132,10 @@ def _held(world: World) -> int:
 
 
 def beside(world: World, pose: Pose, node: int) -> Pose:
-    """Where one who comes from a pose stands for a node, looking at it: the nearest of its places as the crow flies."""
+    """Return where one who comes from a pose stands for a node, looking at it.
+
+    The nearest of its places as the crow flies.
+    """
     here = ground_of(world.home)
     cells = ends(world, here, node) if here is not None else ()
     if here is None or not cells:
@@ -155,13 +159,16 @@ def resting(world: World, pose: Pose, seat: int) -> Pose:
 
 
 def risen(world: World, number: int, pose: Pose) -> Pose:
-    """Beside what one gets up from, by the world before."""
+    """Next to the seat that the character leaves, by the world before."""
     seats = world.agents[number].on
     return beside(world, pose, lowest(seats))._replace(yaw=pose.yaw) if seats else pose
 
 
 def near(world: World, number: int, pose: Pose) -> int:
-    """What a character at a pose is close to by distance: what is within reach in its room, and its own body parts."""
+    """Return the neighbors of a character at a pose by distance.
+
+    The things within reach in its room, and its own body parts.
+    """
     here = ground_of(world.home)
     return world.home.properties["BODY_PART"] if here is None else around(world, number, here, pose)[0]
 

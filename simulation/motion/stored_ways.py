@@ -1,7 +1,7 @@
 """Distance fields of floors on disk: made beforehand, one file a floor, read where they lie and shared by processes.
 
-A file is named for its floor, so that every home with that floor finds it, and a home that is changed does not. What a
-file says is compared with the floor before it is used: whoever wrote it, the ways are the shortest.
+A file is named for its floor, so that every home with that floor finds it, and a home that is changed does not. The
+content of a file is compared with the floor before it is used: whoever wrote the file, the ways are the shortest.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Ends = tuple[int, ...]
 
 
 def folder() -> Path:
-    """Where ways are stored: in `HEARTH_WAYS`, else beside our homes."""
+    """Return where ways are stored: in `HEARTH_WAYS`, else next to our homes."""
     given = os.environ.get(VARIABLE)
     return Path(given) if given else Path(__file__).resolve().parents[2] / "data_raw/homes/ways"
 
@@ -125,8 +125,9 @@ def _read(file: Path, cells: int) -> Any:
 
 
 def _are_shortest(ways: Ways, ends: Ends, distance: np.ndarray, following: np.ndarray) -> bool:
-    """Whether these are the shortest ways: each step leads to a neighbour and is as long as it says, and no neighbour
-    has a shorter way.
+    """Return whether these are the shortest ways.
+
+    Each step leads to a neighbor at the stored length, and no neighbor has a shorter way.
     """
     at, there = np.fromiter(ends, np.int64), np.isfinite(distance)
     if not len(at) or (at < 0).any() or (at >= len(distance)).any() or np.isnan(distance).any():

@@ -1,1 +1,1 @@
-"""What agents can see and reach."""
+"""Agents' views and reach."""

@@ -7,10 +7,10 @@ from hearth.simulation.world.world import World
 
 
 def as_seen(world: World, mask: int) -> World:
-    """The world of what is seen, for questions whose answers must not depend on the rest.
+    """The world as an agent sees it, for questions whose answers must not depend on the rest.
 
     Doors out of sight are neither open nor closed, so they stop nobody; characters out of sight are nowhere. Edges
-    between things stay: who asks about nodes of `mask` alone meets only those among them.
+    between things stay: a caller that asks about nodes of `mask` alone meets only those among them.
 
     Args:
         world: now.

@@ -105,7 +105,7 @@ def hidden(world: World) -> int:
 
 
 def out_of_sight(world: World) -> int:
-    """Everything inside something closed, directly or not, and what is on that."""
+    """Return everything inside something closed, directly or not, and the things on it."""
     found = frontier = hidden(world)
     while frontier:
         frontier = (contained(world, frontier) | upon(world, frontier)) & ~found
@@ -126,8 +126,9 @@ def in_room(world: World, room: int) -> int:
 
 
 def visible(world: World, agent: Agent) -> int:
-    """What a character sees: what is in its room and not inside something closed, what it and those whom it sees hold
-    and wear, itself.
+    """Return the nodes that a character sees.
+
+    Those in its room and not inside something closed, those that it and visible characters hold and wear, and itself.
 
     It also knows which other rooms there are, or it could never ask to go to one.
     """
@@ -140,7 +141,7 @@ def visible(world: World, agent: Agent) -> int:
 
 
 _LAST: list[tuple[World, Agent, int]] = []
-"""What was seen last: an agent's view and its legal instructions ask for the same."""
+"""The last view: an agent's observation and its legal instructions ask for the same one."""
 
 
 def _visible(world: World, agent: Agent) -> int:
@@ -178,5 +179,5 @@ def walkable(world: World, agent: Agent, through_doors: bool) -> int:
 
 
 def reachable(world: World, agent: Agent) -> int:
-    """What no closed door and no closed container keeps from a character."""
+    """Return the nodes that no closed door and no closed container keeps from a character."""
     return walkable(world, agent, True) & ~hidden(world) | agent.held | agent.worn

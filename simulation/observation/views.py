@@ -1,4 +1,4 @@
-"""What an agent sees: nodes and edges, the poses of the others and their last actions."""
+"""An agent's view: nodes and edges, the poses of the others and their last actions."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,10 +6,10 @@ from functools import cached_property
 from types import MappingProxyType
 
 from hearth.schemas.agent_messages import Message
-from hearth.schemas.brief import brief
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.observation import reach
 from hearth.simulation.world import pose as world_pose
@@ -30,17 +30,17 @@ class LastAction:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """How a character stands.
+    """A character's posture.
 
     Attributes:
         agent: its number.
         node: its node id.
         room: id of the room it is in; None when it is in none.
         posture: `standing`, `sitting` or `lying`.
-        on: ids of what it sits, lies or once sat on (it stays ON a seat it has got up from, as the release has it).
-        facing: ids of what it faces.
-        holding: ids of what it holds, right hand first.
-        wearing: ids of what is on it.
+        on: ids of its seat or bed, or of an earlier one (it stays ON a seat it has got up from, as the release has it).
+        facing: ids of the faced nodes.
+        holding: ids of the held objects, right hand first.
+        wearing: ids of the worn objects.
         place: where it stands and looks, in metres and degrees; None without geometry.
         stride: metres that it walks in a tick.
         last: what it last tried, if anything.
@@ -63,11 +63,11 @@ class Pose:
 
 @dataclass(frozen=True)
 class View:
-    """What one agent sees of a world.
+    """One agent's view of a world.
 
     Attributes:
         world: all of it; not for the agent's eyes when the view is partial.
-        agent: who sees.
+        agent: the observing agent.
         mask: the nodes it sees, by index.
         me: its own pose.
         others: the poses of the other characters it sees, by number.
@@ -97,7 +97,7 @@ class View:
         return self.world.graph(self.mask)
 
     def sees(self, node_id: int) -> bool:
-        """Whether a node is seen; a node that there is not is not."""
+        """Return whether a node is seen; a node that there is not is not."""
         index = self.world.home.index.get(node_id)
         return index is not None and bool(self.mask >> index & 1)
 
@@ -113,12 +113,12 @@ def view(
     last_actions: Mapping[int, LastAction] = _NOTHING,
     tick: int = 0,
 ) -> View:
-    """What an agent sees.
+    """Return an agent's view.
 
     Args:
         world: now.
         agent: its number.
-        partial: only what is in its room and not inside something closed, and what it holds or wears (see
+        partial: only the things in its room and not inside something closed, and those that it holds or wears (see
             `reach.visible`); otherwise everything.
         last_actions: what each agent last tried.
         tick: how many ticks have passed.
@@ -137,7 +137,7 @@ def view(
 
 
 def pose(world: World, number: int, last: LastAction | None = None, among: int = -1) -> Pose:
-    """How a character stands; of what it faces and is on, the nodes of a set alone are named."""
+    """Return a character's posture, with the faced nodes and supports that are in a set."""
     agent = world.agents[number]
     ids = world.home.ids
     room = rows.agent_room(world, agent)

@@ -6,7 +6,7 @@ from operator import and_, or_
 
 from hearth.kb.formula import And, Formula, Not, Or
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Requirement
+from hearth.kb.knowledge_records import Requirement
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
@@ -66,7 +66,7 @@ def of_kind(formula: Formula, properties: Mapping[str, int], classes: Mapping[st
 
 
 def is_of_kind(name: str, kind: str, knowledge: Knowledge) -> bool:
-    """Whether things of a class are of a kind of derived.yaml, such as `bedding` (see `of_kind`)."""
+    """Return whether things of a class are of a kind of derived.yaml, such as `bedding` (see `of_kind`)."""
     thing = knowledge.object_class(name)
     properties = dict.fromkeys(thing.properties if thing else (), 1)
     return bool(of_kind(knowledge.derived[kind][1], properties, {name: 1}, 1))

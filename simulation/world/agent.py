@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 from hearth.simulation.world.pose import STRIDE, Pose
 
 AGENT_OUT = {
@@ -26,7 +26,7 @@ class Agent(NamedTuple):
     Attributes:
         index: its node's index.
         bit: the set of it alone.
-        close: what it is CLOSE to, and what is CLOSE to it.
+        close: the nodes that it is CLOSE to, and those CLOSE to it.
         facing, faced: what it is FACING; the things that are FACING it.
         inside, contents: what it is INSIDE; the things that are INSIDE it.
         on, worn: what it is ON; the things that are ON it.
@@ -56,7 +56,7 @@ class Agent(NamedTuple):
 
     @property
     def held(self) -> int:
-        """What either hand holds."""
+        """The objects in both hands."""
         return self.right | self.left
 
     def without(self, bit: int) -> Agent:

@@ -193,10 +193,10 @@ _OTHER = len(RELATION_ID)
 
 
 _FORWARD = (0, 2, 4, 5, 7, 8, 9, 10)
-"""Which of the ten tables an edge of each relation stands in, by relation id; 10 is nowhere."""
+"""The table, of ten, of an edge of each relation, by relation id; 10 is no table."""
 
 _BACKWARD = (1, 3, 4, 6, 10, 10, 10, 10)
-"""Which table holds its inverse."""
+"""The table of its inverse."""
 
 
 _FROM_BYTES: Callable[[bytes], int] = partial(int.from_bytes, byteorder="little")

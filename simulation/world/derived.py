@@ -9,11 +9,11 @@ from operator import attrgetter, or_
 from types import MappingProxyType
 from typing import NamedTuple
 
-from hearth.schemas.brief import brief
 from hearth.schemas.change import Change, restated
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
 from hearth.simulation.world.agent import Agent, change_characters
 from hearth.simulation.world.bits import cleared, indices

@@ -1,7 +1,7 @@
 """A canonical digest of a world: equal for equal nodes, states, edges, memories and poses, in any `Home` object.
 
-Each fact is hashed for itself and the hashes are added, so that the digest of a world costs what differs from its home.
-It finds mistakes and changes; who wants to deceive can make two worlds of one digest.
+Each fact is hashed for itself and the hashes are added, so that the cost of a world's digest is that of its differences
+from its home. The digest finds mistakes and changes; an attacker can make two worlds of one digest.
 """
 
 from collections.abc import Iterable, Iterator

@@ -1,4 +1,4 @@
-"""Whether things fit where they are put, by the knowledge: placements, seat limits, possible states."""
+"""Tests whether things fit into their places, by the knowledge: placements, seat limits, possible states."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _USES = {"ON": ("SURFACES", "SITTABLE", "LIEABLE"), "INSIDE": ("CONTAINERS", "CA
 
 
 def unfit(world: World, i: int, relation: str, j: int) -> Failure | None:
-    """Why node i can't be put ON or INSIDE node j, or None when it can.
+    """Return why node i can't be put ON or INSIDE node j, or None when it can.
 
-    Rooms take everything INSIDE. A character may be ON what it can sit or lie on. Other things go where the placements
-    say, or, when there are none for them, ON what has a surface and INSIDE what contains.
+    Rooms take everything INSIDE. A character may be ON things that it can sit or lie on. Other things go where the
+    placements say, or, when there are none for them, ON things with a surface and INSIDE containers.
 
     Returns:
         NO_PLACE; or OCCUPIED, when a seat or bed already bears as much as its limit.
@@ -36,7 +36,10 @@ def unfit(world: World, i: int, relation: str, j: int) -> Failure | None:
 
 
 def impossible(home: Home, i: int, state: str) -> Failure | None:
-    """Why node i can't be in a state, or None when it can: characters sit and lie, things what the knowledge says."""
+    """Return why node i can't be in a state, or None when it can.
+
+    Characters sit and lie, things what the knowledge says.
+    """
     name = home.classes[i]
     thing = home.knowledge.object_class(name)
     posture = state in ("SITTING", "LYING")

@@ -7,9 +7,9 @@ from functools import cached_property, partial
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.brief import brief
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
+from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import FURTHER_STATES
 from hearth.simulation.world import building
 from hearth.simulation.world.affordance import allowed, of_kind
@@ -208,7 +208,7 @@ class Home:
 
     @cached_property
     def reach(self) -> Memo:
-        """What a walk to a node brings the character close to, while nothing has moved."""
+        """Return the nodes to which a walk to a node brings the character close, while nothing has moved."""
         return Memo(partial(_reach, self.inside, self.bears, self.rooms, self.properties))
 
     @cached_property
@@ -218,17 +218,17 @@ class Home:
 
     @cached_property
     def contents_of(self) -> Unions:
-        """What is INSIDE one of some nodes at the start."""
+        """Return the nodes INSIDE one of some nodes at the start."""
         return Unions(self.contents)
 
     @cached_property
     def borne_by(self) -> Unions:
-        """What is ON one of some nodes at the start."""
+        """Return the nodes ON one of some nodes at the start."""
         return Unions(self.bears)
 
     @cached_property
     def close_to(self) -> Unions:
-        """What is CLOSE to one of some nodes at the start."""
+        """Return the nodes CLOSE to one of some nodes at the start."""
         return Unions(self.close)
 
     @cached_property
@@ -238,8 +238,8 @@ class Home:
 
     @cached_property
     def worked_out(self) -> dict[str, Any]:
-        """What other modules work out once for a home, by their names. It goes with the home, of which it may be in a
-        circle: a table of theirs by home would hold every home for ever, as its values know their homes.
+        """Values that other modules compute once for a home, by their names. They go with the home, in a reference
+        cycle: a table of theirs by home would hold every home for ever, as its values know their homes.
         """
         return {}
 
@@ -272,7 +272,7 @@ class Home:
 
     @cached_property
     def around(self) -> Rows:
-        """For each node, what is close to who is CLOSE to it: its CLOSE row and what is ON it."""
+        """Return, for each node, the neighbors of a character CLOSE to it: its CLOSE row and the things ON it."""
         return [a | b for a, b in zip(self.close, self.bears, strict=True)]
 
     @cached_property
@@ -292,15 +292,17 @@ class Home:
 
     @explained
     def instances(self, name: str) -> int:
-        """What a class name stands for: the nodes of that class, else those of the first of its other names that the
-        home knows; of a room that the home lacks, the room that serves as it.
+        """Return the nodes of a class name.
+
+        Those of that class, else those of the first of its other names that the home knows; of a room that the home
+        lacks, the room that serves as it.
         """
         names = (name, *self.knowledge.found_as(name))
         return next((mask for each in names if (mask := self.by_class.get(each, 0))), 0)
 
     @explained
     def limit(self, index: int, lying: bool = False) -> int:
-        """How many things may be ON a seat before one may sit, or on a bed before one may lie."""
+        """Return how many things may be ON a seat before one may sit, or on a bed before one may lie."""
         name = self.classes[index]
         return self.knowledge.bed_limit(name) if lying else self.knowledge.seat_limit(name)
 

@@ -1,4 +1,4 @@
-"""What has moved since the start: edges of the home that no longer count, and new ones, shared between worlds.
+"""Movements since the start: edges of the home that no longer count, and new ones, shared between worlds.
 
 Nothing is deleted row by row: a thing that was grabbed is *removed* from a relation, which voids all its old edges of
 that relation in both directions at once; what it stands in now is *extra*.
@@ -6,7 +6,7 @@ that relation in both directions at once; what it stands in now is *extra*.
 
 from typing import NamedTuple
 
-from hearth.schemas.brief import brief
+from hearth.schemas.short_repr import brief
 from hearth.simulation.world.bits import indices
 
 ON, BEARS, INSIDE, CONTENTS, CLOSE, FACING, FACED = range(7)

@@ -22,7 +22,7 @@ _READ: dict[str, tuple[Callable[[World, int], int], Callable[[World, int], int]]
 
 
 def linked(world: World, edges: Iterable[Numbered]) -> World:
-    """With more edges, given by indices; BETWEEN and what takes no part in the simulation are not for this."""
+    """Add edges, given by indices; BETWEEN and nodes outside the simulation are not for this."""
     extra = dict(world.moved.extra)
     agents = list(world.agents)
     for i, relation, j in edges:
@@ -34,8 +34,8 @@ def linked(world: World, edges: Iterable[Numbered]) -> World:
 def unlinked(world: World, edges: Iterable[Numbered]) -> World:
     """With fewer edges; missing ones are ignored.
 
-    A home's own edge can't be taken out of its shared row: the end of it that has fewer edges of the relation is
-    removed from the relation, and what it keeps becomes extra.
+    A home's own edge can't be taken out of its shared row. The end of it that has fewer edges of the relation is
+    removed from the relation, and its other edges become extra.
     """
     for i, relation, j in edges:
         agents = list(world.agents)

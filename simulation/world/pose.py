@@ -1,4 +1,4 @@
-"""Where a character stands and the way it looks, in homes with geometry."""
+"""A character's position and direction, in homes with geometry."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STRIDE = 1.0
 
 
 class Pose(NamedTuple):
-    """Where someone stands and looks: metres, and degrees about y from +z."""
+    """A position and a direction: metres, and degrees about y from +z."""
 
     x: float
     z: float

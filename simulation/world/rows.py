@@ -62,8 +62,9 @@ def _row(row: int, removed: int, extra: dict[int, int], i: int, kind: int) -> in
 
 
 def is_close(world: WorldState, agent: Agent, i: int) -> bool:
-    """Whether a character is close to i: by its own CLOSE edge, or by one hop from what it is CLOSE to (to something
-    CLOSE to it, or to something that i is ON).
+    """Return whether a character is close to i, by its own CLOSE edge or by one hop.
+
+    The hop leads from a node that the character is CLOSE to, to a node CLOSE to that one, or to a node that i is ON.
     """
     mine = agent.close
     if mine >> i & 1:
@@ -95,7 +96,7 @@ def is_near(world: WorldState, agent: Agent, i: int, near_hands: bool) -> bool:
 
 
 def is_facing(world: WorldState, agent: Agent, i: int) -> bool:
-    """Whether a character faces i, by its own FACING edge or by one hop."""
+    """Return whether a character faces i, by its own FACING edge or by one hop."""
     mine = agent.facing
     if mine >> i & 1 or mine & faced(world, i):
         return True
@@ -161,7 +162,7 @@ def character(world: WorldState, i: int) -> Agent:
 
 
 def containers(world: WorldState, i: int) -> int:
-    """What i is INSIDE, characters included, and whether or not it is a character itself."""
+    """Return the containers of i, characters included, and whether or not it is a character itself."""
     if world.home.characters >> i & 1:
         return character(world, i).inside
     found = inside(world, i)
@@ -186,18 +187,18 @@ def seats(home: Home) -> int:
 
 
 def turned_back(world: WorldState, i: int) -> int:
-    """The bedding ON i that takes no room there by the rule `made_bed`: that on what one can lie on."""
+    """Return the bedding ON i that takes no room there by the rule `made_bed`: the bedding of beds and couches."""
     home = world.home
     return bearing(world, i) & home.bedding if home.properties["LIEABLE"] >> i & 1 else 0
 
 
 def taking_room(world: WorldState, i: int, made_bed: bool = True) -> int:
-    """What is ON i and takes room from who would sit or lie there, with the rule `made_bed` or without."""
+    """Return the things ON i that take room from a sitting or lying character, with the rule `made_bed` or without."""
     return bearing(world, i) & ~turned_back(world, i) if made_bed else bearing(world, i)
 
 
 def held_indices(agent: Agent) -> Iterator[int]:
-    """What a character holds, right hand first."""
+    """Return the objects that a character holds, right hand first."""
     yield from indices(agent.right)
     yield from indices(agent.left & ~agent.right)
 

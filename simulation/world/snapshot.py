@@ -1,8 +1,7 @@
 """A world in the middle of an execution as JSON and back, with nothing lost.
 
-The graph is the release's own format, so that other tools read it; what was carried away has no box in it. What a graph
-cannot hold stands beside it: where grabbed things came from under `memories`, and the characters' places and strides
-under `poses`.
+The graph is the release's own format, so that other tools read it; a removed thing has no box in it. Two keys hold what
+a graph cannot express: `memories` has the origins of grabbed things, and `poses` the characters' places and strides.
 """
 
 from collections.abc import Mapping
@@ -32,7 +31,7 @@ def export(world: World) -> dict[str, Any]:
 
 
 def private(world: World) -> dict[str, Any]:
-    """What a graph cannot hold, by node ids: `memories`, and `poses` where characters have places."""
+    """Return the parts that a graph cannot hold, by node ids: `memories`, and `poses` where characters have places."""
     ids = world.home.ids
     memories = [
         {"agent": ids[agent.index], "thing": ids[thing], "place": ids[place], "relation": _KINDS[kind]}

@@ -6,7 +6,7 @@ from hearth.simulation.world.moved import Moved
 
 
 class WorldState:
-    """A home, and what differs from it at one moment.
+    """A home, and the differences from it at one moment.
 
     Attributes:
         home: what never changes.

@@ -36,7 +36,7 @@ _KEPT = slice(Agent._fields.index("inside"), Agent._fields.index("left") + 1)
 
 
 def unchanged(before: WorldState, after: WorldState) -> bool:
-    """Whether no state and no relation but `BY_PLACE` of characters differs, as after most strides."""
+    """Return whether no state and no relation but `BY_PLACE` of characters differs, as after most strides."""
     if before.states is not after.states or before.moved is not after.moved:
         return False
     for old, new in zip(before.agents, after.agents, strict=True):  # `all` takes twice as long

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import EVERY_STATE_ID
@@ -63,7 +63,7 @@ class World(WorldState):
 
     @explained
     def has_state(self, node_id: int, state: str) -> bool:
-        """Whether a node is in a state.
+        """Return whether a node is in a state.
 
         Raises:
             HearthError: BAD_ARGUMENT, if there is no such node or state.
@@ -88,7 +88,7 @@ class World(WorldState):
 
     @explained
     def changes(self, since: World) -> Change:
-        """What is different from an earlier world of the same home; cost follows what differs."""
+        """Return the differences from an earlier world of the same home; the cost follows their number."""
         return encode(since, self)
 
     def key(self) -> tuple[object, ...]:
@@ -120,6 +120,6 @@ class World(WorldState):
         return f"World({self.home!r}, {len(self.agents)} agents)"
 
     def holding(self) -> Mapping[int, tuple[int, ...]]:
-        """What each agent holds, by agent number: node ids, right hand first."""
+        """The objects that each agent holds, by agent number: node ids, right hand first."""
         ids = self.home.ids
         return {number: tuple(ids[i] for i in rows.held_indices(agent)) for number, agent in enumerate(self.agents)}

@@ -126,7 +126,7 @@ KINDS: tuple[tuple[str, Callable[[WorldState, int], int], bool], ...] = (
     ("FACING", rows.facing, True),
     ("FACING", rows.faced, False),
 )
-"""How each kind of row (see `moved`) is read, and whether its edges go out from the row's node."""
+"""Readers of each kind of row (see `moved`), and whether its edges go out from the row's node."""
 
 _ONE_WAY = ((ON, BEARS), (INSIDE, CONTENTS), (CLOSE,), (FACING, FACED))
 """The kinds of rows of each relation that `Moved` knows removed nodes of, in its order."""

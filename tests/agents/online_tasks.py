@@ -3,8 +3,8 @@
 from small_tasks import ALLOWED, wanted
 
 from hearth.agents.human_like import HumanLike
-from hearth.challenges.play import Player
-from hearth.challenges.play import play as played_by
+from hearth.challenges.episode_loop import Player
+from hearth.challenges.episode_loop import play as played_by
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HOLDS, Literal
 from hearth.simulation.world.bits import indices

@@ -9,7 +9,7 @@ import pytest
 from small_tasks import play, scrambled, standing, start, wanted
 
 from hearth.agents.agent_registry import HELPERS, MAIN
-from hearth.agents.hierarchical import HELPING, Hierarchical
+from hearth.agents.hierarchical_helper import HELPING, Hierarchical
 from hearth.agents.human_like import HumanLike
 from hearth.agents.random_helper import RandomHelper
 from hearth.agents.subgoals import Subgoal

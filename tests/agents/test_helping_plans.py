@@ -4,11 +4,11 @@ import pytest
 from online_tasks import COUNTS, goals_of
 from small_tasks import start, wanted
 
+from hearth.agents.goal_posterior import Posterior
 from hearth.agents.goal_space import Edge, GoalSpace
 from hearth.agents.helping_plans import USUAL_WEIGHTS, HelpingPlans, Weights, _Leg
 from hearth.agents.nopa import Nopa
-from hearth.agents.posterior import Posterior
-from hearth.agents.prospects import Planner
+from hearth.agents.partner_plans import Planner
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.env import Env
 from hearth.simulation.observation.views import pose

@@ -10,9 +10,9 @@ from small_tasks import play, scrambled, standing, start, target, wanted
 
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.mcts import Search
-from hearth.challenges.definition import challenge
-from hearth.challenges.play import Player
-from hearth.challenges.play import play as played_by
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_loop import Player
+from hearth.challenges.episode_loop import play as played_by
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.simulation.env import Env

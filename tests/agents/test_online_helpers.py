@@ -6,11 +6,11 @@ from small_tasks import start, target, wanted
 
 from hearth.agents.belief import Place
 from hearth.agents.empowerment import Empowerment
-from hearth.agents.expected_time import ExpectedTime
+from hearth.agents.expected_time_helper import ExpectedTime
 from hearth.agents.goal_space import Edge
 from hearth.agents.human_like import HumanLike
 from hearth.agents.nopa import Nopa
-from hearth.agents.online_registry import ONLINE
+from hearth.agents.online_helper_registry import ONLINE
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.env import Env

@@ -8,16 +8,16 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.analysis import synthesis, synthesis_splits, synthesis_wording
-from hearth.analysis.described import described
+from hearth.analysis.written_descriptions import described
 from hearth.cli import app
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.near_duplicates import near_texts
 from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.grounding.environments.sampling import sample
 from hearth.kb import grammar as action_grammar
-from hearth.models.data import corpus
+from hearth.models.text_examples import corpus
 from hearth.pipelines.build import build
-from hearth.pipelines.checks.programs import contradictions
+from hearth.pipelines.checks.program_checks import contradictions
 from hearth.pipelines.readers.published import read, scan
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng

@@ -1,6 +1,6 @@
 """Whether a repair helped is decided by what failed, never by the sentence that says so."""
 
-from hearth.repair.loop import Attempt, successes
+from hearth.repair.repair_loop import Attempt, successes
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step

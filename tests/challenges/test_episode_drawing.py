@@ -6,8 +6,8 @@ from itertools import pairwise
 from math import dist
 
 from hearth.analysis.episode_drawing import ticks_of, trails
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, played
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.kb.loading.load import default
 from hearth.simulation.motion.ground import ground_of

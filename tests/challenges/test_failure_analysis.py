@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.failure_analysis import analysed
 from hearth.kb.loading.load import default
 from hearth.schemas.goals import Goal

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from hearth.challenges.definition import NAMES, challenge
+from hearth.challenges.challenge_definition import NAMES, challenge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

@@ -9,19 +9,19 @@ from random import Random
 
 import numpy as np
 import pytest
-from scrambled import hiding_places
+from scrambled_worlds import hiding_places
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.learning_to_watch import examples, goals_of_tests
-from hearth.challenges.playing_demonstrations import Wish, demonstrate
 from hearth.challenges.published_tasks import tasks
-from hearth.challenges.watching import bound, inferred
+from hearth.challenges.watch_stage import bound, inferred
 from hearth.kb.loading.load import default
 from hearth.models.interface import Training
+from hearth.models.watching.demonstration_batches import Joining, Watched, epoch, packed
 from hearth.models.watching.goal_decoding import PossibleGoals, possible_goals
 from hearth.models.watching.goal_inference import GoalInference, TrainedGoalInference, restored
-from hearth.models.watching.sightings import HELD, Layout, Seen, sightings
-from hearth.models.watching.watched_batches import Joining, Watched, epoch, packed
+from hearth.models.watching.object_sightings import HELD, Layout, Seen, sightings
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.literals import Literal
 from hearth.simulation.observation import reach
@@ -120,7 +120,7 @@ def test_answers_depend_neither_on_the_order_of_things_nor_on_the_batch(shown, s
 def test_counts_are_those_of_all_ways_in_which_things_may_count(shown):
     import torch
 
-    from hearth.models.watching.thing_network import LEAST
+    from hearth.models.watching.object_network import LEAST
 
     network = untrained()
     few = replace(shown[0], things=shown[0].things[:4])
@@ -174,7 +174,7 @@ def test_no_goal_of_a_test_is_learnt():
 def test_the_thesis_s_network_sees_where_each_thing_was_last_at_each_moment():
     import torch
 
-    from hearth.models.watching.moment_network import MOMENTS, _places_at
+    from hearth.models.watching.state_network import MOMENTS, _places_at
 
     places, times = torch.tensor([[[2, 5, 0]]]), torch.tensor([[[0.25, 0.75, 0.0]]])
     found = _places_at(places, times)[0, :, 0].tolist()

@@ -8,16 +8,16 @@ from dataclasses import replace
 import pytest
 
 from hearth.agents.goal_space import GoalSpace
+from hearth.agents.human_population import PEOPLE
 from hearth.agents.network_proposals import NetworkProposals
-from hearth.agents.population import PEOPLE
 from hearth.agents.state_changes import StateChanges
 from hearth.analysis.goal_belief_drawing import drawn
 from hearth.analysis.online_inference import calibration, inference
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.challenge_tables import ChallengeData, publish
-from hearth.challenges.definition import challenge
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.helper_beliefs import Beliefs, Moment, beliefs
 from hearth.challenges.learning_to_propose import Wish, episode
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
 from hearth.kb.loading.load import default

@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 
 from hearth.challenges import result_files
 from hearth.challenges.challenge_tables import publish
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, played
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.result_files import Header, first_line, line, read
 from hearth.challenges.task_files import Suite, suite
 from hearth.challenges.verification import read_whole

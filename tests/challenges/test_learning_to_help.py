@@ -9,10 +9,10 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from hearth.agents.hierarchical import Hierarchical  # noqa: E402
+from hearth.agents.hierarchical_helper import Hierarchical  # noqa: E402
 from hearth.agents.human_like import HumanLike  # noqa: E402
-from hearth.agents.learned import Hybrid, Learned  # noqa: E402
-from hearth.agents.scene_reading import vocabulary  # noqa: E402
+from hearth.agents.learned_helpers import Hybrid, Learned  # noqa: E402
+from hearth.agents.policy_observations import vocabulary  # noqa: E402
 from hearth.analysis.training_curves import drawn, runs  # noqa: E402
 from hearth.challenges import learning_to_help  # noqa: E402
 from hearth.challenges.learning_to_help import (  # noqa: E402

@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.failure_analysis import Columns
 from hearth.challenges.metrics import by_task, mean, outcome, paired, speedups, summary
 

@@ -3,8 +3,8 @@
 import pytest
 
 from hearth.challenges.challenge_tables import _once, _trajectory
+from hearth.challenges.episode_agents import Lineup, load
 from hearth.challenges.episodes import Job, again, played
-from hearth.challenges.lineup import Lineup, load
 from hearth.challenges.result_files import read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
@@ -80,8 +80,8 @@ def test_episodes_that_two_files_have_come_once_and_messages_are_no_instructions
 def test_what_is_not_seen_changes_nothing_that_a_helper_is_told_of_places(name, knowledge):
     """Under partial observation the network is shown where things are believed to be, not where they are."""
     pytest.importorskip("torch")
-    from hearth.agents.online_registry import ONLINE
-    from hearth.challenges.definition import challenge
+    from hearth.agents.online_helper_registry import ONLINE
+    from hearth.challenges.challenge_definition import challenge
     from hearth.simulation.env import Env
 
     which = challenge("owah_partial")

@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 
 from hearth.challenges import published_tasks
-from hearth.challenges.definition import challenge
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.task_files import read, read_suite, suite, suite_data, write
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

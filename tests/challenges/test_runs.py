@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from hearth.challenges import episode_spread, episodes
-from hearth.challenges.definition import challenge
+from hearth.challenges import episodes, parallel_episodes
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_agents import Lineup
+from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.episodes import Job, again, played
-from hearth.challenges.lineup import Lineup
-from hearth.challenges.play import Player, play
 from hearth.challenges.result_files import line, read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
@@ -58,13 +58,13 @@ def test_the_same_bytes_for_any_number_of_workers(results, tmp_path):
 @pytest.mark.tools
 def test_the_same_bytes_on_a_dask_cluster(results, tmp_path):
     pytest.importorskip("distributed")
-    with episode_spread.spread_over("dask", 2) as over:
+    with parallel_episodes.spread_over("dask", 2) as over:
         run(FEW, HP, 2, tmp_path / "dask.jsonl", default, over=over)
     assert (tmp_path / "dask.jsonl").read_bytes() == results[0].read_bytes()
 
 
 def test_an_unknown_engine_is_refused():
-    with pytest.raises(HearthError, match="unknown engine"), episode_spread.spread_over("spark"):
+    with pytest.raises(HearthError, match="unknown engine"), parallel_episodes.spread_over("spark"):
         pass
 
 
@@ -73,7 +73,7 @@ def test_a_stopped_run_goes_on(results, tmp_path, monkeypatch, cut):
     out, data = tmp_path / "on.jsonl", results[0].read_bytes()
     (tmp_path / f".{out.name}.run.tmp").write_bytes(data[: int(len(data) * cut)])
     done = []
-    monkeypatch.setattr(episode_spread, "played", lambda job: done.append(job) or played(job))
+    monkeypatch.setattr(parallel_episodes, "played", lambda job: done.append(job) or played(job))
     run(FEW, HP, 2, out, default)
     assert out.read_bytes() == data
     assert len(done) == 8 - data[: int(len(data) * cut)].count(b"\n") + (cut > 0)

@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 from typer.testing import CliRunner
 
-from hearth.analysis import distribution
+from hearth.analysis import object_distribution
 from hearth.cli import app
 
 WATCHING = (
@@ -61,9 +61,9 @@ def test_bars_count_what_is_about_a_class(watching):
 def test_distances_are_0_for_equal_and_1_for_disjoint_distributions():
     one = {"cup": Counter(table=2, sink=2), "milk": Counter(fridge=4), "pen": Counter(desk=1)}
     other = {"cup": Counter(table=5, sink=5), "milk": Counter(floor=1)}
-    found = distribution.distances(one, other)
+    found = object_distribution.distances(one, other)
     assert found == {"cup": (0.0, 4, 10), "milk": (1.0, 4, 1)}
-    assert distribution.overall(found) == 0.5
+    assert object_distribution.overall(found) == 0.5
 
 
 def test_realism_reads_a_release_and_draws_heat_maps(real_data, tmp_path):

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from hearth.cli import app
 from hearth.commands.run_additions import additions
-from hearth.grounding.trial import LEAST, as_given, attempt
+from hearth.grounding.grounded_run import LEAST, as_given, attempt
 from hearth.repair.remedies import stop_reason
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, to_release

@@ -9,7 +9,7 @@ from pathlib import Path
 import orjson
 import pytest
 import yaml
-from hostile import rewrite
+from hostile_datasets import rewrite
 
 import hearth
 from hearth.datasets.format.card import write_card

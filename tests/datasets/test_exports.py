@@ -15,7 +15,7 @@ import networkx
 import pandas as pd
 import pyarrow.parquet as pq
 import pytest
-from hostile import rename
+from hostile_datasets import rename
 
 import hearth
 from hearth.analysis.release_replay import replay

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.analysis.augment_figures import figures
+from hearth.analysis.augmentation_results import figures
 from hearth.challenges.challenge_tables import ChallengeData
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.diff import compare

@@ -18,7 +18,7 @@ from pathlib import Path
 import duckdb
 import pyarrow.parquet as pq
 import pytest
-from hostile import rewrite
+from hostile_datasets import rewrite
 from typer.testing import CliRunner
 
 import hearth

@@ -3,7 +3,7 @@
 import pytest
 
 from hearth.grounding.binding import Binding, bind, nearest
-from hearth.grounding.trial import Trial, attempt
+from hearth.grounding.grounded_run import Trial, attempt
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step

@@ -3,7 +3,7 @@
 import pytest
 from golden_files import compare, short
 
-from hearth.grounding.environments.for_goals import sample_for_goal
+from hearth.grounding.environments.goal_environments import sample_for_goal
 from hearth.grounding.environments.multi_agent import sample_together
 from hearth.homes import library
 from hearth.kb.grammar import check

@@ -4,10 +4,10 @@ import pytest
 
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Condition
-from hearth.grounding.preconditions.infer import infer
 from hearth.grounding.preconditions.postconditions import achieved
-from hearth.repair.circumstances import circumstances
-from hearth.repair.loop import repair
+from hearth.grounding.preconditions.precondition_inference import infer
+from hearth.repair.repair_loop import repair
+from hearth.repair.step_context import circumstances
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import DEFAULT

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.kb import grammar
 from hearth.schemas.failures import Failure
 from hearth.schemas.syntax import parse_program

@@ -3,8 +3,8 @@
 import pytest
 
 from hearth.datasets.format.cases import run_row
-from hearth.grounding.preconditions.infer import infer
-from hearth.grounding.trial import Trial, attempt
+from hearth.grounding.grounded_run import Trial, attempt
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.kb import grammar
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER

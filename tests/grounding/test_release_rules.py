@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.grounding.preconditions.infer import at_odds, infer
+from hearth.grounding.preconditions.precondition_inference import at_odds, infer
 from hearth.grounding.preconditions.release_rules import by_rules, compare
 from hearth.kb import grammar
 from hearth.schemas.literals import CHARACTER, Literal

@@ -10,9 +10,9 @@ from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.multi_agent import sample_together
 from hearth.grounding.environments.sampling import Size, sample
 from hearth.grounding.environments.soundness import unsound
-from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.condition_checks import unmet
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library
 from hearth.homes.lint import lint
 from hearth.kb import grammar

@@ -8,7 +8,7 @@ from golden_files import compare, short
 
 from hearth.grounding.binding import bind
 from hearth.grounding.environments.sampling import Size, sample
-from hearth.grounding.preconditions.infer import infer
+from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library
 from hearth.kb.grammar import check
 from hearth.schemas.failures import Failure

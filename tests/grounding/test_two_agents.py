@@ -1,7 +1,7 @@
 """Programs of several agents are bound tick by tick, and get the characters that they need."""
 
 from hearth.grounding.binding import bind
-from hearth.grounding.trial import Trial, attempt
+from hearth.grounding.grounded_run import Trial, attempt
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program

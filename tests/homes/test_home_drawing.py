@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from hearth.homes import drawing, library
+from hearth.homes import floor_plan_drawing, library
 from hearth.homes.geometry import footprint
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -13,7 +13,7 @@ from hearth.schemas.diagnostics import HearthError
 
 def test_the_svg_shows_every_room_and_piece_of_furniture(tmp_path):
     layout = library.load_layout("maple", default())
-    drawing.write(layout, tmp_path / "plan.svg")
+    floor_plan_drawing.write(layout, tmp_path / "plan.svg")
     root = Xml.parse(tmp_path / "plan.svg").getroot()
     texts = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
     assert {room.name for room in layout.plan.rooms} <= set(texts)
@@ -26,25 +26,25 @@ def test_the_svg_shows_every_room_and_piece_of_furniture(tmp_path):
 
 def test_everything_drawn_lies_within_the_drawing():
     layout = library.load_layout("willow", default())
-    area = drawing.bounds(layout)
-    assert all(area.contains(shape.rect) for shape in drawing.shapes(layout))
+    area = floor_plan_drawing.bounds(layout)
+    assert all(area.contains(shape.rect) for shape in floor_plan_drawing.shapes(layout))
 
 
 def test_the_png_is_the_same_each_time(tmp_path):
     layout = library.load_layout("maple", default())
     for name in ("one.png", "two.png"):
-        drawing.write(layout, tmp_path / name)
+        floor_plan_drawing.write(layout, tmp_path / name)
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
     assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_other_formats_are_refused(tmp_path):
     with pytest.raises(HearthError, match="UNSUPPORTED_FILE"):
-        drawing.write(library.load_layout("maple", default()), tmp_path / "plan.gif")
+        floor_plan_drawing.write(library.load_layout("maple", default()), tmp_path / "plan.gif")
 
 
 def test_names_of_furniture_are_written_over_what_stands_on_it():
-    drawn = list(drawing.shapes(library.load_layout("maple", default())))
+    drawn = list(floor_plan_drawing.shapes(library.load_layout("maple", default())))
     last = max(number for number, shape in enumerate(drawn) if shape.kind == "rect")
     assert all(number > last for number, shape in enumerate(drawn) if shape.kind == "text")
     assert {"character", "bed", "fridge"} <= {shape.text for shape in drawn if shape.kind == "text" and shape.edge}
@@ -53,7 +53,7 @@ def test_names_of_furniture_are_written_over_what_stands_on_it():
 @pytest.mark.parametrize("name", library.names())
 def test_the_name_of_a_room_lies_on_its_floor(name):
     layout = library.load_layout(name, default())
-    names = [shape for shape in drawing.shapes(layout) if shape.kind == "text" and not shape.edge]
+    names = [shape for shape in floor_plan_drawing.shapes(layout) if shape.kind == "text" and not shape.edge]
     assert [shape.text for shape in names] == [room.name for room in layout.plan.rooms]
     standing = [
         footprint(thing.box) for thing in layout.things if thing.mount == "floor" and thing.class_name != "wall"
@@ -67,6 +67,6 @@ def test_blinds_are_drawn_as_curtains():
     layout = library.load_layout("maple", default())
     curtain = next(thing for thing in layout.things if thing.class_name == "curtain")
     hung = replace(layout, things=(*layout.things, replace(curtain, class_name="blinds")))
-    colour = drawing.COLOURS["curtain"]
-    drawn, before = (sum(shape.fill == colour for shape in drawing.shapes(each)) for each in (hung, layout))
+    colour = floor_plan_drawing.COLOURS["curtain"]
+    drawn, before = (sum(shape.fill == colour for shape in floor_plan_drawing.shapes(each)) for each in (hung, layout))
     assert drawn == before + 1

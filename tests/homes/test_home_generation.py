@@ -6,10 +6,10 @@ import pytest
 
 from hearth.homes import library
 from hearth.homes.lint import lint
-from hearth.homes.plans.entries import read_plan
 from hearth.homes.plans.layout import read
-from hearth.homes.plans.writing import plan_text
-from hearth.homes.procedural.generate import generate
+from hearth.homes.plans.plan_entries import read_plan
+from hearth.homes.plans.plan_writer import plan_text
+from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

@@ -10,7 +10,7 @@ from pathlib import Path
 import orjson
 import pytest
 
-from hearth.homes import exporting, library, relations
+from hearth.homes import home_export, library, relations
 from hearth.homes.plans.layout import read
 from hearth.homes.scene_graph import every_thing, node_ids, scene
 from hearth.kb.loading.load import default
@@ -166,7 +166,7 @@ def test_ids_stay_when_something_is_added_first(tmp_path):
     path = tmp_path / "hut.yaml"
     text = (GOLDEN / "hut.yaml").read_text()
     path.write_text(text)
-    exporting.write_ids(library.layout_of(path, default()), tmp_path / "hut.ids.csv")
+    home_export.write_ids(library.layout_of(path, default()), tmp_path / "hut.ids.csv")
     before = library.graph_of(path, default())
     library._layout.cache_clear()
     library._scene.cache_clear()
@@ -183,7 +183,7 @@ def test_ids_stay_when_something_is_added_first(tmp_path):
 
 def test_a_graph_goes_to_the_releases_layout_and_back_without_loss(tmp_path):
     graph = library.load_graph("maple", default())
-    exporting.write_release(graph, tmp_path / "copy.json")
+    home_export.write_release(graph, tmp_path / "copy.json")
     copy = library.load_graph("copy", default(), tmp_path)
     assert copy == graph
     assert "copy" in library.names(tmp_path)

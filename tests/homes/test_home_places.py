@@ -8,10 +8,10 @@ from typer.testing import CliRunner
 from hearth import cli
 from hearth.homes import library
 from hearth.homes.geometry import bottom, intrusion, top
+from hearth.homes.home_statistics import placement_distance, places
 from hearth.homes.plans.layout import read
-from hearth.homes.procedural.generate import generate
+from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
-from hearth.homes.statistics import placement_distance, places
 from hearth.kb.loading.load import default
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 

@@ -6,7 +6,7 @@ import itertools
 
 import pytest
 
-from hearth.homes.drawing import Trail
+from hearth.homes.floor_plan_drawing import Trail
 from hearth.homes.geometry import Rect
 from hearth.homes.library import load_layout, names
 from hearth.homes.plan_panels import Panel, labelled, svg, write

@@ -10,7 +10,7 @@ import pytest
 
 import hearth
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained import explained
+from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import act

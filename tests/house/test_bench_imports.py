@@ -1,4 +1,4 @@
-"""Benchmarks run seldom: what they import from Hearth is there all the same."""
+"""Benchmarks and attacks run seldom: what they import from Hearth is there all the same."""
 
 import ast
 from importlib import import_module
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-BENCHMARKS = sorted((ROOT / "benchmarks").glob("*.py"))
+SCRIPTS = sorted(path for folder in ("benchmarks", "tests/trust") for path in (ROOT / folder).glob("*.py"))
 
 
 def imported(path):
@@ -26,8 +26,8 @@ def is_there(module, name):
         return False
 
 
-@pytest.mark.parametrize("path", BENCHMARKS, ids=lambda path: path.stem)
-def test_what_a_benchmark_imports_is_there(path):
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
+def test_what_a_script_imports_is_there(path):
     found = list(imported(path))
     if any(module.startswith("hearth.models") for module, _ in found):
         pytest.importorskip("torch")

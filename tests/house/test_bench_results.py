@@ -47,7 +47,7 @@ def test_the_document_says_target_ratio_and_spread(results):
 
 @pytest.fixture(scope="module")
 def alternate(module):
-    return module("benchmarks/alternate.py")
+    return module("benchmarks/checkout_comparison.py")
 
 
 def turns(alternate, *values, unit):

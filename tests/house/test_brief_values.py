@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 import hearth
-from hearth.schemas.brief import LONGEST, brief, cut
+from hearth.schemas.short_repr import LONGEST, brief, cut
 
 TEXT = "Fetch milk\n\n[Walk] <fridge> (1)\n[Open] <fridge> (1)\n[Grab] <milk> (1)\n"
 

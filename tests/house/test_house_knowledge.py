@@ -14,7 +14,7 @@ ENTRIES = ("commands", "cli.py", "__init__.py", "docs", "benchmarks", "tests")
 READS = {
     "kb/tools/compare.py": "another's knowledge, to be compared",
     "datasets/dataset_knowledge.py": "what a dataset was made with",
-    "pipelines/engine/context.py": "what a build was asked to use",
+    "pipelines/engine/build_context.py": "what a build was asked to use",
 }
 """Files below that read knowledge because something names it."""
 

@@ -11,7 +11,15 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILT = frozenset({".venv", ".git", "build", "data_out", "dist", "__pycache__"})
-NAMES = ("*.md", "benchmarks/README.md", "data_raw/*.md", "data_raw/homes/*.md", "docs/**/*.md", "kb/*.md")
+NAMES = (
+    "*.md",
+    "benchmarks/README.md",
+    "data_raw/*.md",
+    "data_raw/homes/*.md",
+    "docs/**/*.md",
+    "kb/*.md",
+    "tests/trust/*.md",
+)
 DOCUMENTS = sorted(path for name in NAMES for path in ROOT.glob(name))
 SPAN = re.compile(r"`([^`\n]+)`|\]\(([^)\s]+)\)")
 FILE = re.compile(r"[\w.*-]+(?:/[\w.*-]+)*/?")

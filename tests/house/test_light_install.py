@@ -158,7 +158,7 @@ def test_without_their_libraries_the_environments_say_what_to_install(module):
 
 def test_an_environment_of_one_learner_needs_no_pettingzoo():
     pytest.importorskip("gymnasium", reason="the extra `agents` is not installed")
-    code = "import sys\nsys.modules['pettingzoo'] = None\nimport hearth.challenges.single"
+    code = "import sys\nsys.modules['pettingzoo'] = None\nimport hearth.envs.gymnasium_env"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 

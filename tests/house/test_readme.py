@@ -1,4 +1,4 @@
-"""The README and the quick start show what commands and cells print, under the names that files have."""
+"""The README, the tour and the quick start show what commands and cells print, under the names that files have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from hearth import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text("utf-8")
-BLOCKS = [dedent(block).strip("\n") for block in re.findall(r"(?:^(?: {4}.*)?\n)*^ {4}.*\n(?=\S|\n\S)", README, re.M)]
+TOUR = (ROOT / "docs/tour.md").read_text("utf-8")
+PAGES = README + "\nText.\n\n" + TOUR
+BLOCKS = [dedent(block).strip("\n") for block in re.findall(r"(?:^(?: {4}.*)?\n)*^ {4}.*\n(?=\S|\n\S)", PAGES, re.M)]
 
 
 def block(start: str) -> str:
@@ -47,7 +49,7 @@ def test_a_command_prints_what_is_shown(program, command):
 
 
 def test_commands_of_the_tour_exist():
-    used = set(re.findall(r"python cli\.py ([a-z-]+)", README))
+    used = set(re.findall(r"(?:`|^    )hearth ([a-z][a-z-]+)", PAGES, re.M))
     assert len(used) > 10 and used <= cli.COMMANDS_BY_NAME.keys()
 
 
@@ -55,7 +57,7 @@ def test_commands_of_the_tour_exist():
 def test_pictures_and_films_have_the_names_that_are_told(program):
     small = ("--home", "maple", "--width", "64", "--fps", "5")
     assert "sheet.png" in printed("render-program", "watch_tv.txt", *small, "--mode", "video", "--out", "film")
-    named = set(re.findall(r"`(\w+\.\w+)`", README.split("`--mode video` films it")[1].split("\n\n")[0]))
+    named = set(re.findall(r"`(\w+\.\w+)`", TOUR.split("`--mode video` films the program")[1].split("\n\n")[0]))
     assert named and named <= {path.name for path in Path("film").iterdir()}
 
 

@@ -1,4 +1,4 @@
-"""The README's commands, one after another, in a copy of the checkout, as a new user gives them."""
+"""The commands of the README and the guides, one after another, in a copy of the checkout, as a new user types them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ import pytest
 from checkouts import ROOT, copied, done, run_in
 
 README = (ROOT / "README.md").read_text("utf-8")
-COMMANDS = [shlex.split(found.strip()) for found in re.findall(r"python cli\.py ([^`\n]+)", README)]
+GUIDES = "".join((ROOT / name).read_text("utf-8") for name in ("docs/tour.md", "docs/datasets.md", "docs/corpus.md"))
+CALLS = re.compile(r"(?:`|^    )hearth ([a-z][^`\n]+)", re.M)
+COMMANDS = [shlex.split(found.strip(), comments=True) for found in CALLS.findall(README + GUIDES)]
 
 REAL = Path(os.environ.get("HEARTH_REAL_DATA", ROOT.parent / "shared/real"), "activityprograms-sample.zip")
 
@@ -34,6 +36,7 @@ def checkout(tmp_path_factory):
     copy = copied(tmp_path_factory.mktemp("readme"))
     (program,) = re.findall(r"Save this as `watch_tv.txt`:\n\n((?:    .*\n|\n)+)", README)
     (copy / "watch_tv.txt").write_text(re.sub(r"^ {4}", "", program, flags=re.M))
+    (copy / "plans.txt").write_bytes((copy / "watch_tv.txt").read_bytes())
     (copy / "my_programs").mkdir()
     (copy / "my_programs/watch_tv.txt").write_bytes((copy / "watch_tv.txt").read_bytes())
     return copy
@@ -54,7 +57,7 @@ def prepared(copy: Path, words: list[str]) -> list[str]:
         row = {"id": "a", "predicted": text, "reference": text}
         (copy / "predictions.jsonl").write_text(json.dumps(row) + "\n")
         done(copy, "python", "cli.py", "home", "convert", "maple", "home.json")
-    given = {"release.zip": str(REAL), "RELEASE.zip": str(REAL), "data_out": "mine"}
+    given = {"release.zip": str(REAL), "RELEASE.zip": str(REAL), "data_out": "mine", "other": "mine"}
     return [*(given.get(word, word) for word in words), *SMALL.get(words[0], ())]
 
 

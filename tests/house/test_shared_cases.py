@@ -8,7 +8,7 @@ import pytest
 from hearth.commands.inputs import read_programs
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import print_step
-from hearth.scoring.lines import read as read_lines
+from hearth.scoring.line_sequences import read as read_lines
 from hearth.storage.rejects import Reject
 
 ROOT = Path(__file__).resolve().parents[2]

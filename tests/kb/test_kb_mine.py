@@ -8,7 +8,7 @@ import pytest
 
 from hearth.datasets.published_programs import programs
 from hearth.kb.tools.compare import compare
-from hearth.kb.tools.mine import as_lines, mine
+from hearth.kb.tools.fact_mining import as_lines, mine
 from hearth.schemas.diagnostics import HearthError
 
 READ = [

@@ -13,8 +13,8 @@ from hearth.kb.tools import graph_and_tables
 from hearth.kb.tools.action_table import action_table
 from hearth.kb.tools.export import export
 from hearth.kb.tools.find import Query, find
-from hearth.kb.tools.paths import path
 from hearth.kb.tools.pddl import domain
+from hearth.kb.tools.relation_paths import path
 from hearth.kb.tools.show import about_action, about_object
 from hearth.schemas.diagnostics import HearthError
 

@@ -12,7 +12,7 @@ import pytest
 
 import hearth
 from hearth.homes import library
-from hearth.models.data import Corpus, Example
+from hearth.models.text_examples import Corpus, Example
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import parse_steps
 from hearth.simulation.actions.legal import legal

@@ -12,7 +12,7 @@ import pytest
 import torch
 
 from hearth.models.checkpoint import CARD, NAME, WEIGHTS, Checkpoint, load, save
-from hearth.models.filled import filled
+from hearth.models.checkpoint_weights import filled
 from hearth.models.model_registry import TRAINED, restore, restore_any
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_models import TextModel

@@ -8,8 +8,8 @@ import pytest
 from hearth.models.films import clip_tables
 from hearth.models.films.clip_confusion import drawn, of_pairs
 from hearth.models.films.clip_data import Clip, Clips, Instruction
+from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.films.mask_model import TrainedMaskModel
-from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.schemas.diagnostics import HearthError
 
 WALK, GRAB = Instruction("Walk", ("bed",)), Instruction("Grab", ("cup",))

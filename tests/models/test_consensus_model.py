@@ -12,9 +12,9 @@ from hearth.scoring.metrics.lcs import score_pairs
 
 @pytest.fixture(scope="module")
 def trained(dataset, eight):
-    from hearth.models.data import Corpus
     from hearth.models.text.consensus_model import Consensus, TrainedConsensus
     from hearth.models.text.text_models import TextModel
+    from hearth.models.text_examples import Corpus
 
     corpus = Corpus(dataset, "activities", eight, eight[:2])
     found = Consensus(draws=6).fit(corpus, Training(epochs=1))

@@ -5,15 +5,15 @@ from __future__ import annotations
 import pytest
 import torch
 
-from hearth.models.data import Corpus
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.interface import Request, Training
 from hearth.models.model_registry import MODELS, settings_of
-from hearth.models.sketches.chooser import SIZES, TrainedChooser
 from hearth.models.sketches.graph_model import TrainedGraphModel
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import Habits
+from hearth.models.sketches.plan_chooser import SIZES, TrainedChooser
 from hearth.models.text.text_models import TextModel
+from hearth.models.text_examples import Corpus
 from hearth.schemas.syntax import parse_steps
 from hearth.scoring.metrics.executability import executability
 from hearth.scoring.metrics.parsability import parsability

@@ -11,7 +11,7 @@ import pytest
 from oracles.scorers import BY_ACTION, BY_OBJECT, WHOLE, Knowing, RandomScorer
 
 from hearth.models.decoding.equal_scores import best_places
-from hearth.models.decoding.options import NONE, Grammar, Partial
+from hearth.models.decoding.next_step_options import NONE, Grammar, Partial
 from hearth.models.decoding.search import Search, Start, decode, numbered
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step

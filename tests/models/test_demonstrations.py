@@ -20,19 +20,19 @@ from typer.testing import CliRunner
 import hearth
 from hearth import cli
 from hearth.models.checkpoint import load, save
-from hearth.models.data import corpus
-from hearth.models.demonstrations.above_facts import above
 from hearth.models.demonstrations.demo_batches import done_batch, frame_batch, turn
 from hearth.models.demonstrations.demo_model import DemoModel, TrainedDemoModel
 from hearth.models.demonstrations.demo_sketches import pooled
+from hearth.models.demonstrations.demonstration_comparison import compared
 from hearth.models.demonstrations.demonstration_data import Demonstrations, Pictures, arrays, read_pictures
-from hearth.models.demonstrations.kinds_compared import compared
 from hearth.models.demonstrations.mask_classes import MaskClasses
+from hearth.models.demonstrations.overhead_features import above
 from hearth.models.fit_model import fit
 from hearth.models.interface import Request, Training
 from hearth.models.sketches.sketch_tables import table
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import encoded, step_batch
+from hearth.models.text_examples import corpus
 from hearth.models.training import train
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

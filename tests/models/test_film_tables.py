@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 import hearth
+from hearth.models.execution_trials import Trial
 from hearth.models.films import film_tables
 from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.film_executions import Shown, by_class
-from hearth.models.films.film_readings import Reading
 from hearth.models.films.film_tables import COLUMNS, THESIS, WAYS
 from hearth.models.films.film_writer import TrainedFilmWriter
+from hearth.models.films.instruction_scores import Reading
 from hearth.models.films.step_order import StepOrder
-from hearth.models.tried_programs import Trial
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import DEFAULT
 

@@ -13,27 +13,27 @@ import torch
 import hearth
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
-from hearth.models.films import film_critical, film_examples, film_writer
+from hearth.models.execution_trials import Trial
+from hearth.models.films import film_examples, film_self_critical, film_writer
 from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_batches import clip_batch, rows_of
 from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_scores
-from hearth.models.films.film_critical import FilmCritical, sim_reward
 from hearth.models.films.film_examples import FilmExample, film_probabilities
+from hearth.models.films.film_self_critical import FilmCritical, sim_reward
 from hearth.models.films.film_tables import by_writer
 from hearth.models.films.film_writer import FilmWriter, TrainedFilmWriter
-from hearth.models.films.seen_model import Scored, SeenModel, TrainedSeenModel
+from hearth.models.films.mask_clip_model import Scored, SeenModel, TrainedSeenModel
 from hearth.models.films.step_order import StepOrder
 from hearth.models.interface import Request, Training
 from hearth.models.model_registry import restore
-from hearth.models.text.likelihood import likelihood
+from hearth.models.text.likelihood_training import likelihood
+from hearth.models.text.program_writer import sample
 from hearth.models.text.self_critical import SIM, Drawn, rewarding, surrogate
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import encoded, step_batch
 from hearth.models.text.text_models import listed
-from hearth.models.text.writer import sample
 from hearth.models.training import train
-from hearth.models.tried_programs import Trial
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.scoring.metrics.executability import executability
@@ -269,7 +269,7 @@ def test_classes_of_programs_are_those_of_clips(reader, films):
 def filmed(reader, films, monkeypatch):
     """A dataset of the eight films, read by the classifier."""
     monkeypatch.setattr(film_writer, "classifier", lambda start: ("clips-seen", reader))
-    for module in (film_writer, film_critical):
+    for module in (film_writer, film_self_critical):
         monkeypatch.setattr(module, "film_examples", lambda *_: list(films))
     return SimpleNamespace(knowledge=default())
 

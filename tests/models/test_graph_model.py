@@ -9,12 +9,12 @@ import pytest
 import torch
 
 from hearth.models.checkpoint import load, save
-from hearth.models.data import corpus
 from hearth.models.interface import Request, Training
 from hearth.models.sketches.graph_inputs import MOST, PAD, GraphInput, batched, graph_input, targets
 from hearth.models.sketches.graph_model import GraphModel, TrainedGraphModel
 from hearth.models.sketches.graph_network import GraphEncoder, GraphNetwork, loss_of
 from hearth.models.sketches.name_numbers import Words
+from hearth.models.text_examples import corpus
 from hearth.repair.sketch_plan import planned_program
 from hearth.schemas.syntax import parse_steps
 from hearth.scoring.metrics.executability import executability

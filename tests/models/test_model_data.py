@@ -13,9 +13,9 @@ import hearth
 from hearth import cli
 from hearth.datasets.format.sketch_choice import sketches_query
 from hearth.datasets.format.stored_cases import stored_cases
-from hearth.models.data import Corpus, carved, corpus, examples, of_new_titles, requests, shared
 from hearth.models.interface import Request
-from hearth.models.predicting import write
+from hearth.models.prediction_files import write
+from hearth.models.text_examples import Corpus, carved, corpus, examples, of_new_titles, requests, shared
 from hearth.schemas.diagnostics import HearthError
 from hearth.scoring.dataset_scores import chosen
 
@@ -101,9 +101,9 @@ def test_each_part_of_two_activities_or_more_has_one(eight, count):
 
 def test_a_split_by_home_whose_validation_is_of_trained_activities_takes_some_of_training(parted, monkeypatch):
     """Of `homes_1_4` some 4 % of the validation programs were of other activities: too few to choose weights by."""
-    from hearth.models import data
+    from hearth.models import text_examples
 
-    read = data._read
+    read = text_examples._read
     given = examples(parted, "homes_1_4", "train", originals=True)
     for known, instead in ((given * 10, 1), ((), None)):
 
@@ -111,7 +111,7 @@ def test_a_split_by_home_whose_validation_is_of_trained_activities_takes_some_of
             other = read(dataset, split, "validation", originals, sketches)
             return (*known, *other[:1]) if part == "validation" else read(dataset, split, part, originals, sketches)
 
-        monkeypatch.setattr(data, "_read", seen)
+        monkeypatch.setattr(text_examples, "_read", seen)
         found = corpus(parted, "homes_1_4")
         assert found.validation and not {e.activity for e in found.train} & {e.activity for e in found.validation}
         assert found.facts.get("validation_of_train_instead_of") == instead
@@ -128,8 +128,8 @@ def test_without_examples_for_validation_no_weights_are_chosen(dataset, eight):
 @pytest.mark.parametrize("model", ["text", "critical", "graph", "chooser"])
 def test_models_that_choose_weights_need_validation(model, dataset, eight):
     from hearth.models.interface import Training
-    from hearth.models.sketches.chooser import Chooser
     from hearth.models.sketches.graph_model import GraphModel
+    from hearth.models.sketches.plan_chooser import Chooser
     from hearth.models.text.self_critical import SelfCritical
     from hearth.models.text.text_models import TextModel
 

@@ -10,12 +10,12 @@ from typer.testing import CliRunner
 
 from hearth import cli
 from hearth.analysis.prediction_examples import examples_page, prediction_examples, spread_over
-from hearth.models.data import examples
-from hearth.models.predicting import write
+from hearth.models.prediction_files import write
+from hearth.models.text_examples import examples
 from hearth.rendering.film import snapshots
 from hearth.scoring.dataset_scores import score_given
 from hearth.scoring.evaluate import Scored
-from hearth.scoring.lines import steps_of
+from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.metrics.lcs import LcsScore
 from hearth.scoring.predictions import Pair
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from hearth.models.interface import Request, Training
-from hearth.models.predicting import predict
+from hearth.models.prediction_files import predict
 from hearth.models.text.retrieval import RandomRetrieval
 
 

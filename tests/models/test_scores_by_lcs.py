@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 
 from hearth import cli
 from hearth.analysis.scores_by_lcs import Agreement, BandRow, draw_by_lcs
-from hearth.models.data import examples
-from hearth.models.predicting import write
+from hearth.models.prediction_files import write
+from hearth.models.text_examples import examples
 
 
 def test_a_score_that_no_program_has_is_no_bar_of_height_0(tmp_path):

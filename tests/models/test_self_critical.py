@@ -11,8 +11,8 @@ from hearth.models.interface import Training
 
 @pytest.fixture
 def untrained(dataset, eight):
-    from hearth.models.data import Corpus
     from hearth.models.text.text_models import TextModel
+    from hearth.models.text_examples import Corpus
 
     settings = TextModel(hidden=16, vector=16, dropout=0.0, longest=4)
     corpus = Corpus(dataset, "activities", eight[:1], eight[:1])
@@ -23,8 +23,8 @@ def test_the_mean_gradient_of_the_baseline_is_about_zero(untrained, eight):
     """Eq. 4.7: any constant times the gradient of the logarithm of the probability of samples has the mean 0."""
     import torch
 
+    from hearth.models.text.program_writer import sample
     from hearth.models.text.text_batches import step_batch, text_batch
-    from hearth.models.text.writer import sample
 
     model, _ = untrained
     writer = model.writer.eval()
@@ -73,8 +73,8 @@ def test_what_is_rewarded_becomes_more_probable(untrained, eight):
 
 
 def test_rewards(dataset, eight):
-    from hearth.models.data import Corpus, examples
     from hearth.models.text.self_critical import SIM, lcs_reward, sim_reward
+    from hearth.models.text_examples import Corpus, examples
 
     assert lcs_reward(eight, [each.steps for each in eight]) == [1.0] * 8
     assert lcs_reward(eight[:1], [()]) == [0.0]
@@ -86,9 +86,9 @@ def test_rewards(dataset, eight):
 
 
 def test_both_phases_run_and_are_recorded(dataset, monkeypatch):
-    from hearth.models.data import Corpus, examples
     from hearth.models.text import self_critical, text_models
     from hearth.models.text.self_critical import SelfCritical
+    from hearth.models.text_examples import Corpus, examples
 
     known = examples(dataset, "activities", "train", originals=True)[:4]
     corpus = Corpus(dataset, "activities", known, known)
@@ -104,9 +104,9 @@ def test_both_phases_run_and_are_recorded(dataset, monkeypatch):
 
 def test_a_stopped_training_does_not_go_on_from_another_start(dataset, eight, tmp_path, monkeypatch):
     """The kept state has the weights of the start before."""
-    from hearth.models.data import Corpus
     from hearth.models.text import self_critical
     from hearth.models.text.text_models import TextModel
+    from hearth.models.text_examples import Corpus
 
     corpus = Corpus(dataset, "activities", eight, eight[:2])
     settings = TextModel(hidden=16, vector=16, longest=4)

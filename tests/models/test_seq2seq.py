@@ -76,7 +76,7 @@ def test_it_is_called_for_training_wherever_there_are_gradients(lstm, inputs, mo
 
 @pytest.mark.parametrize(("count", "batch"), [(0, 4), (3, 4), (4, 4), (1_003, 8)])
 def test_batches_have_every_example_once_and_are_of_about_the_same_length(count, batch):
-    from hearth.models.text.likelihood import alike
+    from hearth.models.text.likelihood_training import alike
 
     lengths = [Random(place).randint(1, 40) for place in range(count)]
     found = alike(lengths, batch, Random(5))

@@ -8,12 +8,12 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth import cli
-from hearth.analysis.augment_figures import figures
+from hearth.analysis.augmentation_results import figures
 from hearth.datasets.graph_sizes import graph_sizes
-from hearth.models.data import requests
 from hearth.models.fit_model import fit
 from hearth.models.sketches.dataset_table import dataset_table
 from hearth.models.sketches.sketch_tables import COLUMNS, _other_person, table
+from hearth.models.text_examples import requests
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import parse_program
 from hearth.scoring.baselines import Example

@@ -33,7 +33,7 @@ def plain(programs):
 @pytest.fixture(scope="module")
 def learned(dataset, eight):
     """Each kind, trained on the eight; they have titles in the noise, so that some texts are seen without."""
-    from hearth.models.data import Corpus
+    from hearth.models.text_examples import Corpus
 
     corpus = Corpus(dataset, "activities", eight, eight)
     return {kind: small(**changed).fit(corpus, SLOWLY if changed else HOW) for kind, changed in KINDS.items()}
@@ -150,8 +150,8 @@ def test_copying_writes_objects_that_no_training_program_has(learned):
 def test_samples_follow_the_generator(learned, eight):
     import torch
 
+    from hearth.models.text.program_writer import sample
     from hearth.models.text.text_batches import text_batch
-    from hearth.models.text.writer import sample
 
     model = learned["lstm, composed"]
     texts = text_batch([each.request for each in eight], model.vocabulary, model.writer.device)
@@ -184,7 +184,7 @@ def test_word_vectors_are_the_same_whatever_the_order():
 
 
 def test_mentions(knowledge):
-    from hearth.models.text.mentions import mentions, spellings
+    from hearth.models.text.object_mentions import mentions, spellings
 
     known = spellings(knowledge, list(knowledge.objects))
     found = mentions(["put", "the", "plates", "and", "the", "coffee", "maker", "next", "to", "the", "salt"], known)

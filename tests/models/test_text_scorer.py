@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from hearth.models.data import requests
 from hearth.models.interface import Training
+from hearth.models.text_examples import requests
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import Program
 from hearth.scoring.dataset_scores import chosen
@@ -17,8 +17,8 @@ from hearth.simulation.world.home import Home
 
 
 def untrained(dataset, eight, **changed):
-    from hearth.models.data import Corpus
     from hearth.models.text.text_models import TextModel
+    from hearth.models.text_examples import Corpus
 
     settings = TextModel(hidden=16, vector=16, dropout=0.0, **changed)
     return settings.fit(Corpus(dataset, "activities", eight, eight[:1]), Training(epochs=1, rate=1e-6))
@@ -39,9 +39,9 @@ def test_with_random_weights_each_program_parses_and_runs(dataset, eight, body):
 
 
 def test_what_it_has_learned_is_written_where_it_can_be_done(dataset, eight, maple):
-    from hearth.models.data import Corpus
     from hearth.models.decoding.search import Start, decode
     from hearth.models.text.text_models import TextModel
+    from hearth.models.text_examples import Corpus
     from hearth.simulation.world.world import World
 
     one = eight[0]

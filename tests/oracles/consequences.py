@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hearth.kb.formula import And
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, Process
+from hearth.kb.knowledge_records import Action, Process
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from oracles.facts import Facts

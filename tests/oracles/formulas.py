@@ -12,7 +12,7 @@ from typing import Protocol
 
 from hearth.kb.formula import And, Count, Effect, Formula, Not, Or, Some, Term, free
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action, Condition
+from hearth.kb.knowledge_records import Action, Condition
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS
 

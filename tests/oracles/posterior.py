@@ -1,8 +1,8 @@
-"""Which goal somebody pursues, weighed goal by goal and thing by thing: the twin of `hearth.agents.posterior`."""
+"""Which goal somebody pursues, weighed goal by goal and thing by thing: the twin of `hearth.agents.goal_posterior`."""
 
 import math
 
-from hearth.agents.posterior import FAR
+from hearth.agents.goal_posterior import FAR
 from hearth.schemas.literals import HOLDS
 
 

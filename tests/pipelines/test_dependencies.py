@@ -60,7 +60,7 @@ def test_data_files_count_with_the_modules_that_name_them():
 
 
 def test_only_rendering_depends_on_rendering():
-    drawn = [stage for stage in STAGES if "rendering/rays/casting.py" in files_of(f"hearth.pipelines.{stage}")]
+    drawn = [stage for stage in STAGES if "rendering/rays/ray_casting.py" in files_of(f"hearth.pipelines.{stage}")]
     assert drawn == ["render"]
 
 

@@ -8,7 +8,7 @@ from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.validate import checked
 from hearth.schemas.syntax import print_lines
-from hearth.scoring import lines
+from hearth.scoring import line_sequences
 from hearth.scoring.line_reader import LineReader
 
 MILK = ["[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Grab] <milk> (1)", "[Close] <fridge> (1)"]
@@ -110,8 +110,8 @@ MILK_TEXTS = {
 def test_the_same_steps_in_every_form_for_check_and_score(write, knowledge, text):
     ((_, steps, faults, _),) = programs(write, knowledge, text)
     assert (steps, faults) == (MILK, [])
-    scored = lines.read(text.removeprefix("\ufeff"), LineReader(knowledge))
-    assert [step.action.lower() for step in lines.steps_of(scored)] == ["walk", "open", "grab", "close"]
+    scored = line_sequences.read(text.removeprefix("\ufeff"), LineReader(knowledge))
+    assert [step.action.lower() for step in line_sequences.steps_of(scored)] == ["walk", "open", "grab", "close"]
 
 
 @pytest.mark.parametrize(

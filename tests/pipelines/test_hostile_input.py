@@ -11,7 +11,7 @@ import pyarrow as pa
 import pytest
 from oracles import mutated_input
 
-from hearth.analysis import ratings
+from hearth.analysis import completeness_ratings
 from hearth.analysis.spreadsheet_cells import original_cell
 from hearth.analysis.synthesis import load
 from hearth.datasets.export.release_layout import stem
@@ -44,13 +44,13 @@ def test_cells_come_back_and_none_is_a_formula(text):
 
 def test_a_sheet_for_raters_holds_no_formulas_and_knows_its_programs_again(tmp_path):
     evil = Program("=cmd|' /C calc'!A0", "@SUM(1)", ())
-    text = ratings.sheet([("=evil", evil)], 1)
+    text = completeness_ratings.sheet([("=evil", evil)], 1)
     assert not any(cell[:1] in "=+-@" for row in csv.reader(io.StringIO(text)) for cell in row if cell)
     file = tmp_path / "filled.csv"
     file.write_text(text.rstrip("\n") + "2\n", encoding="utf-8-sig")
-    assert ratings.medians(ratings.read_sheets([file])) == {"=evil": 2}
+    assert completeness_ratings.medians(completeness_ratings.read_sheets([file])) == {"=evil": 2}
     file.write_text("program_id;rater;rating\n'=evil;r;3\n")
-    assert ratings.medians(ratings.read_sheets([file])) == {"=evil": 3}
+    assert completeness_ratings.medians(completeness_ratings.read_sheets([file])) == {"=evil": 3}
 
 
 @pytest.mark.parametrize("name", ["../../x", "release:../../x", "/etc/x", "a/../../x", "a\\..\\..\\x", "line\nbreak"])

@@ -111,4 +111,4 @@ def test_a_build_stopped_at_the_keyboard_goes_on(made, module, tmp_path):
     assert "continues from there" in message and "Traceback" not in message
     assert not (tmp_path / "publish/manifest.json").exists()
     assert subprocess.run(command, check=False, capture_output=True).returncode in (0, 1)
-    assert module("benchmarks/kills.py").differing(made.out, tmp_path) == []
+    assert module("benchmarks/killed_builds.py").differing(made.out, tmp_path) == []

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from hearth.commands.inputs import read_programs
 from hearth.kb.language.plan_lines import META, is_said_around, plan_line
-from hearth.schemas.blocks import TITLE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.program_blocks import TITLE
 from hearth.storage.rejects import Reject
 
 PLANS = Path(__file__).parents[1] / "messy/plans.jsonl"

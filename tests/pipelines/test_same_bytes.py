@@ -34,7 +34,7 @@ if __name__ == "__main__":
 @pytest.fixture(scope="module")
 def kills(module):
     """Kills builds, and compares the results."""
-    return module("benchmarks/kills.py")
+    return module("benchmarks/killed_builds.py")
 
 
 def started(out: Path, made, tmp_path: Path, workers: int = 1, hash_seed: str = "0", engine: str = "local"):
@@ -92,7 +92,7 @@ def test_a_second_build_does_nothing(made):
 
 @pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.slow)])
 def test_killed_at_random_moments_and_taken_up_again(made, kills, inputs, tmp_path, times):
-    """`kill -9` of whole builds; `python benchmarks/kills.py` does it two hundred times."""
+    """`kill -9` of whole builds; `python benchmarks/killed_builds.py` does it two hundred times."""
     options = [
         "--homes",
         made.settings.homes_folder,

@@ -7,11 +7,11 @@ from typer.testing import CliRunner
 
 import hearth
 from hearth import cli
-from hearth.analysis.augment_figures import figures
+from hearth.analysis.augmentation_results import figures
 from hearth.datasets.report.write import write_report
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.tiers import tiered
-from hearth.repair.strengths import STRENGTHS_FILE, load_strengths
+from hearth.repair.perturbation_strengths import STRENGTHS_FILE, load_strengths
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.files import read_json
 

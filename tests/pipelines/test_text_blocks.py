@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hearth.pipelines.crowd.repeated import Repeated
-from hearth.pipelines.crowd.seen import SeenSet, digest
+from hearth.pipelines.crowd.duplicate_records import Repeated
+from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.readers import text_blocks as subject
 from hearth.pipelines.readers.item import Item
-from hearth.schemas.blocks import STEP, Splitter
+from hearth.schemas.program_blocks import STEP, Splitter
 
 LINES = (
     "Watch TV", "A sentence here.", "[Walk] <a> (1)", "", "", "", "  ", "\t", "<char0> [Sit] <b> (1)", "| x",

@@ -3,13 +3,13 @@
 import pytest
 
 from hearth.kb.loading.load import default
-from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.hand_gestures import gesturing
-from hearth.rendering.people.variety import person
+from hearth.rendering.people.random_people import person
 from hearth.rendering.scene.free_poses import Pose
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
 

@@ -4,9 +4,9 @@ import numpy as np
 
 from hearth.kb.loading.load import default
 from hearth.rendering.scene.added_furniture import LEGS, furnished
-from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import prepared_scene
-from hearth.rendering.scene.swept import Floors
+from hearth.rendering.scene.door_sweep import Floors
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
 ROOM = Node(1, "kitchen", "Rooms", (), (), None, Box((0, 1.3, 0), (5, 2.6, 4)))

@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.models.drape import EMPTY, drape
+from hearth.rendering.models.blanket import EMPTY, drape
 from hearth.rendering.models.paint import Paint
 from hearth.rendering.people.bedding import OPENED, SPREAD, Remade, drawn, edge, turned_back
 from hearth.rendering.people.body_pose import BodyPose
-from hearth.rendering.people.lying import lying_down
+from hearth.rendering.people.lying_down import lying_down
 from hearth.rendering.people.motion import frames
-from hearth.rendering.people.tracks import _got_up, track
-from hearth.rendering.scene.prepared import local_size
+from hearth.rendering.people.motion_tracks import _got_up, track
+from hearth.rendering.scene.scene_preparation import local_size
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.world.edit import extended

@@ -3,12 +3,12 @@
 import pytest
 
 from hearth.kb.loading.load import default
-from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.aims import carrying, with_aims
+from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.palm_targets import carrying, with_aims
+from hearth.rendering.people.random_people import person
 from hearth.rendering.people.skeleton import effort_of
-from hearth.rendering.people.variety import person
-from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import EnvironmentGraph, Node
 
 ME = Node(1, "character", "Characters", (), (), None)

@@ -20,7 +20,7 @@ from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.modalities import render
 from hearth.rendering.people.motion import frames
-from hearth.rendering.scene.with_geometry import with_geometry
+from hearth.rendering.scene.home_geometry import with_geometry
 
 TEXT = "Rest\nSit down.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n[StandUp]\n"
 

@@ -8,13 +8,13 @@ import pytest
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.modalities import render
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model, draw
-from hearth.rendering.models.recipes import RECIPES
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model, draw
+from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.scene.effects import EFFECTS, STEAM, at_time, changes, shining
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import STATES
 

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.frame_files import pictures_in

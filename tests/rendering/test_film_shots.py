@@ -9,20 +9,20 @@ from hypothesis import strategies as st
 
 pytest.importorskip("open3d")
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.cameras.recognition import in_the_way, recognition, shows
 from hearth.rendering.cameras.viewpoints import room_views
 from hearth.rendering.cameras.visibility import seen_as
-from hearth.rendering.film.cuts import Acts, best_cut
-from hearth.rendering.film.quality import film_quality
+from hearth.rendering.film.film_measures import film_quality
+from hearth.rendering.film.shot_sequence import Acts, best_cut
 from hearth.rendering.film.shots import Planner, Verified
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
+from hearth.rendering.rays.camera_shot import shoot
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.syntax import parse_program

@@ -4,12 +4,12 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
+from hearth.rendering.film.film_walks import contains, on_the_floor, walks
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.film.walks import contains, on_the_floor, walks
-from hearth.rendering.people import tracks
+from hearth.rendering.people import motion_tracks
 from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.world.home import Home
@@ -32,7 +32,7 @@ def test_a_film_has_no_walk_through_solids(trajectory):
 
 
 def test_straight_lines_are_found_out(trajectory, monkeypatch):
-    monkeypatch.setattr(tracks, "path", lambda floor, start, goal: (start, goal))
+    monkeypatch.setattr(motion_tracks, "path", lambda floor, start, goal: (start, goal))
     found = walks(trajectory.prepared, trajectory.keyframes, frames(trajectory, 10.0))
     assert any(name == "wall" for walk in found for _, name in walk.through)
 

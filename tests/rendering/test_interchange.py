@@ -10,7 +10,7 @@ import pytest
 from hearth.homes.library import load_graph
 from hearth.rendering.scene.instances import placed
 from hearth.rendering.scene.interchange import write
-from hearth.rendering.scene.prepared import PreparedScene
+from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.diagnostics import HearthError
 
 trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed: pip install trimesh")

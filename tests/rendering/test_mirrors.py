@@ -7,9 +7,9 @@ pytest.importorskip("open3d")
 
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.modalities import render
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
-from hearth.rendering.rays.incremental import incremental_frame
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
+from hearth.rendering.rays.incremental_pictures import incremental_frame
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.triangles import StaticThings

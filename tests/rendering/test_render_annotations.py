@@ -10,13 +10,13 @@ pytest.importorskip("open3d")
 from hearth.rendering.annotations import camera_of, described, poses, seen, skeletons
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film import png
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
-from hearth.rendering.rays.flow import flow, flow_of
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.rays.camera_shot import shoot
+from hearth.rendering.rays.optical_flow import flow, flow_of
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
 

@@ -11,8 +11,8 @@ pytest.importorskip("open3d", exc_type=ImportError)
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film.video_file import Writer
-from hearth.rendering.scene.variation import PLAIN, drawn, scattered
-from hearth.rendering.scene.with_geometry import with_geometry
+from hearth.rendering.scene.film_variation import PLAIN, drawn, scattered
+from hearth.rendering.scene.home_geometry import with_geometry
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 

@@ -8,13 +8,13 @@ import pytest
 
 from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose, Foot, Hand
-from hearth.rendering.people.dressed import dressed, parts_worn, tucked_in
+from hearth.rendering.people.body_shape import Shape, body_data, proportions, target_weights
+from hearth.rendering.people.clothed_body import dressed, parts_worn, tucked_in
 from hearth.rendering.people.figure import Figure, figure_mesh
 from hearth.rendering.people.grips import GRIPS
 from hearth.rendering.people.proportions import standard
-from hearth.rendering.people.shape import Shape, body_data, proportions, target_weights
+from hearth.rendering.people.random_people import person
 from hearth.rendering.people.skeleton import joints, two_bones
-from hearth.rendering.people.variety import person
 
 pytest.importorskip("numba")
 
@@ -163,7 +163,7 @@ def test_the_file_of_bodies_is_whole():
 DIGEST = """
 import hashlib
 from hearth.rendering.people.figure import Figure, figure_mesh
-from hearth.rendering.people.variety import person
+from hearth.rendering.people.random_people import person
 meshes = [figure_mesh(Figure(person(seed))) for seed in range(4)]
 print(hashlib.sha256(b"".join(mesh.corners.tobytes() + mesh.surface.tobytes() for mesh in meshes)).hexdigest())
 """

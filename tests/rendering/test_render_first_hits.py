@@ -13,13 +13,13 @@ from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import NEAREST, look_at, top_view
 from hearth.rendering.cameras.viewpoints import home_box
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
-from hearth.rendering.rays.flow import flow_of
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
+from hearth.rendering.rays.camera_shot import shoot
+from hearth.rendering.rays.optical_flow import flow_of
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import scene_of
 from hearth.rendering.scene.triangles import StaticThings
 
 SIZE = (96, 72)

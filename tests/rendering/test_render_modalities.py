@@ -9,11 +9,11 @@ from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at, top_view
 from hearth.rendering.film import png
 from hearth.rendering.modalities import render
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import scene_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
@@ -173,17 +173,17 @@ def test_an_empty_scene_is_sky():
 def test_without_open3d_it_is_said_what_to_install(monkeypatch):
     import sys
 
-    from hearth.rendering.rays import casting
+    from hearth.rendering.rays import ray_casting
 
     def broken(name):
         raise OSError("libusb")
 
-    casting.engine.cache_clear()
+    ray_casting.engine.cache_clear()
     monkeypatch.setitem(sys.modules, "open3d", None)
     with pytest.raises(HearthError, match=r"pip install '\.\[pictures\]'"):
-        casting.engine()
-    monkeypatch.setattr(casting, "library", broken)
+        ray_casting.engine()
+    monkeypatch.setattr(ray_casting, "library", broken)
     with pytest.raises(HearthError, match=r"libusb-1\.0-0"):
-        casting.engine()
+        ray_casting.engine()
     monkeypatch.undo()
-    casting.engine.cache_clear()
+    ray_casting.engine.cache_clear()

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 import yaml
 
-from hearth.rendering.models import pictures, recipes
-from hearth.rendering.models.expressions import MATH, Scope, text_of
-from hearth.rendering.models.interpreter import Interpreter
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model, draw
+from hearth.rendering.models import model_recipes, object_pictures
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model, draw
 from hearth.rendering.models.mesh import join
+from hearth.rendering.models.model_expressions import MATH, Scope, text_of
+from hearth.rendering.models.model_interpreter import Interpreter
+from hearth.rendering.models.model_recipes import ENTRY, FAMILIES, RECIPES
 from hearth.rendering.models.primitives import KNOWN, names_of
-from hearth.rendering.models.recipes import ENTRY, FAMILIES, RECIPES
 from hearth.schemas.diagnostics import HearthError
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "models.json"
@@ -60,12 +60,12 @@ def test_every_entry_has_a_name_of_its_own_and_is_compiled():
     found = [
         entry
         for family in FAMILIES
-        for entry in ENTRY.findall(text_of(recipes.PACKAGE, family))
+        for entry in ENTRY.findall(text_of(model_recipes.PACKAGE, family))
         if entry[0] != "shared"
     ]
     assert sorted(name for name, _ in found) == sorted({name for name, _ in found})
     assert [name for name, takes in found if not takes] == list(RECIPES)
-    assert all(recipes._drawn(name) for name, _ in found)
+    assert all(model_recipes._drawn(name) for name, _ in found)
 
 
 def test_no_key_is_written_twice():
@@ -78,8 +78,8 @@ def test_no_key_is_written_twice():
                 keys(each)
 
     for family in FAMILIES:
-        keys(yaml.compose(text_of(recipes.PACKAGE, family), yaml.BaseLoader))
-    keys(yaml.compose(text_of(pictures.PACKAGE, pictures.FILE), yaml.BaseLoader))
+        keys(yaml.compose(text_of(model_recipes.PACKAGE, family), yaml.BaseLoader))
+    keys(yaml.compose(text_of(object_pictures.PACKAGE, object_pictures.FILE), yaml.BaseLoader))
 
 
 def test_a_model_that_does_not_exist_is_a_missing_key():
@@ -89,7 +89,7 @@ def test_a_model_that_does_not_exist_is_a_missing_key():
 
 
 def drawn(entry, find=lambda name: None):
-    scope = recipes._scope("seats.yaml", "stool", KNOWN)
+    scope = model_recipes._scope("seats.yaml", "stool", KNOWN)
     return Interpreter(find).definition(entry, "", {}, scope)(names_of(Look((1.0, 1.0, 1.0))), (), {})
 
 
@@ -121,7 +121,9 @@ def test_a_fault_names_file_model_and_expression(entry, message):
 
 
 def test_a_shape_gets_what_it_takes():
-    leg = Interpreter(lambda name: None).definition(BOX, "w, h, d=0.5", {}, recipes._scope("seats.yaml", "leg", KNOWN))
+    leg = Interpreter(lambda name: None).definition(
+        BOX, "w, h, d=0.5", {}, model_recipes._scope("seats.yaml", "leg", KNOWN)
+    )
     low, high = drawn({"leg": ["2", "3"]}, {"leg": leg}.get).bounds()
     assert np.allclose(high - low, (2, 3, 0.5))
     with pytest.raises(HearthError, match=re.escape("leg: takes (w, h, d); given 1 and ()")):
@@ -137,10 +139,12 @@ def test_an_entry_is_read_from_top_to_bottom():
 
 def test_a_picture_is_its_strokes_in_order():
     scope = Scope("rendering/models/pictures.yaml", "flag", frozenset(MATH))
-    flag = np.zeros((pictures.SIDE, pictures.SIDE, 3), np.uint8)
+    flag = np.zeros((object_pictures.SIDE, object_pictures.SIDE, 3), np.uint8)
     halves = {"for": "k in range(3)", "when": "k", "fill": ["0", "0", "1", "0.25 * k", ["k", "0", "9"]]}
-    pictures._paint([{"ground": ["5", "6", "7"]}, {"for": "n in (1, 1)", "all": [halves]}], flag, dict(MATH), scope)
+    object_pictures._paint(
+        [{"ground": ["5", "6", "7"]}, {"for": "n in (1, 1)", "all": [halves]}], flag, dict(MATH), scope
+    )
     assert flag[0, 0].tolist() == flag[127, 9].tolist() == [2, 0, 9]
     assert flag[128, 9].tolist() == [5, 6, 7]
     with pytest.raises(HearthError, match="flag: `fil` is not a stroke"):
-        pictures._paint([{"fil": []}], flag, dict(MATH), scope)
+        object_pictures._paint([{"fil": []}], flag, dict(MATH), scope)

@@ -15,9 +15,9 @@ from hearth.rendering.film.player import page
 from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import film, record, times
 from hearth.rendering.film.video_file import Writer
-from hearth.rendering.people.blends import blended
 from hearth.rendering.people.motion import frames, spans
-from hearth.rendering.people.tracks import RELAX
+from hearth.rendering.people.motion_tracks import RELAX
+from hearth.rendering.people.pose_blends import blended
 from hearth.rendering.scene.routes import led_on, path, ways_of
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.diagnostics import HearthError

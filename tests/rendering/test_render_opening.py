@@ -9,11 +9,11 @@ pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.recipes import RECIPES
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.people.motion import OPENING, frames, spans, swinging
 from hearth.rendering.scene.instances import placed
-from hearth.rendering.scene.prepared import prepared_scene
+from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run

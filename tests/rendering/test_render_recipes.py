@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hearth.kb.loading.load import default
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import FALLBACK, Model, choice_of, draw, looks, model_of
-from hearth.rendering.models.recipes import RECIPES
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import FALLBACK, Model, choice_of, draw, looks, model_of
+from hearth.rendering.models.model_recipes import RECIPES
 
 BEYOND = 0.08
 """Metres that handles, taps, sills and door frames may reach beyond their box."""

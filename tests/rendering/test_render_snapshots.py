@@ -6,11 +6,11 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
-from hearth.rendering.film.contact import caption, contact_sheet
+from hearth.rendering.film.contact_sheet import caption, contact_sheet
 from hearth.rendering.film.snapshots import _put_down_at, keyframes, snapshots
-from hearth.rendering.people.acting import moved
-from hearth.rendering.scene.locations import locations_of
-from hearth.rendering.scene.places import Places
+from hearth.rendering.people.action_poses import moved
+from hearth.rendering.scene.object_boxes import Places
+from hearth.rendering.scene.object_locations import locations_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step

@@ -5,11 +5,11 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.grounding.trial import attempt
+from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.people.acting import INTO
+from hearth.rendering.people.action_poses import INTO
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.graph import Box, Node
 from hearth.schemas.syntax import parse_program

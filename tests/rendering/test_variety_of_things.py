@@ -6,10 +6,10 @@ import numpy as np
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import Model, choice_of, draw, model_of
-from hearth.rendering.models.recipes import RECIPES
-from hearth.rendering.scene.prepared import prepared_scene
+from hearth.rendering.models.appearance import Look
+from hearth.rendering.models.class_appearance import Model, choice_of, draw, model_of
+from hearth.rendering.models.model_recipes import RECIPES
+from hearth.rendering.scene.scene_preparation import prepared_scene
 
 BUILDING = {"Rooms", "Characters", "BodyParts", "Floors", "Floor", "Walls", "Wall", "Ceiling", "Doors", "Windows"}
 SHELL = ("floor", "wall", "ceiling", "window", "doorjamb", "door")

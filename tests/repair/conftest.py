@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from repair_worlds import small_world, steps_of
 
-from hearth.repair.loop import repair
+from hearth.repair.repair_loop import repair
 from hearth.schemas.syntax import print_step
 
 

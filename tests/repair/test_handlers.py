@@ -11,7 +11,7 @@ from repair_worlds import ROOMS, small_world, steps_of
 from hearth.kb.loading.load import default
 from hearth.repair.handlers import registry
 from hearth.repair.handlers.common import Edit, Splice
-from hearth.repair.loop import repair, successes
+from hearth.repair.repair_loop import repair, successes
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.simulation.engine import run

@@ -10,11 +10,11 @@ from golden_files import compare, short
 from hearth.homes import library
 from hearth.kb.grammar import check
 from hearth.kb.loading.load import default
+from hearth.repair.augmentation import Augmented, Options, augment
 from hearth.repair.completion import complete
 from hearth.repair.sketch import sketch
 from hearth.repair.sketch_features import StepFeatures, features
 from hearth.repair.sketch_model import shipped
-from hearth.repair.variants import Augmented, Options, augment
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program, print_step

@@ -6,7 +6,7 @@ import pytest
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.repair.gist import _is_tool, _used_after, asked
+from hearth.repair.activity_steps import _is_tool, _used_after, asked
 from hearth.repair.sketch import inherited, sketch
 from hearth.schemas.syntax import parse_program, print_step
 from hearth.simulation.world.home import Home

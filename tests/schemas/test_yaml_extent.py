@@ -9,7 +9,7 @@ import yaml
 
 from hearth.analysis import synthesis
 from hearth.homes import library
-from hearth.repair.strengths import load_strengths
+from hearth.repair.perturbation_strengths import load_strengths
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_extent import DEEPEST, LARGEST, MOST, too_much

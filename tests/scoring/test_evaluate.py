@@ -4,7 +4,7 @@ from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
 from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, reference_of, signatures, summarise
 from hearth.scoring.line_reader import LineReader
-from hearth.scoring.lines import read
+from hearth.scoring.line_sequences import read
 from hearth.scoring.metrics.executability import ErrorClass
 from hearth.scoring.predictions import Pair
 

@@ -5,7 +5,7 @@ import pytest
 
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
-from hearth.scoring.lines import read
+from hearth.scoring.line_sequences import read
 from hearth.scoring.metrics.executability import ErrorClass, executability
 from hearth.simulation.rules import REPLAY
 from hearth.simulation.world.home import Home

@@ -11,9 +11,9 @@ from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.scoring.metrics.alignment import Problem
-from hearth.scoring.metrics.counts import Match, Matches, Prf
 from hearth.scoring.metrics.final_graph import Nodes, nodes_of, views_of
 from hearth.scoring.metrics.graph_f1 import FAILED, MATCHES, SCOPES, f1_signature, named, score
+from hearth.scoring.metrics.precision_recall import Match, Matches, Prf
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act, run
 from hearth.simulation.world.bits import indices

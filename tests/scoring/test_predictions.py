@@ -7,10 +7,10 @@ from pyarrow import parquet
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.first_faults import SHOWN, FirstFaults
-from hearth.scoring.lines import read
+from hearth.scoring.line_sequences import read
 from hearth.scoring.prediction_rows import has_predictions, rows_of, source_of
 from hearth.scoring.predictions import Pair, read_pairs
+from hearth.scoring.refused_rows import SHOWN, FirstFaults
 
 WALK = read(["[Walk] <sofa> (1)"])
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.lines import read
+from hearth.scoring.line_sequences import read
 from hearth.scoring.metrics.lcs import LEVELS, LcsScore, items, lcs_signature, matrix, score, score_pairs, similarity
 
 refs = st.builds(

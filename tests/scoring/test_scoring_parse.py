@@ -1,8 +1,8 @@
 import pytest
 
-from hearth.pipelines.checks.checked_text import check_text
+from hearth.pipelines.checks.text_checks import check_text
 from hearth.schemas.failures import Code
-from hearth.scoring.lines import read
+from hearth.scoring.line_sequences import read
 from hearth.scoring.metrics.parsability import parsability
 
 

@@ -4,7 +4,7 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.lines import read, steps_of
+from hearth.scoring.line_sequences import read, steps_of
 
 WALK = Step("Walk", (ObjectRef("sofa"),))
 SIT = Step("Sit", (ObjectRef("sofa"),))

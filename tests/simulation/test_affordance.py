@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.kb.records import Requirement
+from hearth.kb.knowledge_records import Requirement
 from hearth.simulation.world.affordance import allowed
 
 PROPERTIES, CLASSES = ("CUTTABLE", "EATABLE", "SHARP"), ("knife", "butter_knife", "bread", "kitchen")

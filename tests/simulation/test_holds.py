@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from oracles.holds import Plain
 from small_worlds import node, random_graph
 
-from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.condition_checks import unmet
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.homes import library
 from hearth.kb.loading.load import default

@@ -83,7 +83,7 @@ def test_the_helpers_are_those_of_the_thesis():
 
 
 def test_a_study_whose_helpers_ask_networks_does_not_begin_without_them(monkeypatch):
-    monkeypatch.setattr("hearth.challenges.lineup.lacking", lambda extra: ["torch"])
+    monkeypatch.setattr("hearth.challenges.episode_agents.lacking", lambda extra: ["torch"])
     check_helpers(named("people-alone"))
     with pytest.raises(HearthError, match="torch is not installed"):
         check_helpers(named("people-with-helpers"))

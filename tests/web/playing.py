@@ -6,10 +6,10 @@ import time
 
 import orjson
 
+from hearth.challenges.episode_agents import Lineup
+from hearth.challenges.episode_loop import Playing
 from hearth.challenges.episodes import Job, played
-from hearth.challenges.lineup import Lineup
-from hearth.challenges.observations import instruction_text
-from hearth.challenges.play import Playing
+from hearth.envs.json_observations import instruction_text
 from hearth.kb.loading.load import default
 from hearth.web.play import start_trial
 from hearth.web.play.games import Game

@@ -11,8 +11,8 @@ from dataclasses import replace
 import pytest
 from web.playing import Player, alone, begun, connected, session_of
 
-from hearth.challenges.definition import challenge
-from hearth.challenges.lineup import Lineup
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify
@@ -52,7 +52,7 @@ def test_a_trial_of_nothing_is_refused(wrong):
 
 
 def test_a_helper_that_asks_a_network_is_not_offered_without_it(monkeypatch):
-    monkeypatch.setattr("hearth.challenges.lineup.lacking", lambda extra: ["torch"])
+    monkeypatch.setattr("hearth.challenges.episode_agents.lacking", lambda extra: ["torch"])
     with pytest.raises(HearthError, match="asks the network `helping-subgoals`, and torch is not installed"):
         trial(TASK, default(), "hybrid")
     assert {"hybrid", "hrl", "hp_gpn", "nopa_gpn"}.isdisjoint(offered(OWAH))

@@ -2,8 +2,8 @@
 
 import pytest
 
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, played
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

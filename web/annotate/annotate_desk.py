@@ -8,7 +8,7 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
-from hearth.pipelines.checks import special
+from hearth.pipelines.checks import special_blocks
 from hearth.schemas.failures import Code
 from hearth.web.annotate import collected_files
 from hearth.web.annotate.annotate_tables import DRAFT, MARKS, PROGRAMS, REVIEWS, TEXTS
@@ -68,7 +68,7 @@ def special_texts(store: Store) -> list[tuple[str, int, bool]]:
         for block in stored(draft).blocks
         if block.action == SPECIAL
     )
-    return [(text, number, text in special.blocks()) for text, number in sorted(texts.items(), key=_by_number)]
+    return [(text, number, text in special_blocks.blocks()) for text, number in sorted(texts.items(), key=_by_number)]
 
 
 def _by_number(pair: tuple[str, int]) -> tuple[int, str]:

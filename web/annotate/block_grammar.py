@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.records import Action
+from hearth.kb.knowledge_records import Action
 from hearth.web.annotate.draft import Draft
 
 DRAWERS: tuple[tuple[str, tuple[str, ...]], ...] = (

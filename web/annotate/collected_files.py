@@ -14,7 +14,7 @@ import orjson
 import sqlalchemy as sql
 from filelock import FileLock
 
-from hearth.analysis.ratings import COLUMNS, HELP
+from hearth.analysis.completeness_ratings import COLUMNS, HELP
 from hearth.analysis.spreadsheet_cells import sheet_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

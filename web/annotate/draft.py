@@ -183,7 +183,10 @@ def _thing(value: Any, place: str, declared: set[ObjectRef]) -> ObjectRef | None
 
 
 def is_plain(text: str) -> bool:
-    """Whether the free text of a special block can stand in a line of a program; others are kept until handed in."""
+    """Return whether the free text of a special block can stand in a line of a program.
+
+    Others are kept until handed in.
+    """
     return len(text) <= MOST_SPECIAL and (not text or _PLAIN.fullmatch(text) is not None)
 
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.checks import programs, special
-from hearth.pipelines.checks.checked_text import check_program
+from hearth.pipelines.checks import program_checks, special_blocks
+from hearth.pipelines.checks.text_checks import check_program
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_program
@@ -39,7 +39,7 @@ class Found(NamedTuple):
 def check_draft(draft: Draft, title: str, description: str, known: Knowledge) -> list[Found]:
     """All faults and warnings of a draft, ordered by step."""
     lines = _shown_plain(draft).lines()
-    expanded = special.expand("\n".join(lines), 0)
+    expanded = special_blocks.expand("\n".join(lines), 0)
     pairs = zip(expanded.text.split("\n"), expanded.lines, strict=True)
     kept = [(line, number) for line, number in pairs if not line.startswith(f"[{SPECIAL}]")]
     source, numbers = [line for line, _ in kept], [number for _, number in kept]
@@ -50,7 +50,7 @@ def check_draft(draft: Draft, title: str, description: str, known: Knowledge) ->
     found += [_found(each, numbers, fault=each.code in REFUSED) for each in warnings]
     if not faults:
         scene = {"rooms": _rows(draft.rooms), "props": _rows(draft.props)}
-        undeclared = programs.undeclared(program, scene, known)
+        undeclared = program_checks.undeclared(program, scene, known)
         found += [Found(-1, False, str(each.code), each.message, each.remedy) for each in undeclared]
     return sorted((*found, *_unfinished(draft, dict(expanded.replaced))), key=lambda each: (each.step, not each.fault))
 

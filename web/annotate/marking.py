@@ -12,7 +12,7 @@ import orjson
 import sqlalchemy as sql
 from starlette.responses import FileResponse, Response
 
-from hearth.analysis.ratings import SAID
+from hearth.analysis.completeness_ratings import SAID
 from hearth.datasets.damage import using
 from hearth.datasets.dataset import Dataset
 from hearth.schemas.failures import Code

@@ -30,7 +30,7 @@ def _test() -> dict[str, Any]:
 
 
 def is_qualified(store: Store, person: str) -> bool:
-    """Whether a person has passed."""
+    """Return whether a person has passed."""
     query = sql.select(QUALIFIED.c.id).where(QUALIFIED.c.session == person, QUALIFIED.c.passed)
     return store.scalar(query) is not None
 

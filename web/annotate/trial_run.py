@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 
 from hearth.datasets.report.drawn_plans import draw
-from hearth.grounding.trial import Trial, attempt
+from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
@@ -76,7 +76,7 @@ def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[
         WebError: NOT_RENDERED: nothing of it runs.
         HearthError: MISSING_FILE: libraries for pictures are not installed.
     """
-    from hearth.rendering.film.replay import run_shapes
+    from hearth.rendering.film.replay_3d import run_shapes
 
     library_of("trimesh")
     trial = _trial(_lines(draft)[1], title, home, known)
@@ -93,7 +93,7 @@ def shapes_of(name: str, known: Knowledge) -> bytes:
     Raises:
         WebError: UNKNOWN_HOME.
     """
-    from hearth.rendering.film.replay import home_shapes
+    from hearth.rendering.film.replay_3d import home_shapes
 
     home_of(name, known)
     return orjson.dumps(home_shapes(library.load_graph(name, known), known))
@@ -135,5 +135,5 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
 
 
 def _where(pose: Pose | None) -> list[float] | None:
-    """Where the character stands, in metres and degrees; None in homes without geometry."""
+    """Return where the character stands, in metres and degrees; None in homes without geometry."""
     return None if pose is None else [round(pose.x, 2), round(pose.z, 2), round(pose.yaw)]

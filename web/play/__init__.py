@@ -53,7 +53,7 @@ def start_trial(connection: sql.Connection, session: str, trial: Trial, go_on: s
 
 
 def trial_address(game: str) -> str:
-    """Where the person plays it."""
+    """Return where the person plays it."""
     return f"/play/game/{game}"
 
 

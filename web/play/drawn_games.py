@@ -8,15 +8,15 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-from hearth.challenges.definition import challenge
-from hearth.challenges.starts import site_of
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.start_worlds import site_of
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.sensor import CameraSensor
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.interchange import glb, node_names
-from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.observation.reach import out_of_sight

@@ -7,7 +7,7 @@ from functools import reduce
 from operator import or_
 from typing import Any
 
-from hearth.challenges.observations import last_json
+from hearth.envs.json_observations import last_json
 from hearth.homes.geometry import footprint
 from hearth.kb.groups import relation_of
 from hearth.schemas.graph import Node

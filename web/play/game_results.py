@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Record
-from hearth.challenges.lineup import Lineup
 from hearth.challenges.result_files import MOST_SEEDS, Header, Results, first_line, line
 from hearth.challenges.task_files import Suite
 from hearth.challenges.tasks import Task

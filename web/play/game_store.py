@@ -42,12 +42,12 @@ class Stored(NamedTuple):
 
     @property
     def deadline(self) -> float:
-        """When its time is over, in seconds since 1970; infinite where it has no limit."""
+        """Return when its time is over, in seconds since 1970; infinite where it has no limit."""
         return self.created + self.trial.seconds if self.trial.seconds else math.inf
 
     @property
     def blind(self) -> bool:
-        """Whether it is of a study, whose people do not know which helper they have (thesis 7.5)."""
+        """Return whether it is of a study, whose people do not know which helper they have (thesis 7.5)."""
         return not self.go_on.startswith("/play/")
 
 
@@ -127,7 +127,7 @@ def games_of(connection: sql.Connection, session: str) -> list[Stored]:
 
 
 def played_before(connection: sql.Connection, task: str) -> int:
-    """How many games of a task there are."""
+    """Return how many games of a task there are."""
     query = sql.select(sql.func.count()).select_from(GAMES).where(GAMES.c.task == task)
     return int(connection.execute(query).scalar_one())
 

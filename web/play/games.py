@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hearth.agents.agent_registry import HELPERS
-from hearth.agents.online_registry import ONLINE
+from hearth.agents.online_helper_registry import ONLINE
 from hearth.agents.protocol import Agent
-from hearth.challenges.answers import by_text
+from hearth.challenges.agent_guard import AgentError, Guarded
+from hearth.challenges.episode_agents import partial_of
+from hearth.challenges.episode_loop import Playing
 from hearth.challenges.episodes import Record, measured, read_instruction, start_of, written
-from hearth.challenges.guard import AgentError, Guarded
-from hearth.challenges.lineup import partial_of
-from hearth.challenges.play import Playing
+from hearth.envs.agent_answers import by_text
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
@@ -87,12 +87,12 @@ class Game:
 
     @property
     def tick(self) -> int:
-        """How many ticks have passed; the number of the next decision."""
+        """Return how many ticks have passed; the number of the next decision."""
         return len(self.texts)
 
     @property
     def over(self) -> bool:
-        """Whether nothing more can be done."""
+        """Return whether nothing more can be done."""
         return self.end is not None or self.playing.over
 
     def view(self, number: int) -> View:
@@ -185,5 +185,5 @@ def made(trial: Trial) -> Agent:
 
 
 def fault_of(error: AgentError) -> tuple[Code, str]:
-    """Why an agent can't go on, as `Game.stop` takes it."""
+    """Return why an agent can't go on, as `Game.stop` takes it."""
     return error.fault.code, error.fault.message

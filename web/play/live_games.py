@@ -10,9 +10,9 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from hearth.challenges.channels import Listener
-from hearth.challenges.guard import AgentError
-from hearth.challenges.wire import WireAgent
+from hearth.challenges.agent_channels import Listener
+from hearth.challenges.agent_guard import AgentError
+from hearth.challenges.wire_protocol import WireAgent
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -60,16 +60,16 @@ class LiveGame:
 
     @property
     def port(self) -> int:
-        """Where the helper's program is waited for; 0 if it is not."""
+        """Return where the helper's program is waited for; 0 if it is not."""
         return self._listener.port if self._listener is not None else 0
 
     @property
     def characters(self) -> int:
-        """How many there are."""
+        """Return how many there are."""
         return len(self.game.start.agents)
 
     def other(self, number: int) -> str:
-        """Whether the other of two people is there; "" in a game of one."""
+        """Return whether the other of two people is there; "" in a game of one."""
         people = self.game.trial.people
         return presence(self.signs.get(1 - number)) if len(people) > 1 else ""
 

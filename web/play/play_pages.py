@@ -7,7 +7,7 @@ from typing import Any
 
 from starlette.responses import Response
 
-from hearth.challenges.definition import NAMES, challenge
+from hearth.challenges.challenge_definition import NAMES, challenge
 from hearth.challenges.result_files import MOST_SEEDS
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library

@@ -216,6 +216,6 @@ async def live(link: Link) -> None:
 
 
 def refusal(error: HearthError) -> WebError:
-    """Why the engine refuses a decision, as an answer."""
+    """Return why the engine refuses a decision, as an answer."""
     fault = error.diagnostics[0]
     return WebError(fault.code, "act", fault.suggestion or "one of the legal instructions", fault.message)

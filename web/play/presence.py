@@ -35,13 +35,13 @@ def give_sign(store: Store, game: str, agent: int) -> None:
 
 
 def signs(connection: sql.Connection, game: str) -> dict[int, float]:
-    """When each person of a game gave the last sign, in seconds since 1970."""
+    """Return when each person of a game gave the last sign, in seconds since 1970."""
     rows = connection.execute(sql.select(SIGNS.c.agent, SIGNS.c.at).where(SIGNS.c.game == game))
     return {int(row.agent): float(row.at) for row in rows}
 
 
 def presence(sign: float | None) -> str:
-    """Whether a person is there, by the last sign."""
+    """Return whether a person is there, by the last sign."""
     if sign is None:
         return AWAITED
     return HERE if time.time() - sign < GONE_AFTER else GONE

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hearth.challenges.observations import SeenLiteral, seen_goal
+from hearth.envs.json_observations import SeenLiteral, seen_goal
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT
 from hearth.simulation.env import Tick
@@ -54,7 +54,7 @@ class Remembered:
 
 
 def _sees_place(each: SeenLiteral, view: View) -> bool:
-    """Whether what a literal counts things at is in sight, so that what is not counted does not hold."""
+    """Return whether what a literal counts things at is in sight, so that what is not counted does not hold."""
     terms = each.literal.terms
     place = terms[-1] if terms else None
     about_somebody = any(isinstance(term, str) and term.partition(":")[0] == AGENT for term in terms)

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from hearth.agents.agent_registry import HELPERS
-from hearth.agents.online_registry import ONLINE
-from hearth.challenges.definition import Challenge, challenge
-from hearth.challenges.lineup import GOALS, NOBODY, Lineup
+from hearth.agents.online_helper_registry import ONLINE
+from hearth.challenges.challenge_definition import Challenge, challenge
+from hearth.challenges.episode_agents import GOALS, NOBODY, Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.suite_runs import INFERRED
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.challenges.tasks import Task
-from hearth.challenges.watching import inferred
+from hearth.challenges.watch_stage import inferred
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -42,7 +42,7 @@ class Trial:
     Attributes:
         task: what is to be done.
         helper: `none`, `person`, `program`, or an agent by name (see `helpers`).
-        goal: what the helper is asked to do, one of `challenges.lineup.GOALS`.
+        goal: what the helper is asked to do, one of `challenges.episode_agents.GOALS`.
         helper_goal: the same in the words of the grammar; None if nothing.
         interface: one of `INTERFACES`.
         seed: number of the episode among those of its task.
@@ -66,7 +66,7 @@ class Trial:
 
     @property
     def helped(self) -> bool:
-        """Whether there is a second character."""
+        """Return whether there is a second character."""
         return self.helper != NOBODY
 
     @property

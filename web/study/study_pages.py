@@ -129,7 +129,7 @@ def _standing(conduct: Conduct, person: str) -> Standing | None:
 
 
 def _here(visit: Visit, conduct: Conduct) -> Standing | None:
-    """Where a person is, once a game that is over is recorded; None of somebody who does not take part."""
+    """Return where a person is, once a game that is over is recorded; None of somebody who does not take part."""
     standing = _standing(conduct, visit.person)
     if standing is not None and standing.stage in (PRACTICE, TRIAL) and conduct.study.room != JUDGE:
         return gone_on(visit.web, conduct, standing)

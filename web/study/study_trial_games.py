@@ -56,7 +56,7 @@ def _chosen(web: Web, conduct: Conduct, standing: Standing) -> Trial:
 
 
 def gone_on(web: Web, conduct: Conduct, standing: Standing) -> Standing:
-    """Where a person is once the game of the trial, if it is over, is recorded in the study.
+    """Return where a person is once the game of the trial, if it is over, is recorded in the study.
 
     What it took lasts from its beginning to its end, however long the person stays on the page afterwards.
     """

@@ -49,7 +49,7 @@ TRIALS = {PLAY: "First do this task: begin it, or go on with it.", JUDGE: "First
 
 
 def in_turn(study: Study, standing: Standing | None, post: str) -> Standing:
-    """Where a person is, if a post is asked for there.
+    """Return where a person is, if a post is asked for there.
 
     Args:
         study: the study.

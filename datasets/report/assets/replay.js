@@ -1,5 +1,5 @@
 "use strict";
-// Plays an execution in 3D, from above, by WebGL alone: `HEARTH_REPLAY(place, home, run)` of what rendering/film/replay.py
+// Plays an execution in 3D, from above, by WebGL alone: `HEARTH_REPLAY(place, home, run)` of what rendering/film/replay_3d.py
 // gives. Drag or use the arrow keys to turn, the wheel or + and - to come closer. Who acts stays in the middle.
 // eslint-disable-next-line no-unused-vars
 const HEARTH_REPLAY = (() => {

@@ -51,7 +51,7 @@ _HINT = re.compile(
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
     re.IGNORECASE,
 ).match
-"""Whether a line has what some line of each form has: most plans have none, and are not tried."""
+"""Tests whether a line has the marks of some form: most plans have none, so that no form is tried."""
 
 
 def form_of(lines: Sequence[str]) -> Form | None:

@@ -13,7 +13,7 @@ _LEFT_OUT = re.compile(
     r"\s*(?:(?:assert|else|if|elif|for|while|try|except|import|return|pass|class|with)\b|from\b.*\bimport\b|print\(|\"{3}|'{3})"
 )
 _MADE_TRUE = re.compile(r"\s*else\s*:(?!\s*find\b)\s*(\S.*)")
-"""What ProgPrompt does where a state lacks, `else: open('fridge')`; finding a thing again is left out."""
+"""ProgPrompt's act where a state lacks, `else: open('fridge')`; finding a thing again is left out."""
 
 _COMMENT = re.compile(r"\s*(?:#|//|`{3}|~{3}|$)")
 _LONGEST = 500

@@ -46,7 +46,7 @@ _NAMES = {
     "stoveburner": "stove",
     "sidetable": "table",
 }
-"""ALFWorld's names for what has another name here."""
+"""ALFWorld's names of classes that have another name here."""
 
 _RULED = re.compile(r"\s*={2,}\s*([^=]+?)\s*={2,}\s*")
 _OTHERS = re.compile(r"\s*(?:\d+[.)]|[-*•]|\[?step \d+\]?:?)\s+", re.IGNORECASE)

@@ -42,7 +42,7 @@ def note(row: int, text: str) -> Placed:
 
 
 def remark(row: int, text: str) -> Placed:
-    """Return a line that is counted and never read as a step, as what a game answers."""
+    """Return a line that is counted and never read as a step, such as a game's answer."""
     return Placed(row, PlanLine(" ".join(text.split()), None, 1))
 
 

@@ -10,7 +10,7 @@ from hearth.kb.language.unmarked_lines import is_like_step
 _TITLE = re.compile(r"\d{1,3}[.)]\s+(\S.*)")
 _STEP = re.compile(r"(?:\s{2,}|\t)\s*([A-Za-z][^.:!?]*)")
 _GOING = re.compile(r"\d{1,3}[.)]\s+(?:walk|go|head|move|run)\b", re.IGNORECASE)
-"""Where somebody goes is a step with others below it, and no title."""
+"""A line about going somewhere is a step with others below it, and no title."""
 
 _SHARE = 0.7
 _FEWEST = 2

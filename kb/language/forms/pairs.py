@@ -8,7 +8,7 @@ from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_names import action_of
 from hearth.kb.loading.load import default
-from hearth.schemas.blocks import TITLE
+from hearth.schemas.program_blocks import TITLE
 
 _PAIR = re.compile(
     r"\s*(?:\d{1,3}[.):]\s+|[-*]\s+)?([A-Z][A-Z_]{2,}|[A-Z][a-z]+(?:[A-Z][a-z]+)+)((?:\s+[a-z][\w-]*){0,2})\s*[.;]?\s*"

@@ -1,0 +1,138 @@
+"""Agents of others in an episode: what crashes, hangs or answers nonsense ends it with a code, and nothing else."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from asyncio import CancelledError
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from hearth.agents.protocol import Agent, Choice
+from hearth.schemas.agent_messages import Message
+from hearth.schemas.agent_messages import read as read_message
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import ObjectRef, Step
+from hearth.simulation.actions.legal import Legal
+from hearth.simulation.observation.views import View
+
+SECONDS = 30.0
+"""An agent may think about one tick as long as this."""
+
+AGAIN = 0.1
+"""Seconds between the interruptions of an agent that goes on after the first."""
+
+
+class _Late(BaseException):
+    """An agent takes too long; no `Exception`, which agents catch."""
+
+
+class AgentError(Exception):
+    """An agent can't go on.
+
+    Attributes:
+        fault: code and message.
+        agent: its number.
+    """
+
+    def __init__(self, fault: Diagnostic, agent: int) -> None:
+        super().__init__(str(fault))
+        self.fault, self.agent = fault, agent
+
+
+class Guarded:
+    """An agent of which nothing but instructions and `AgentError` comes.
+
+    Attributes:
+        refused: its instructions that were not tried: actions that the challenge lacks, things that it does not see.
+    """
+
+    def __init__(
+        self, agent: Agent, number: int, allowed: frozenset[str], seconds: float = SECONDS, messages: bool = False
+    ) -> None:
+        self.agent, self.number, self.allowed, self.seconds = agent, number, allowed, seconds
+        self.messages = messages
+        self.refused = 0
+
+    def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
+        """Begin an episode.
+
+        Raises:
+            AgentError: it can't.
+        """
+        self.refused = 0
+        with self._watched():
+            self.agent.reset(observation, goal, seed)
+
+    def act(self, observation: View, legal: Legal) -> Choice:
+        """What it says, where that is allowed, or its instruction, if it may be tried; None otherwise.
+
+        Raises:
+            AgentError: there is no instruction: AGENT_FAILED, TIMED_OUT, BAD_ARGUMENT.
+        """
+        with self._watched():
+            step = self.agent.act(observation, legal)
+            if step is None or (isinstance(step, Message) and self.messages and read_message(str(step)) == step):
+                return step
+            if not isinstance(step, Step):
+                wanted = "a Step, a message that can be read, or None"
+                raise HearthError.of(Code.BAD_ARGUMENT, f"the answer is {type(step).__name__}, not {wanted}")
+            if step in legal or self._may_try(step, observation):
+                return self._plain(step, observation)
+            self.refused += 1
+            return None
+
+    def _plain(self, step: Step, view: View) -> Step:
+        """The instruction as records have it: an action and nodes. Agents could write one in many ways."""
+        home = view.world.home
+        nodes = [ref.node for ref in step.objects if ref.node is not None]
+        return Step(step.action, tuple(ObjectRef(home.classes[home.index[i]], 0, i) for i in nodes), self.number)
+
+    def _may_try(self, step: Step, view: View) -> bool:
+        """Return whether it is about what is seen; the engine says then why it can't be done."""
+        ids = [ref.node for ref in step.objects]
+        return step.action in self.allowed and all(isinstance(node, int) and view.sees(node) for node in ids)
+
+    @contextmanager
+    def _watched(self) -> Iterator[None]:
+        try:
+            with _within(self.seconds):
+                yield
+        except _Late:
+            message = f"no answer within {self.seconds:g} s"
+            raise AgentError(Diagnostic(Code.TIMED_OUT, message), self.number) from None
+        except (Exception, SystemExit, CancelledError, GeneratorExit) as error:
+            raise AgentError(_fault_of(error), self.number) from error
+
+
+def _fault_of(error: BaseException) -> Diagnostic:
+    """What an agent raised, of whose text nothing is taken for granted."""
+    if isinstance(error, HearthError) and error.diagnostics:
+        return error.diagnostics[0]
+    try:
+        text = f": {error}"
+    except Exception:
+        text = ""
+    return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}{text}"[:300])
+
+
+@contextmanager
+def _within(seconds: float) -> Iterator[None]:
+    """Interrupt what takes longer, where this is the thread that gets signals."""
+    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def late(_number: int, _frame: FrameType | None) -> None:
+        raise _Late
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)

@@ -1,0 +1,191 @@
+"""Who takes part in episodes: agents by name, or somebody's own, and what the helper is asked to do."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
+from hearth.agents.online_helper_registry import ONLINE, PROPOSED
+from hearth.agents.protocol import Agent
+from hearth.challenges.agent_guard import SECONDS, Guarded
+from hearth.challenges.challenge_definition import Challenge, challenge
+from hearth.challenges.episode_loop import Player
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.libraries import lacking, remedy
+from hearth.storage.files import file_digest
+
+NOBODY = "none"
+"""The helper of who acts alone."""
+
+GOALS = ("true", "inferred", "inferred_states", "random", "none")
+"""What a helper may be asked to do: the main agent's goal, what counting or the network of models infers of it from a
+demonstration, another task's goal, nothing.
+"""
+
+
+@dataclass(frozen=True)
+class Lineup:
+    """Who takes part.
+
+    Attributes:
+        main: the agent that is helped, by name.
+        helper: who helps, by name; `none`, or `FILE.py:CLASS` for an agent of one's own.
+        goal: what the helper is asked to do; as its row in the registry says where empty.
+        seconds: an agent may think about a tick as long as this.
+    """
+
+    main: str = "human_like"
+    helper: str = NOBODY
+    goal: str = ""
+    seconds: float = SECONDS
+
+    @property
+    def code(self) -> str:
+        """A digest of the file of a helper of one's own; "" for ours."""
+        return file_digest(Path(self.helper.rpartition(":")[0]))[:32] if ":" in self.helper else ""
+
+    def checked(self) -> Lineup:
+        """The same, with the goal that the helper is asked to reach.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: there is no such agent or goal; MISSING_FILE.
+        """
+        known = HELPERS.get(self._helper)
+        if self.main not in MAIN:
+            raise _unknown("main agent", self.main, MAIN)
+        if self.goal and self.goal not in GOALS:
+            raise _unknown("goal", self.goal, GOALS)
+        if self._helper not in (NOBODY, *HELPERS, *ONLINE) and ":" not in self.helper:
+            raise _unknown("helper", self.helper, (NOBODY, *HELPERS, *ONLINE))
+        if ":" in self.helper:
+            load(self.helper)
+        untold = self.helper in (NOBODY, *ONLINE)
+        goal = self.goal or (known.goal if known else "none" if untold else "true")
+        return Lineup(self.main, self._helper, goal, self.seconds)
+
+    def installed(self) -> Lineup:
+        """The same, if the networks that its helper asks can be asked here.
+
+        Raises:
+            HearthError: MISSING_FILE: the extra `models` is not installed.
+        """
+        kind = HELPERS.get(self.helper) or ONLINE.get(self.helper)
+        network = (kind.network if kind else "") or ("goal-inference" if self.goal == "inferred_states" else "")
+        if network and lacking("models"):
+            message = f"the helper `{self.helper}` asks the network `{network}`, and torch is not installed"
+            raise HearthError.of(Code.MISSING_FILE, message, suggestion=remedy("models"))
+        return self
+
+    def fits(self, which: Challenge) -> Lineup:
+        """The same, if its helper can work in a challenge.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: it would end every episode there: it talks where nobody may, or its network was
+                trained for the goals of another challenge.
+        """
+        kind = ONLINE.get(self.helper)
+        why = ""
+        if kind and kind.talks and not which.messages:
+            why = f"it talks, and in `{which.name}` nobody may say anything"
+        elif kind and kind.network and which.grammar.sets != challenge(PROPOSED).grammar.sets:
+            why = f"its network was trained for the goals of `{PROPOSED}`"
+        if why:
+            message = f"the helper `{self.helper}` can't help in `{which.name}`: {why}"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="hp, nopa, expected_time, ...")
+        return self
+
+    @property
+    def _helper(self) -> str:
+        """The helper that is made for this goal, where there is one: `hp` with the true goal is `hp_true`."""
+        special = f"{self.helper}_{self.goal}"
+        return special if special in HELPERS else self.helper
+
+    def players(
+        self,
+        which: Challenge,
+        goal: Goal,
+        helper_goal: Goal | None,
+        knowledge: Knowledge,
+        helped: bool,
+        make: Callable[[], MainAgent] | None = None,
+    ) -> list[Player]:
+        """New agents for one episode; without a helper where `helped` is False. `make` makes another main agent."""
+        allowed = which.allowed(knowledge)
+        known = HELPERS.get(self.helper)
+        name = known.main if helped and known and known.main else self.main
+        main = make() if make else MAIN[name](which.goals_in)
+        found = [Player(Guarded(main, 0, allowed, self.seconds, which.messages), goal, partial_of(main))]
+        if helped and self.helper != NOBODY:
+            agent: Agent = known.make(main) if known else self._own(which)
+            found.append(
+                Player(Guarded(agent, 1, allowed, self.seconds, which.messages), helper_goal, partial_of(agent))
+            )
+        return found
+
+    def _own(self, which: Challenge) -> Agent:
+        """A helper that is made without its partner: one that is not told the goal, or somebody's own."""
+        if self.helper in ONLINE:
+            return ONLINE[self.helper].make(which.goals_in)
+        made = load(self.helper)
+        try:
+            own: Agent = made()
+        except (Exception, SystemExit) as error:
+            raise HearthError.of(Code.BAD_ARGUMENT, f"{self.helper}: {type(error).__name__}: {error}") from error
+        lacking = [f"`{name}`" for name in ("reset", "act") if not callable(getattr(own, name, None))]
+        if lacking:
+            message = f"{self.helper} has no {' and '.join(lacking)}"
+            suggestion = "write reset(self, observation, goal, seed) and act(self, observation, legal)"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=suggestion)
+        return own
+
+
+def partial_of(agent: Any) -> bool | None:
+    """Return whether an agent sees only its surroundings, for `Player`.
+
+    Our oracles see everything, near-sighted agents never do; the challenge decides for all others.
+    """
+    ours = type(agent).__module__.startswith("hearth.agents.")
+    if getattr(agent, "near_sighted", False):
+        return True
+    return False if ours and agent.__dict__.get("habits") is not None and agent.habits.sees_all else None
+
+
+def _unknown(what: str, name: str, known: Any) -> HearthError:
+    return HearthError.of(Code.BAD_ARGUMENT, f"there is no {what} `{name[:60]}`", suggestion=", ".join(known))
+
+
+def load(place: str) -> Any:
+    """The class of an agent of one's own, as the command line names it: `FILE.py:CLASS`.
+
+    Raises:
+        HearthError: MISSING_FILE; BAD_ARGUMENT: the file has no such class, or does not run.
+    """
+    file, _, name = place.rpartition(":")
+    path = Path(file)
+    if not path.is_file():
+        raise HearthError.of(Code.MISSING_FILE, f"there is no file `{file}`", suggestion="FILE.py:CLASS")
+    spec = importlib.util.spec_from_file_location(f"agent_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"`{file}` is not Python", suggestion="FILE.py:CLASS")
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {type(error).__name__}: {error}") from error
+    found = getattr(module, name, None)
+    if not callable(found):
+        classes = ", ".join(
+            f"`{value.__name__}`"
+            for value in vars(module).values()
+            if isinstance(value, type) and value.__module__ == module.__name__
+        )
+        suggestion = f"its classes: {classes}" if classes else "write a class in it"
+        raise HearthError.of(Code.BAD_ARGUMENT, f"`{file}` has no class `{name}`", suggestion=suggestion)
+    return found

@@ -1,0 +1,100 @@
+"""Episodes over processes of this machine, or over a dask cluster; either gives the same records in the same order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import Any
+
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episodes import Job, Record, played, start_of
+from hearth.challenges.failure_analysis import Columns
+from hearth.challenges.metrics import outcome
+from hearth.pipelines.engine.dask_engine import DaskEngine
+from hearth.pipelines.engine.engines import engine as made
+from hearth.schemas.failures import Code
+from hearth.simulation.world.digest import digest
+from hearth.storage.parallel import begin, context, spread
+
+Spread = Callable[[Sequence[Job]], Iterator[Record]]
+"""Plays jobs and yields their records in order."""
+
+
+def here(workers: int) -> Spread:
+    """Over processes of this machine; an episode whose process dies is played alone, and ends with a code if it dies
+    again.
+    """
+
+    def results(jobs: Sequence[Job]) -> Iterator[Record]:
+        done = 0
+        while done < len(jobs):
+            try:
+                for record in spread(played, jobs[done:], workers):
+                    yield record
+                    done += 1
+            except BrokenProcessPool:
+                yield _alone(jobs[done])
+                done += 1
+
+    return results
+
+
+@contextmanager
+def spread_over(engine: str, workers: int = 1, scheduler: str = "") -> Iterator[Spread]:
+    """Yield where episodes are played; a cluster that is started for them ends with them.
+
+    Args:
+        engine: `local` or `dask`.
+        workers: processes.
+        scheduler: address of a running cluster, for `dask`.
+
+    Raises:
+        HearthError: those of `pipelines.engine.engines.engine`; MISSING_FILE: dask lacks, or does not answer.
+    """
+    chosen = made(engine, workers, scheduler)
+    if not isinstance(chosen, DaskEngine):
+        yield here(workers)
+        return
+    with chosen:
+        yield on_cluster(chosen.client)
+
+
+def on_cluster(client: Any) -> Spread:
+    """Over the workers of a dask cluster, which must have Hearth and the same extras; an episode that kills several of
+    them ends with a code.
+
+    Args:
+        client: of the cluster (`pipelines.engine.dask_engine.DaskEngine.client`).
+    """
+
+    def results(jobs: Sequence[Job]) -> Iterator[Record]:
+        from distributed.scheduler import KilledWorker
+
+        futures = client.map(played, jobs, pure=False)
+        for job, future in zip(jobs, futures, strict=True):
+            try:
+                yield future.result()
+            except KilledWorker:
+                yield _ended(job)
+
+    return results
+
+
+def _alone(job: Job) -> Record:
+    try:
+        with ProcessPoolExecutor(1, context(), begin) as pool:
+            return pool.submit(played, job).result()
+    except BrokenProcessPool:
+        return _ended(job)
+
+
+def _ended(job: Job) -> Record:
+    """The record of an episode whose process ends."""
+    which, knowledge = challenge(job.task.challenge), job.known()
+    end = {"agent": 1, "code": str(Code.AGENT_FAILED), "message": "its process ended"}
+    goal = None if job.helper_goal is None else which.grammar.written(job.helper_goal)
+    start = start_of(job.task, knowledge, None if job.helped else 1)
+    metrics = outcome(which, False, 0, Columns()).as_json()
+    return Record(job.task.id, job.seed, job.helped, goal, (), digest(start), metrics, end)

@@ -1,0 +1,227 @@
+"""A run as text and as JSON: what each step changed, why it stopped, and what would fix it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from hearth.commands import output
+from hearth.commands.run_additions import Additions, additions
+
+if TYPE_CHECKING:
+    from hearth.grounding.grounded_run import Trial
+    from hearth.schemas.failures import Failure
+    from hearth.schemas.program import Program, Step
+    from hearth.simulation.engine import Execution
+    from hearth.simulation.explain import Check
+    from hearth.simulation.motion.base_pose import HandAndBasePose
+    from hearth.simulation.world.home import Home
+    from hearth.simulation.world.world import World
+
+
+class Outcome(NamedTuple):
+    """A run in a home.
+
+    Attributes:
+        program: as it was given.
+        place: the home as it is.
+        trial: the run that is shown.
+        as_it_is: why the program did not run in the home as it is, where another start was sampled; else "".
+        unsampled: why no other start could be sampled, where one was wanted; else "".
+    """
+
+    program: Program
+    place: Home
+    trial: Trial
+    as_it_is: str = ""
+    unsampled: str = ""
+
+    def additions(self) -> Additions:
+        """Return what the start has more than the home, and otherwise."""
+        from hearth.simulation.world.world import World
+
+        return additions(World.start(self.place).graph(), self.trial.execution.worlds[0].graph())
+
+
+def show(outcome: Outcome, explain: bool) -> None:
+    """Print a run: the binding, each step with its changes, and at the end why it stopped."""
+    from hearth.repair.remedies import stop_reason
+
+    print(f"{outcome.program.title or 'A program'}, in {outcome.place.name}")
+    execution = outcome.trial.execution
+    if outcome.as_it_is:
+        print(f"  as it is, {outcome.as_it_is}")
+    for line in outcome.additions().lines():
+        print(f"  {line}")
+    _print_binding(execution)
+    _print_steps(execution, explain)
+    done = sum(len(steps) for steps in _ticks(execution)[: len(execution.worlds) - 1])
+    if execution.failure is None:
+        print(f"Done: {output.counted(done, 'step')}.")
+        return
+    print(stop_reason(execution))
+    if outcome.unsampled:
+        print(f"Sampling does not help: {outcome.unsampled}")
+    left = len(execution.program.steps) - len(_reached(execution))
+    if left > 0:
+        print(f"{output.counted(left, 'later step')} {'was' if left == 1 else 'were'} not run.")
+
+
+def document(outcome: Outcome, explain: bool) -> dict[str, Any]:
+    """Return a run for machines. Steps are counted from 1, ticks from 0."""
+    from hearth.datasets.format.codecs import change_row
+    from hearth.schemas.syntax import print_step
+
+    execution, found = outcome.trial.execution, outcome.additions()
+    sampled = outcome.trial.environment
+    return {
+        "home": outcome.place.name,
+        "executable": execution.executable,
+        "failure": _failure(execution),
+        "sampled": bool(outcome.as_it_is),
+        "as_it_is": outcome.as_it_is or None,
+        "not_sampled": outcome.unsampled or None,
+        "added": {name: len(items) for name, items in found._asdict().items()},
+        "additions": found,
+        "added_nodes": sampled.nodes if sampled else [],
+        "binding": {f"{ref.name} ({ref.instance})": ref.node for ref in execution.program.objects()},
+        "steps": [print_step(step) for step in execution.program.steps],
+        "changes": [change_row(change) for change in execution.changes()],
+        "stances": _poses(execution),
+        **({"checks": list(_explained(execution))} if explain else {}),
+    }
+
+
+def _failure(execution: Execution) -> dict[str, Any] | None:
+    from hearth.repair.remedies import remedy, stop_reason
+    from hearth.schemas.failure_words import step_number, why
+
+    failure = execution.failure
+    if failure is None:
+        return None
+    number = step_number(execution.program, failure)
+    words = {"message": stop_reason(execution), "why": why(failure), "remedy": remedy(execution) or None}
+    return {"code": failure.code, "step": number, **asdict(failure), **words}
+
+
+def _explained(execution: Execution) -> Iterator[dict[str, Any]]:
+    number = 1
+    for tick, steps in enumerate(_ticks(execution)):
+        if tick == len(execution.worlds):
+            return
+        for step in steps:
+            yield {"step": number, "tick": tick, "checks": [asdict(check) for check in _checks(execution, tick, step)]}
+            number += 1
+
+
+def _ticks(execution: Execution) -> list[tuple[Step, ...]]:
+    return list(execution.program.ticks())
+
+
+def _reached(execution: Execution) -> list[Step]:
+    """The steps that were done, and those of the tick that failed."""
+    return [step for steps in _ticks(execution)[: len(execution.worlds)] for step in steps]
+
+
+def _print_binding(execution: Execution) -> None:
+    home = execution.worlds[0].home
+    for ref in execution.program.with_steps(_reached(execution)).objects():
+        index = home.index.get(ref.node or -1, -1)
+        what = f"{home.classes[index]} ({ref.node})" if index >= 0 else "not bound"
+        print(f"  <{ref.name}> ({ref.instance}) is {what}")
+
+
+def _print_steps(execution: Execution, explain: bool) -> None:
+    poses = _poses(execution) if explain else ()
+    number = 1
+    for tick, steps in enumerate(_ticks(execution)):
+        print(f"{number:3}  {_text(steps)}")
+        if tick + 1 == len(execution.worlds):
+            print("     FAILED")
+            if explain:
+                _print_fault(execution, steps)
+            return
+        _print_changes(execution.worlds[tick], execution.worlds[tick + 1])
+        for pose in poses[tick] if poses else ():
+            print(f"       {_pose(pose)}")
+        if explain:
+            for step in steps:
+                _print_checks(_checks(execution, tick, step))
+        number += len(steps)
+
+
+def _print_changes(before: World, after: World) -> None:
+    from hearth.simulation.change_summary import summary
+
+    change, moves = after.changes(before), list(_moved(before, after))
+    said = [summary(change, before)] if change or not moves else []
+    for line in (*said, *moves):
+        print(f"     {line}")
+
+
+def _print_fault(execution: Execution, steps: tuple[Step, ...]) -> None:
+    """Print the checks of the steps that were to be done, the one that failed, and the facts in the world."""
+    from hearth.simulation.explain import facts
+
+    failure = execution.failure
+    assert failure is not None
+    for step in steps:
+        _print_checks(_checks(execution, len(execution.worlds) - 1, step))
+    nodes = (*failure.objects, *(ref.node for step in steps for ref in step.objects if ref.node is not None))
+    if failure.agent < len(execution.final.agents):
+        for line in facts(execution.final, failure.agent, nodes):
+            print(f"         {line}")
+
+
+def _checks(execution: Execution, tick: int, step: Step) -> list[Check]:
+    from hearth.simulation.explain import checks, checks_until
+
+    world, failure = execution.worlds[tick], execution.failure
+    if failure is None or tick != failure.tick:
+        return list(checks(world, step, execution.rules))
+    return list(checks_until(world, step, execution.rules, failure)) if step.agent == failure.agent else []
+
+
+def _print_checks(found: list[Check]) -> None:
+    for check in found:
+        if check.held:
+            print(f"       {check.literal}{'  by  ' + check.by if check.by else ''}")
+        else:
+            print(f"     x {check.literal}  does not hold:")
+
+
+def _poses(execution: Execution) -> tuple[tuple[HandAndBasePose, ...], ...]:
+    """The hand and base pose of the characters for each tick; nothing in homes without geometry."""
+    from hearth.simulation.motion.base_pose import hand_and_base_poses
+
+    return hand_and_base_poses(execution)
+
+
+def _moved(before: World, after: World) -> Iterator[str]:
+    """Yield where each character is that stands or looks elsewhere than before."""
+    for number, (old, new) in enumerate(zip(before.agents, after.agents, strict=True)):
+        if new.pose is not None and new.pose != old.pose:
+            yield f"character {number} at ({new.pose.x:.2f}, {new.pose.z:.2f}) m, facing {new.pose.yaw:.0f} degrees"
+
+
+def _pose(found: HandAndBasePose) -> str:
+    x, z, yaw = found.pose
+    hand = f", {found.hand} hand" if found.hand else ""
+    return f"character {found.agent} at ({x:.2f}, {z:.2f}) m, facing {yaw:.0f} degrees{hand}"
+
+
+def _text(steps: tuple[Step, ...]) -> str:
+    from hearth.schemas.syntax import print_step
+
+    return " | ".join(print_step(step, show_agent=len(steps) > 1) for step in steps)
+
+
+def failed(failure: Failure, program: Program) -> str:
+    """Return why no start could be sampled, with the step where the failure is about one."""
+    from hearth.schemas.failure_words import sentence, step_number
+    from hearth.schemas.syntax import print_step
+
+    number = step_number(program, failure) if failure.action else 0
+    step = print_step(program.steps[number - 1]) if 0 < number <= len(program.steps) else ""
+    return sentence(failure, number if step else 0, step)

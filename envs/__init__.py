@@ -1,0 +1,1 @@
+"""Environments for learners and language models: observations, action codes, rewards; Gymnasium and PettingZoo."""

@@ -1,0 +1,90 @@
+"""What a tick is worth to a learner.
+
+Source: thesis 6.5.1 (1 for the goal, -0.004 a tick); B.3.3 (2 for a predicate, -0.1 a tick: a policy over subgoals).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hearth.simulation.goals import Progress, Watch
+from hearth.simulation.motion import positions
+from hearth.simulation.motion.ground import ground_of
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.world import World
+
+IN_HAND = 10.0
+"""Metres by which a thing in a hand is nearer to its place than one that is still to be fetched."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rewards:
+    """The parts of a reward; all agents get the same, but for `approach`.
+
+    Attributes:
+        success: when the goal is reached.
+        tick: for every tick.
+        predicate: for every count of a literal that comes to hold, up to what is wanted; taken back where it ends.
+        approach: for every metre nearer to what is missing (see `metres_left`), and taken back for every metre away
+            from it, so that going in circles is worth nothing.
+    """
+
+    success: float = 1.0
+    tick: float = -0.004
+    predicate: float = 0.0
+    approach: float = 0.0
+
+    def of(self, before: tuple[Progress, World], after: tuple[Progress, World], number: int) -> float:
+        """The reward of a tick for an agent, from what was before it and after it."""
+        (old, was), (new, now) = before, after
+        found = self.tick + (self.success if new.satisfied and not old.satisfied else 0.0)
+        if self.predicate:
+            found += self.predicate * (counted(new) - counted(old))
+        if self.approach:
+            found += self.approach * (metres_left(old, was, number) - metres_left(new, now, number))
+        return found
+
+
+HIERARCHICAL = Rewards(success=0.0, tick=-0.1, predicate=2.0)
+"""Of a policy over subgoals (B.3.3)."""
+
+
+def counted(progress: Progress) -> int:
+    """Return how many of the required counts hold."""
+    pairs = zip(progress.counts, progress.goal, strict=True)
+    return sum(min(found, wanted) for found, (_, wanted) in pairs)
+
+
+def metres_left(progress: Progress, world: World, number: int) -> float:
+    """About how far an agent is from what is missing of a goal: for each missing literal the way to the nearest thing
+    that would make it hold, and `IN_HAND` more for one that is to be brought somewhere and not in its hands; the least
+    for each literal, summed. 0 where nothing is missing or no way is known.
+    """
+    return sum(_missing(watch, world, number) for watch in progress.watches if watch.count < watch.wanted)
+
+
+def _missing(watch: Watch, world: World, number: int) -> float:
+    literal, _, candidates, met = watch.literal, watch.wanted, watch.candidates, watch.met
+    done = met[0] if len(met) == 1 else 0
+    if candidates.by_target:
+        return _nearest(candidates.targets & ~done, world, number)
+    rest = candidates.subjects & ~done
+    if len(literal.terms) == 1:
+        return _nearest(rest, world, number)
+    agent = world.agents[number]
+    if agent.held & rest:
+        return _nearest(candidates.targets, world, number)
+    return IN_HAND + _nearest(rest, world, number)
+
+
+def _nearest(nodes: int, world: World, number: int) -> float:
+    """Metres of the shortest way to one of some nodes; 0 where there is none."""
+    here, pose = ground_of(world.home), world.agents[number].pose
+    if here is None or pose is None:
+        return 0.0
+    ends = sorted({cell for i in indices(nodes) for cell in positions.ends(world, here, i)})
+    if not ends:
+        return 0.0
+    ways = here.ground.ways
+    metres, first = ways.left(ways.field(tuple(ends)), pose.x, pose.z)
+    return metres if first >= 0 else 0.0

@@ -1,0 +1,273 @@
+"""An episode for learners: starts from seeds, numbers as actions, arrays as observations, rewards.
+
+`pettingzoo_env` and `gymnasium_env` give it the interfaces that libraries of reinforcement learning expect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from hearth.envs.action_codes import ActionCode, Listed, Number, Triples, played, str_step
+from hearth.envs.goal_arrays import check
+from hearth.envs.observation_arrays import Arrays, Encoder, Rows, Sizes
+from hearth.envs.rewards import Rewards
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import Step
+from hearth.schemas.rng import rng
+from hearth.simulation.actions.legal import Legal
+from hearth.simulation.env import Env, Tick, with_agents
+from hearth.simulation.goal_text import read_goal
+from hearth.simulation.goals import Progress
+from hearth.simulation.motion.positions import placed
+from hearth.simulation.observation.views import View
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.edit import edit
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import STRIDE
+from hearth.simulation.world.world import World
+
+if TYPE_CHECKING:
+    from gymnasium.spaces import Dict, Space
+
+Opening = Callable[[int], tuple[World, Goal]]
+"""The world in which an episode begins and the goal, from a seed; equal for equal seeds."""
+
+MOST_TICKS = 250
+"""Ticks after which an episode ends (thesis 6.5)."""
+
+CODES = ("triples", "listed")
+"""Codes of actions by name; any other is given as an `ActionCode`."""
+
+
+def opening(home: Home, goal: Goal | str, agents: int = 2, strides: tuple[float, ...] = ()) -> Opening:
+    """Episodes in a home as it is, without its own characters, with agents in random rooms.
+
+    Args:
+        home: the home.
+        goal: for all of them; as text, too (see `read_goal`).
+        agents: how many.
+        strides: metres that each walks in a tick; 1 where not given.
+
+    Raises:
+        HearthError: every fault of the goal's text.
+    """
+    wanted = read_goal(goal, home) if isinstance(goal, str) else goal
+
+    own = [home.ids[i] for i in home.agents]
+    empty = edit(World.start(home), remove=own, check=False) if own else World.start(home)
+    assert isinstance(empty, World)
+
+    def begin(seed: int) -> tuple[World, Goal]:
+        world = placed(with_agents(empty, agents, seed), rng(seed, "poses", home.name))
+        every = (*strides, *[STRIDE] * agents)
+        walkers = (agent._replace(stride=stride) for agent, stride in zip(world.agents, every, strict=False))
+        return World(world.home, world.states, tuple(walkers), world.moved), wanted
+
+    return begin
+
+
+MOST_SEED = 2**63 - 1
+"""Seeds of episodes are below it."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How episodes are played.
+
+    Attributes:
+        opening: where they begin, and what is wanted.
+        actions: names of what may be tried; None: those of challenges (see `action_codes.played`).
+        code: how instructions are numbered (see `action_codes`): `triples`, `listed`, or an `ActionCode`.
+        partial: whether agents see only what is around them.
+        told: the agents that are told the goal; all of them where None.
+        limit: ticks after which an episode is cut off.
+        rewards: of a tick.
+        rules: of actions.
+        sizes: of the arrays.
+        things: what the arrays and instructions are about (see `Slots.of`); everything where None.
+    """
+
+    opening: Opening
+    actions: tuple[str, ...] | None = None
+    code: str | ActionCode = "listed"
+    partial: bool = True
+    told: frozenset[int] | None = None
+    limit: int = MOST_TICKS
+    rewards: Rewards = field(default_factory=Rewards)
+    rules: Rules = DEFAULT
+    sizes: Sizes = field(default_factory=Sizes)
+    things: tuple[str | int, ...] | None = None
+
+
+class Session:
+    """Episodes one after another.
+
+    Attributes:
+        setting: how they are played.
+        agents: how many agents there are.
+        names: of the actions that may be tried.
+        code: how instructions are numbered.
+        env: the current episode.
+        progress: of its goal, in the real world.
+        failures: of the last tick, by agent.
+    """
+
+    def __init__(self, setting: Setting) -> None:
+        world, goal = setting.opening(0)
+        known = world.home.knowledge
+        self.setting = setting
+        self.agents = len(world.agents)
+        self.names = tuple(sorted(setting.actions)) if setting.actions is not None else played(known)
+        if unknown := [name for name in self.names if name not in known.actions]:
+            raise HearthError.of(Code.UNKNOWN_ACTION, f"`{unknown[0]}` is not a known action")
+        check(goal, setting.sizes.literals)
+        self.code = self._code(setting.code)
+        self.encoder = Encoder(replace(setting.sizes, agents=max(setting.sizes.agents, self.agents)), self.names, known)
+        self.env = Env(setting.rules, setting.partial, known)
+        self._rows: Rows | None = None
+        self._begin(world, goal)
+
+    def _code(self, code: str | ActionCode) -> ActionCode:
+        sizes = self.setting.sizes
+        if code == "triples":
+            return Triples(self.names, sizes.nodes)
+        if code == "listed":
+            return Listed(self.names, sizes.legal)
+        if isinstance(code, str):
+            raise HearthError.of(Code.BAD_ARGUMENT, f"no code of actions is called `{code}`",
+                                 suggestion=" or ".join(CODES))  # fmt: skip
+        return code
+
+    def observation_space(self) -> Dict:
+        """Of every agent's arrays."""
+        from gymnasium.spaces import Dict
+
+        return Dict({**self.encoder.spaces(), **self.code.spaces()})
+
+    def action_space(self) -> Space[Any]:
+        """Of every agent's numbers."""
+        return self.code.space()
+
+    def begin(self, seed: int) -> None:
+        """Start an episode.
+
+        Raises:
+            HearthError: those of the opening; BAD_ARGUMENT, where its world or goal does not fit the arrays. The last
+                episode then goes on.
+        """
+        self._begin(*self.setting.opening(seed))
+
+    def _begin(self, world: World, goal: Goal) -> None:
+        if len(world.agents) != self.agents:
+            raise HearthError.of(Code.BAD_ARGUMENT, f"{len(world.agents)} agents, where {self.agents} are expected")
+        check(goal, self.setting.sizes.literals)
+        progress = Progress.start(goal, world)
+        if self._rows is None or self._rows.slots.home is not world.home:
+            self._rows = self.encoder.rows(world.home, self.setting.things)
+        self.env.restore(world)
+        self.progress = progress
+        self.failures: dict[int, Failure] = {}
+        self._seen: dict[int, tuple[View, Legal]] = {}
+
+    @property
+    def rows(self) -> Rows:
+        """The slots of the home."""
+        assert self._rows is not None
+        return self._rows
+
+    @property
+    def succeeded(self) -> bool:
+        """Return whether the goal is reached."""
+        return self.progress.satisfied
+
+    @property
+    def cut_off(self) -> bool:
+        """Return whether time is over and the goal is not reached."""
+        return len(self.env.ticks) >= self.setting.limit and not self.succeeded
+
+    def seen(self, agent: int) -> tuple[View, Legal]:
+        """What an agent sees and could do now."""
+        if agent not in self._seen:
+            self._seen[agent] = self.env.observe(agent), self.env.legal(agent, actions=self.names)
+        return self._seen[agent]
+
+    def observe(self, agent: int) -> Arrays:
+        """The same as arrays."""
+        view, legal = self.seen(agent)
+        told = self.setting.told is None or agent in self.setting.told
+        time = len(self.env.ticks) / self.setting.limit
+        arrays = self.encoder.arrays(view, self.rows, self.progress if told else None, time)
+        return {**arrays, **self.code.masks(legal, self.rows.slots)}
+
+    def info(self, agent: int) -> dict[str, Any]:
+        """What is not for the agent's eyes.
+
+        Returns:
+            `legal`, how many instructions it could do; `left_out`, how many of them have no number; `failure`, why its
+            last could not be done (a `Failure`, or None); `success`; `progress`, the share of the goal that is reached.
+        """
+        _, legal = self.seen(agent)
+        count = self.rows.slots.count(legal)
+        return {
+            "legal": count,
+            "left_out": max(0, 1 + count - self.code.size) if isinstance(self.code, Listed) else 0,
+            "failure": self.failures.get(agent),
+            "success": self.succeeded,
+            "progress": self.progress.fraction,
+        }
+
+    def texts(self, agent: int) -> list[str]:
+        """An agent's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
+        _, legal = self.seen(agent)
+        return ["wait", *map(str_step, self.rows.slots.instructions(legal))]
+
+    def read(self, agent: int, number: Number) -> Step | Failure | None:
+        """The instruction of an agent's number; a failure, where it has none now or is about what the agent cannot see.
+
+        Raises:
+            HearthError: UNKNOWN_AGENT; BAD_ARGUMENT, where it is not in the action space.
+        """
+        if not isinstance(agent, int) or not 0 <= agent < self.agents:
+            raise HearthError.of(Code.UNKNOWN_AGENT, f"no agent {str(agent)[:40]}; there are {self.agents}, from 0")
+        view, legal = self.seen(agent)
+        found = self.code.read(number, legal, self.rows.slots)
+        if not isinstance(found, Step):
+            return found
+        hidden = [ref for ref in found.objects if ref.node is not None and not view.sees(ref.node)]
+        names = tuple(ref.name for ref in found.objects)
+        if len({ref.node for ref in found.objects}) < len(names):
+            return Failure(Code.WRONG_ARITY, 0, agent, found.action, (), names, "different objects", "one named twice")
+        if hidden:
+            return Failure(Code.UNBOUND, 0, agent, found.action, (), names, "an object that the agent sees", "not seen")
+        return found
+
+    def step(self, numbers: Mapping[int, Number]) -> dict[int, float]:
+        """Let agents act; who has no number waits. Nothing is done where a number is refused.
+
+        Returns:
+            The reward of each agent.
+
+        Raises:
+            HearthError: as `read`.
+        """
+        return self.act({agent: self.read(agent, number) for agent, number in numbers.items()})
+
+    def act(self, read: Mapping[int, Step | Failure | None]) -> dict[int, float]:
+        """The same with instructions instead of numbers."""
+        before = self.progress, self.env.world
+        tick = self.env.step({agent: step for agent, step in read.items() if isinstance(step, Step)})
+        self.progress = self.progress.then(tick.before, tick.world, done(tick))
+        refused = {agent: each for agent, each in read.items() if isinstance(each, Failure)}
+        self.failures = {**refused, **tick.failures}
+        self._seen = {}
+        after = self.progress, self.env.world
+        return {agent: self.setting.rewards.of(before, after, agent) for agent in range(self.agents)}
+
+
+def done(tick: Tick) -> list[Step]:
+    """The instructions of a tick that did not fail."""
+    return [step for number, step in tick.instructions.items() if number not in tick.failures]

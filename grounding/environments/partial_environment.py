@@ -1,0 +1,146 @@
+"""A partial environment: nodes and edges added and removed, states set, and the binding of objects to nodes."""
+
+from random import Random
+
+from hearth.grounding.environments.default_state import Base
+from hearth.schemas.graph import Edge, Node
+from hearth.schemas.literals import Key
+from hearth.schemas.vocabulary import FIRST_ADDED_ID, OPPOSITE
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.edit import Movable, extended
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.nodes import states_of
+
+
+class PartialEnvironment:
+    """Grows while one environment is sampled, then becomes a home; the only mutable thing here.
+
+    Attributes:
+        base: the home it starts from.
+        rng: all its choices.
+        nodes: new nodes.
+        added, removed: edges.
+        states: changed states by node id.
+        binding: the program's objects.
+        room: room's node id by node id, for nodes that are not where the base has them.
+        where: (relation, node id) a node stands ON or INSIDE, for nodes placed here.
+        movable: the random things, which come last.
+        first_id: the first new node's; those after it are numbered on.
+        made_bed: whether beds stay made, as by the rule of that name.
+    """
+
+    def __init__(self, base: Base, rng: Random, made_bed: bool = True) -> None:
+        self.base = base
+        self.rng = rng
+        self.made_bed = made_bed
+        self.nodes: list[Node] = []
+        self.added: list[Edge] = []
+        self.removed: list[Edge] = []
+        self.states: dict[int, tuple[str, ...]] = {}
+        self.binding: dict[Key, int] = {}
+        self.room: dict[int, int] = {}
+        self.where: dict[int, tuple[str, int]] = {}
+        self.new: dict[int, Node] = {}
+        self.taken: set[int] = set()
+        self.load: dict[int, int] = {}
+        self.movable: list[Movable] = []
+        # Homes with added things, and the release's graphs, have ids beyond 1000 of their own.
+        self.first_id = max(FIRST_ADDED_ID, base.whole.ids[-1] + 1)
+
+    def home(self) -> Home:
+        """The home with all changes."""
+        return extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.movable)
+
+    def room_of(self, node_id: int) -> int:
+        """Id of the room a node is in, or -1."""
+        known = self.room.get(node_id)
+        if known is not None:
+            return known
+        index = self.base.home.index.get(node_id, -1)
+        room = self.base.room[index] if index >= 0 else -1
+        return self.base.home.ids[room] if room >= 0 else -1
+
+    def add(self, name: str, room: int) -> int:
+        """A new node of a class in a room, in its default states; gives its id."""
+        node_id = self.first_id + len(self.nodes)
+        category, properties, states = self.base.kind(name)
+        node = Node(node_id, name, category, properties, states)
+        self.nodes.append(node)
+        self.new[node_id] = node
+        self.settle(node_id, room)
+        return node_id
+
+    def settle(self, node_id: int, room: int) -> None:
+        """Set the room of a new or lifted node."""
+        self.room[node_id] = room
+        if room >= 0:
+            self.added.append(Edge(node_id, "INSIDE", room))
+
+    def lift(self, node_id: int) -> None:
+        """Take a node of the base out of where it is: it loses ON, INSIDE and CLOSE."""
+        home = self.base.home
+        i = home.index[node_id]
+        ids = home.ids
+        self.removed.extend(Edge(node_id, "ON", ids[j]) for j in indices(home.on[i]))
+        self.removed.extend(Edge(node_id, "INSIDE", ids[j]) for j in indices(home.inside[i]))
+        self.removed.extend(Edge(node_id, "CLOSE", ids[j]) for j in indices(home.close[i]))
+
+    def put(self, node_id: int, relation: str, place: int) -> None:
+        """Put a node ON or INSIDE another: it is CLOSE to it and to its other contents."""
+        self.where[node_id] = (relation, place)
+        self.load[place] = self.load.get(place, 0) + 1
+        self.added.append(Edge(node_id, relation, place))
+        self.close(node_id, place)
+        home = self.base.home
+        i = home.index.get(place)
+        if i is not None:
+            for j in indices(home.bears[i] if relation == "ON" else home.contents[i]):
+                if home.ids[j] != node_id:
+                    self.close(node_id, home.ids[j])
+
+    def close(self, one: int, other: int) -> None:
+        """Make two nodes CLOSE to each other."""
+        self.added.append(Edge(one, "CLOSE", other))
+
+    def set_state(self, node_id: int, state: str) -> None:
+        """Put a node into a state and out of the opposite."""
+        now = self.states_now(node_id)
+        self.states[node_id] = (*(name for name in now if name not in (state, OPPOSITE[state])), state)
+
+    def states_now(self, node_id: int) -> tuple[str, ...]:
+        """The states of a node so far."""
+        known = self.states.get(node_id)
+        if known is not None:
+            return known
+        if node_id in self.new:
+            return self.new[node_id].states
+        return states_of(self.base.home.index[node_id], self.base.home.states)
+
+    def places(self, node_id: int) -> tuple[int, ...]:
+        """Return the ids of a node's supports and containers, rooms left out."""
+        if node_id in self.where:
+            return (self.where[node_id][1],)
+        home = self.base.home
+        i = home.index.get(node_id)
+        if i is None or node_id in self.room:
+            return ()
+        return tuple(home.ids[j] for j in indices((home.on[i] | home.inside[i]) & ~home.rooms))
+
+    def crowd(self, node_id: int) -> int:
+        """Return how many things are ON a node."""
+        i = self.base.home.index.get(node_id)
+        standing = self.base.home.bears[i].bit_count() if i is not None else 0
+        return standing + self.load.get(node_id, 0)
+
+    def classes_on(self, node_id: int) -> list[str]:
+        """Return the classes of the nodes that `crowd` counts."""
+        home, new = self.base.home, self.new
+        i = home.index.get(node_id)
+        put = [other for other, place in self.where.items() if place == ("ON", node_id)]
+        found = [new[other].class_name if other in new else home.classes[home.index[other]] for other in put]
+        return found + ([home.classes[j] for j in indices(home.bears[i])] if i is not None else [])
+
+    def turned_back(self, i: int) -> int:
+        """Return the bedding of the base's beds and couches: it takes no room there."""
+        home = self.base.home
+        return home.bears[i] & home.bedding if home.properties["LIEABLE"] >> i & 1 else 0

@@ -1,0 +1,1 @@
+"""Formats and protocols of other projects, written and read on top of ours."""

@@ -1,0 +1,39 @@
+"""What is the user's own in a build, knowledge and homes: kept for stages run alone, named in plans and manifests."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from hearth.datasets import dataset_homes, dataset_knowledge
+from hearth.pipelines.engine.build_context import knowledge_laid_over, knowledge_used
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Job
+
+
+def keep_homes(job: Job) -> None:
+    """Copy the user's homes into the stage's folder, for stages that are run alone later."""
+    dataset_homes.copy_homes(job.settings.homes_folder, job.folder)
+
+
+def kept_overlays(settings: Settings, only: str) -> Settings:
+    """The settings of a stage run alone: knowledge that they do not name is `validate`'s, homes are `sample`'s."""
+    known = settings.folder("validate") / dataset_knowledge.FOLDER
+    homes = settings.folder("sample") / dataset_homes.FOLDER
+    if only != "validate" and not settings.kb_folder and known.is_dir():
+        settings = replace(settings, kb_folder=str(known))
+    if only not in ("validate", "sample") and not settings.homes_folder and homes.is_dir():
+        settings = replace(settings, homes_folder=str(homes))
+    return settings
+
+
+def overlays(settings: Settings) -> dict[str, Any]:
+    """Digests of the user's own knowledge and homes, for a plan; errors as of `knowledge_laid_over`."""
+    made = knowledge_laid_over(settings)
+    if settings.homes_folder:
+        made["homes_overlay"] = dataset_homes.digest(Path(settings.homes_folder))
+    return made
+
+
+def overlays_used(job: Job) -> dict[str, Any]:
+    """The knowledge and homes that a stage used, for its manifest."""
+    return {**knowledge_used(job), **dataset_homes.homes_used(job.settings.homes_folder, job.folder)}
