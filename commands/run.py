@@ -33,7 +33,7 @@ def run(
     fuzzy: Fuzzy = Fuzzy.TYPOS,
     skip_faults: bool = False,
     strict: bool = False,
-    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
+    rules: Literal["auto", "default", "replay", "evolving_graph", "consequences"] = "auto",
     as_json: bool = False,
 ) -> None:
     """Run a program in a home as it is, and print the changes of each step.
@@ -44,7 +44,8 @@ def run(
     reached: what holds at the end, what was done (`WATCH(television)`), in which order (`then`), or alternatives.
 
     Actions are read by --rules: ours (default), those of the release of 2018 (replay), or those of VirtualHome 2.x
-    (evolving_graph: what is in an opened thing that one stands at is within reach, a room only walked into is not). By
+    (evolving_graph: what is in an opened thing that one stands at is within reach, a room only walked into is not), or
+    action set 3 (consequences: food is used up, what is heated or washed becomes hot or clean in time). By
     `auto` a graph in which no two things are CLOSE is read by the last, any other home by ours.
 
     \b

@@ -98,7 +98,7 @@ CHOICES: dict[str, Rules] = {
     "evolving_graph": EVOLVING_GRAPH,
     "consequences": CONSEQUENCES,
 }
-"""Rules from which `--rules` of a command chooses: ours of today, the release of 2018, VirtualHome 2.x, action set 3."""
+"""Rules from which `--rules` of a command chooses: ours, the release of 2018, VirtualHome 2.x, action set 3."""
 
 
 def read(given: Mapping[str, Any]) -> Rules:

@@ -36,8 +36,9 @@ def actions(knowledge: Knowledge, placed: bool) -> Mapping[str, Action]:
         later = known.later
         if later is None:
             continue
-        if name in ACTIONS:
-            found[name] = _followed(found[name], later)
+        if name in EVERY:
+            if name in found:
+                found[name] = _followed(found[name], later)
         elif later.like:
             found[name] = _followed(found[later.like]._replace(name=name), later)
         else:
@@ -50,12 +51,15 @@ def _followed(action: Action, later: Consequence) -> Action:
     if not later.effects:
         return action
 
-    steps_down = all(str(effect.literal) == "not ON(a, x)" for effect in later.effects)
+    bare = all(str(e.literal) == "not ON(a, x)" or "holds(a, h)" in str(e.condition) for e in later.effects)
 
     def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
         result = action.rule(world, number, o, s, rules)
-        if isinstance(result, Failure) or (steps_down and not world.agents[number].on):
+        if isinstance(result, Failure):
             return result
+        agent = world.agents[number]
+        if bare and not (agent.on or agent.right or agent.left):
+            return result  # nothing to step down from, and nothing that is carried: a walk
         return _after(world, result, number, (o, s), later, rules)
 
     return Action(action.name, rule, action.mask)

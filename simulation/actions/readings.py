@@ -189,7 +189,7 @@ def _related(reading: Reading, part: Literal[Term], variable: str, bound: Bound)
     world, (first, second) = reading.world, part.terms
     outwards = second.name == variable and not second.function and first.name in bound
     known = first if outwards else second
-    if known.name not in bound or known.function or part.name not in _ROWS:
+    if variable not in (first.name, second.name) or known.name not in bound or known.function or part.name not in _ROWS:
         return -1
     i = bound[known.name]
     if not world.home.characters >> i & 1:

@@ -123,11 +123,14 @@ def test_a_planning_problem_states_the_rule(rules):
     assert ("(option-made-bed)" in problem(task)) is rules.made_bed
 
 
+LATER = ("leaves_seat", "near_hands", "made_bed")
+
+
 def test_datasets_and_episodes_from_before_are_read_with_the_bedding_counted():
-    made = [f"{name}{end}" for name in ("leaves_seat", "near_hands", "made_bed") for end in ("", "_watching_off")]
+    made = [f"{name}{end}" for name in ("consequences", *LATER) for end in ("", "_watching_off")]
     assert [name for name, rules in RULES.items() if rules.made_bed] == made
-    assert [name for name, rules in RULES.items() if rules.near_hands] == made[:4]
-    assert [name for name, rules in RULES.items() if rules.leaves_seat] == made[:2]
+    assert [name for name, rules in RULES.items() if rules.near_hands] == made[:6]
+    assert [name for name, rules in RULES.items() if rules.leaves_seat] == made[:4]
     before = DEFAULT._replace(made_bed=False, near_hands=False, leaves_seat=False)
     assert RULES["default"] == before and not RULES["watching_off"].made_bed
     assert not read({"origin": "sensible", "watch_needs_on": True, "doors": True}).made_bed
