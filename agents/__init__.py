@@ -1,1 +1,1 @@
-"""Who acts: agents that pursue a goal, help somebody, or guess what somebody wants (thesis chapters 6 and 7)."""
+"""Agents that pursue a goal, help a partner, or infer a partner's goal (thesis chapters 6 and 7)."""

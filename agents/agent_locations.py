@@ -1,4 +1,4 @@
-"""Where others are, for an agent that does not see them all the time."""
+"""The places of others, for an agent that does not see them all the time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def note_others(belief: Belief, view: View, chooser: Random) -> None:
 
     Args:
         belief: gets the rooms.
-        view: what is seen now.
+        view: the current view.
         chooser: draws rooms.
     """
     home = view.world.home

@@ -17,7 +17,7 @@ from hearth.agents.random_helper import RandomHelper
 
 
 class MainAgent(Agent, Partner, Protocol):
-    """Who is helped: an agent of which it is known what it is doing (`subgoal`)."""
+    """A main agent, which a helper helps: its current subgoal is known (`subgoal`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Helper:
         goal: which it is given: `true`, `inferred` (from the task's demonstration), `random` (that of another task,
             which the runner gives), or `none`.
         main: name of the main agent that it is made for; '' for any.
-        about: what it is, for tables.
+        about: a description, for tables.
         network: the policy that it asks, which needs the extra `models`; "" for none.
     """
 
@@ -48,7 +48,7 @@ MAIN: dict[str, Callable[[GoalsIn], MainAgent]] = {
     "answering": lambda goals: Answering(),
     **PEOPLE,
 }
-"""Who is helped; each is made from the goals that there may be."""
+"""The main agents, which a helper helps; each is made from the possible goals."""
 
 HELPERS: dict[str, Helper] = {
     "random": Helper(lambda partner: RandomHelper(), "none", "anything that can be done"),
@@ -79,4 +79,4 @@ HELPERS: dict[str, Helper] = {
         lambda partner: Hierarchical(partner, SEES_ALL, timed=True), "true", "planner; both see everything", "oracle"
     ),
 }
-"""How to help."""
+"""The helpers, by name."""

@@ -1,7 +1,7 @@
-"""What an agent believes about where things are and what state they are in (thesis 6.4, B.1.1).
+"""An agent's beliefs about the places and states of objects (thesis 6.4, B.1.1).
 
-A thing that was not seen yet is in any of the rooms and closed containers with equal probability. One world is drawn
-from that belief and kept; a thing is drawn anew only once what is seen refutes its place.
+A thing that the agent has not observed is in any of the rooms and closed containers with equal probability. One world
+is drawn from that belief and kept. A thing is drawn anew only once an observation refutes its place.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from hearth.simulation.world.states import CLEAN, CLOSED, OFF, OPEN, PLUGGED_IN
 from hearth.simulation.world.world import World
 
 USUAL = {CLOSED: "CAN_OPEN", OFF: "HAS_SWITCH", PLUGGED_IN: "HAS_PLUG", CLEAN: "GRABBABLE"}
-"""The states in which what is not seen yet is believed to be, and what only things with a property are in."""
+"""The believed state of an object that has not been observed, and the property of objects that can have this state."""
 
 
 Extent = Literal["class", "goal", "any"]
@@ -30,10 +30,10 @@ anything that the goal is about, or all.
 
 
 class Place(NamedTuple):
-    """Where a thing is.
+    """The place of a thing.
 
     Attributes:
-        relation: `INSIDE` a room or a container, `ON` something, or, of who holds it, `HOLDS`.
+        relation: `INSIDE` a room or a container, `ON` a thing, or `HOLDS` of the character that holds it.
         node: index of that room, thing or character.
     """
 
@@ -42,7 +42,7 @@ class Place(NamedTuple):
 
 
 def place_of(world: World, thing: int) -> Place:
-    """Return where a thing is in a world: who holds it, what it is in or on, or else its room."""
+    """Return the place of a thing in a world: its holder, the node it is in or on, or else its room."""
     for agent in world.agents:
         if agent.held >> thing & 1:
             return Place(HOLDS, agent.index)
@@ -55,7 +55,7 @@ def place_of(world: World, thing: int) -> Place:
 
 
 def containers(home: Home) -> int:
-    """What stays where it is, can be opened, and according to the knowledge has things inside."""
+    """Return the fixed nodes that can be opened and, according to the knowledge, have things inside."""
     fixed = home.properties["CAN_OPEN"] & home.everything & ~(home.properties["GRABBABLE"] | home.rooms | home.doors)
     known = home.knowledge
     return mask_of(
@@ -64,7 +64,7 @@ def containers(home: Home) -> int:
 
 
 def usual_containers(home: Home, name: str) -> int:
-    """Those of `containers` in which things of a class belong according to the knowledge; all where none is known."""
+    """Return the containers in which things of a class belong, by the knowledge; all where none is known."""
     every = containers(home)
     known = home.knowledge
     names = {placement.destination for placement in known.placements(name) if placement.edge == "INSIDE"}
@@ -80,7 +80,7 @@ class Belief:
         where: the place of each in the world that was drawn.
         known: those that were seen at that place.
         states: the believed sets of `World.states`.
-        seen: what is in view.
+        seen: the set of nodes in view.
         room: index of the room that the agent is in, or -1.
     """
 
@@ -116,7 +116,7 @@ class Belief:
         self._chooser = chooser
 
     def observe(self, view: View) -> None:
-        """Take in what is seen now."""
+        """Update the beliefs by an observation."""
         world, mask = view.world, view.mask
         self.seen = mask
         self.room = -1 if view.me.room is None else world.home.index[view.me.room]
@@ -139,12 +139,12 @@ class Belief:
                     self._draw(thing, empty)
 
     def rule_out(self, thing: int) -> None:
-        """A thing can't be looked for where it was believed to be; it is drawn anew."""
+        """Draw the place of a thing anew: the agent can't look for it at the believed place."""
         self._possible[thing] &= ~(1 << self.where[thing].node)
         self._draw(thing, 1 << self.where[thing].node)
 
     def forget(self, thing: int) -> None:
-        """A thing may be anywhere again."""
+        """Forget the place of a thing: it may be anywhere again."""
         self.known &= ~(1 << thing)
         self._possible[thing] = self._usual[thing]
         self._rest[thing] = self._everywhere
@@ -164,8 +164,9 @@ class Belief:
         return bool((self.seen & ~hidden) >> place.node & 1)
 
     def _draw(self, thing: int, empty: int) -> None:
-        """A place among those that nothing seen refutes: where such things belong, or else anywhere; once every one is
-        refuted, it begins anew.
+        """Draw a place among those that no observation refutes: where such things belong, or else anywhere.
+
+        Once every place is refuted, the draw begins anew.
         """
         possible = self._possible[thing] or self._rest[thing]
         if not possible:

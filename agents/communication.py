@@ -1,7 +1,7 @@
-"""Talking for the price of a tick: who is helped answers what it still wants; a helper asks where that saves time.
+"""Talking for the price of a tick: the main agent says its remaining goal; a helper asks where that saves time.
 
-Beyond the thesis. A question takes the helper's tick and the answer one of its partner's, which names one part of what
-it wants. Challenges allow it by `messages`.
+Beyond the thesis. A question takes the helper's tick. The answer takes one of its partner's, and names one part of the
+partner's goal. Challenges allow talking by `messages`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Answering:
 
     @property
     def subgoal(self) -> Subgoal | None:
-        """What it is doing."""
+        """Return its current subgoal."""
         return self.main.subgoal
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
@@ -40,7 +40,7 @@ class Answering:
         self._named: set[int] = set()
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """An answer, if it was asked and there is something to answer; otherwise what it does anyway."""
+        """Return an answer, if it was asked and can answer; otherwise its usual choice."""
         if any(message.wanted is None for _, message in observation.messages):
             answer = self._answer(observation)
             if answer is not None:
@@ -48,7 +48,7 @@ class Answering:
         return self.main.act(observation, legal)
 
     def _answer(self, view: View) -> Message | None:
-        """The part of which most is missing, besides what it is doing itself."""
+        """Return the part of which most is missing, apart from its current one."""
         main = self.main
         main.belief.observe(view)
         missing = {part: number for part, (number, _) in main.aims.missing(main.belief, view).items()}
@@ -69,7 +69,7 @@ def _is_of_things(wanted: Wanted) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Talk(Settings):
-    """How it helps.
+    """Settings of the helper.
 
     Attributes:
         asking: ticks after which it would know the goal, if it asks.
@@ -84,7 +84,7 @@ USUAL = Talk()
 
 
 class Asking(ExpectedTime):
-    """Does what lets its partner finish soonest, in expectation; asks where an answer is worth more than its price."""
+    """A helper that shortens its partner's expected time, and asks where an answer is worth more than its price."""
 
     def __init__(self, goals: GoalsIn, settings: Talk = USUAL, model: ActionModel = PARTNER) -> None:
         super().__init__(goals, settings, model)
@@ -98,7 +98,7 @@ class Asking(ExpectedTime):
         self._forecasts = []
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """A question, or the first instruction towards what helps most."""
+        """Return a question, or the first instruction towards the most helpful edge."""
         self._hear(observation)
         step = super().act(observation, legal)
         if self._asked is None and not self._silent and self._is_worth_it():
@@ -107,13 +107,13 @@ class Asking(ExpectedTime):
         return step
 
     def _is_worth_it(self) -> bool:
-        """Return whether to know what is wanted soon is better than the best plan without."""
+        """Return whether to know the goal soon is better than the best plan without."""
         if not self._forecasts or self._forecasts[0][0] >= CERTAIN:
             return False
         return self._expected((), self.talk.asking) + self.talk.delay < self.value
 
     def _hear(self, view: View) -> None:
-        """Take in an answer; who does not answer is not asked again."""
+        """Record an answer; a partner that does not answer is not asked again."""
         for _, message in view.messages:
             if message.wanted in self.space.predicates and self.posterior.places:
                 self.posterior.answered(self.space.predicates.index(message.wanted), message.count)

@@ -1,7 +1,7 @@
-"""When a goal will be reached, if somebody pursues it with a helper: a quick simulation of both.
+"""The time at which a main agent with a helper reaches a goal: a quick simulation of both.
 
-Both fetch one thing after another; only ticks and places count, and no world is changed. The one who is helped carries
-one thing at a time and begins with what saves most walking; the helper makes trips for one or two things.
+Both fetch one thing after another. Only ticks and places count, and no world is changed. The main agent carries one
+thing at a time, and begins with the thing that saves most walking. The helper makes trips for one or two things.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ BOTH_HANDS = 6
 """Ticks that it takes more to open something with both hands full."""
 
 LATER = 0.02
-"""What each tick counts in which a single thing is still missing: of two plans that end together the prompter wins."""
+"""The price of each tick in which a single thing is still missing: of two plans that end together the prompter wins."""
 
 MOST = 400.0
 """Ticks after which a simulation ends."""
@@ -44,7 +44,7 @@ _Trip = tuple[float, int, int]
 
 
 class _Errand(NamedTuple):
-    """What somebody is at: the thing's heap, the row for which it is, whether it is carried already, when it began."""
+    """The current errand of an agent: the heap of its thing, its row, whether the thing is carried, and its start."""
 
     heap: int
     row: int
@@ -53,7 +53,7 @@ class _Errand(NamedTuple):
 
 
 class Forecast:
-    """How things go on from a situation under one goal."""
+    """A simulation from a situation under one goal."""
 
     def __init__(self, situation: Situation, lacking: Mapping[int, int], pursued: int = -1) -> None:
         """Ask about one goal.
@@ -69,7 +69,7 @@ class Forecast:
         """Ticks until the goal is reached, with a little for all that is brought late.
 
         Args:
-            stops: what the helper does first; after that it does what seems best to it.
+            stops: the helper's first stops; after them it takes the best one by its estimate.
             wait: ticks until it begins, because it watches; where nothing is left for the other, for nothing.
         """
         heaps = self.at.heaps
@@ -93,7 +93,7 @@ class Forecast:
                 self._helper_done()
         return self.now + LATER * self.late
 
-    # Who is helped
+    # The main agent
 
     def _main_begins(self) -> None:
         for number, heap in enumerate(self.at.heaps):
@@ -104,7 +104,7 @@ class Forecast:
         self._main_chooses(self._pursued)
 
     def _main_chooses(self, pursued: int = -1) -> None:
-        """Let the one who is helped go for what saves most: near now, and far from where it is to be put."""
+        """Choose the main agent's next thing: the one that saves most, being near now and far from its target."""
         best, chosen = math.inf, (-1, -1)
         for (number, row), saved in self._savings().items():
             ticks, cell = self._fetch(MAIN, number)
@@ -152,7 +152,7 @@ class Forecast:
             self._carry(errand.heap, errand.row)
 
     def _main_again(self) -> None:
-        """Turn the one who is helped to something else, where it is now, if what it is at is of no more use."""
+        """Turn the main agent to another thing, from its present place, if its errand has become useless."""
         errand = self.errand
         if errand is None or (errand.row in self.lacking and (errand.carried or self.left[errand.heap])):
             return
@@ -194,14 +194,14 @@ class Forecast:
         self._put(row)
 
     def _given(self, number: int) -> None:
-        """Hand something over; who has it brings it to where it is wanted."""
+        """Hand a thing over; the agent that has it brings it to its target."""
         self.cells[HELPER] = self.cells[MAIN]
         row = next((row for row in self.at.heaps[number].rows if row in self.lacking), -1)
         if row >= 0 and (self.errand is None or not self.errand.carried):
             self._carry(number, row)
 
     def _best(self) -> Stop | None:
-        """What seems best to the helper: bring what it has, then the trip with the fewest ticks for a thing."""
+        """Return the helper's best stop: bring a thing in its hands, else the trip with the fewest ticks."""
         rest = dict(self.lacking)
         if self.errand is not None and self.errand.row in rest:
             rest[self.errand.row] -= 1
@@ -234,7 +234,7 @@ class Forecast:
         return Stop(number)
 
     def _overtaking(self) -> Stop | None:
-        """Bring what the one who is helped is about to bring, where the helper is faster."""
+        """Return the helper's stop for the main agent's current thing, where the helper is faster."""
         errand = self.errand
         if errand is None or len(self.hands) == HANDS:
             return None
@@ -250,14 +250,14 @@ class Forecast:
         return Stop(number, row)
 
     def _held(self, rows: Iterable[int]) -> Iterator[_Trip]:
-        """What the helper holds that some rows lack: ticks to bring it there, heap, row."""
+        """Yield the things in the helper's hands that some rows lack: ticks to bring each, heap, row."""
         for number in self.hands:
             for row in self.at.heaps[number].rows:
                 if row in rows:
                     yield self._bring(HELPER, self.cells[HELPER], row, len(self.hands) == HANDS), number, row
 
     def _singles(self, rows: Iterable[int]) -> Iterator[_Trip]:
-        """What the helper could fetch for some rows: ticks of the trip, heap, row."""
+        """Yield the things that the helper could fetch for some rows: ticks of the trip, heap, row."""
         for number, heap in enumerate(self.at.heaps):
             for row in heap.rows if self.left[number] else ():
                 if row in rows:
@@ -270,7 +270,10 @@ class Forecast:
         return self.at.leg(who, self.cells[who], node)[1]
 
     def _fetch(self, who: int, number: int, cell: int | None = None) -> tuple[float, int]:
-        """Ticks until something of a heap is taken, and the cell then; who is helped closes what it has opened."""
+        """Return the ticks until an agent takes a thing of a heap, and the cell then.
+
+        The main agent closes the containers that it has opened.
+        """
         heap = self.at.heaps[number]
         ticks, end = self.at.leg(who, self.cells[who] if cell is None else cell, heap.node)
         shut = heap.inside and self.shut >> heap.node & 1

@@ -1,4 +1,4 @@
-"""Demonstrations read as goals without learning: by what was put where, by the last frame, by chance (thesis 6.5).
+"""Demonstrations read as goals without learning: by placements, by the last frame, by chance (thesis 6.5).
 
 The network that reads them from states is in `models/watching/`.
 """
@@ -21,7 +21,7 @@ Predicate = Literal[Name]
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What is to be inferred.
+    """The task of inferring a goal.
 
     Attributes:
         predicates: those that a goal may have, about names or nodes of the demonstration's home.
@@ -33,12 +33,13 @@ class Question:
 
 
 Reader = Callable[[Sequence[Tick], Question, Random], Goal]
-"""(what happened, what is asked, chooser) -> the inferred goal, of the question's predicates with their counts."""
+"""(ticks, question, chooser) -> the inferred goal, of the question's predicates with their counts."""
 
 
 def by_actions(ticks: Sequence[Tick], question: Question, chooser: Random, agent: int = 0) -> Goal:
-    """Counts the different things that an agent put, took or rested on where a predicate names them; what it took away
-    again counts, too.
+    """Count the different things that an agent put, took or rested on where a predicate names them.
+
+    A thing that the agent took away again counts, too.
     """
     if not ticks:
         return Goal()
@@ -57,7 +58,7 @@ def by_actions(ticks: Sequence[Tick], question: Question, chooser: Random, agent
 
 
 def _made(action: str, nodes: tuple[int, ...], some: Candidates, home: Home) -> int:
-    """What an instruction did for a predicate: the index of the thing that it counts, or -1."""
+    """Return the index of the thing that an instruction makes count for a predicate, or -1."""
     known, name = home.knowledge, some.literal.name
     if not nodes:
         return -1
@@ -73,7 +74,7 @@ def _made(action: str, nodes: tuple[int, ...], some: Candidates, home: Home) -> 
 
 
 def by_last_frame(ticks: Sequence[Tick], question: Question, chooser: Random) -> Goal:
-    """Counts what holds in the end and did not hold at the start."""
+    """Count the literals that hold in the end and did not hold at the start."""
     if not ticks:
         return Goal()
     first, last = ticks[0].before, ticks[-1].world
@@ -91,7 +92,7 @@ def by_chance(ticks: Sequence[Tick], question: Question, chooser: Random) -> Goa
 
 
 def by_states(ticks: Sequence[Tick], question: Question, chooser: Random, model: str = "goal-inference") -> Goal:
-    """What a network makes of the places in which things were seen; needs the extra `models`.
+    """Return the goal that a network infers from the places of things; needs the extra `models`.
 
     Args:
         ticks, question, chooser: as for every reader.
@@ -108,12 +109,14 @@ READERS: dict[str, Reader] = {
     "last-frame": by_last_frame,
     "chance": by_chance,
 }
-"""How demonstrations are read, by the names that `challenge watch` has for them."""
+"""The methods that read demonstrations, by the names that `challenge watch` has for them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """How an inferred goal agrees with the true one; predicates count as often as they are wanted (thesis 6.5.1).
+    """The agreement of an inferred goal with the true one.
+
+    Predicates count as often as they are wanted (thesis 6.5.1).
 
     Attributes:
         both: in the true and in the inferred goal.
@@ -126,12 +129,12 @@ class Agreement:
 
     @property
     def precision(self) -> float:
-        """The share of what was inferred that is true; 1 if nothing was."""
+        """Return the share of the inferred predicates that is true; 1 if none was inferred."""
         return self.both / self.inferred if self.inferred else 1.0
 
     @property
     def recall(self) -> float:
-        """The share of what is true that was inferred; 1 of an empty goal."""
+        """Return the share of the true predicates that was inferred; 1 for an empty goal."""
         return self.both / self.true if self.true else 1.0
 
 

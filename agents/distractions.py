@@ -1,4 +1,4 @@
-"""Errands: what somebody does for a while that has nothing to do with their goal."""
+"""Errands: actions of an agent for a while that have nothing to do with its goal."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Errand:
 
         Args:
             wanted: about ids of nodes.
-            view: what is seen now.
+            view: the current view.
             ticks: after which it is given up.
             seed: of all that it does at random.
             habits: of planning.
@@ -29,7 +29,7 @@ class Errand:
         self._until = view.tick + ticks
 
     def act(self, view: View, legal: Legal) -> Step | None:
-        """The next instruction; None once it is done, given up, or can't go on."""
+        """Return the next instruction; None once it is done, given up, or can't go on."""
         if view.tick >= self._until or Progress.at(self._agent.goal, view.world).satisfied:
             return None
         return self._agent.act(view, legal)

@@ -1,4 +1,4 @@
-"""Help by empowerment: what would be done for most goals, whatever the goal is (thesis 7.4, a baseline)."""
+"""Help by empowerment: the actions that most goals need, whatever the goal is (thesis 7.4, a baseline)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Empowerment(OnlineHelper):
         self._particles, self._horizon = particles, horizon
 
     def choose(self, view: View) -> Edge | None:
-        """The commonest edge that can still be helped with."""
+        """Return the commonest edge that can still be helped with."""
         planner, theirs = self.planner(), self.theirs
         held = self.held(view)
         found: Counter[Edge] = Counter()

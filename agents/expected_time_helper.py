@@ -1,9 +1,9 @@
-"""A helper that does what lets its partner finish soonest, in expectation over the exact posterior.
+"""A helper that minimizes the expected time until its partner has finished, over the exact posterior.
 
-Beyond the thesis: NOPA (eq. 7.1) weighs one edge at a time by a few particles. Here each thing that could be done next
-is followed, under goals that stand for the posterior, until the goal is reached (see `completion_forecast`): both hands
-are used, the work is shared, and what is of no use under some goals costs the time that it wastes. With a single goal
-that it is given it is the planner of HP_GT.
+Beyond the thesis: NOPA (eq. 7.1) weighs one edge at a time by a few particles. This helper simulates each possible next
+thing, under goals that represent the posterior, until the goal is reached (see `completion_forecast`). It uses both
+hands and shares the work. A thing that is useless under some goals costs the time that it wastes. With the single true
+goal it is the planner of HP_GT.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ CERTAIN = 0.999
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How it helps.
+    """Settings of the helper.
 
     Attributes:
         goals: how many stand for the posterior.
@@ -37,7 +37,7 @@ class Settings:
         needless: ticks that a thing costs which turns out not to be wanted, or not where it is put.
         loyalty: ticks by which a new subgoal must be better than the present one.
         nearest, paired: how many heaps are looked at for a single thing, and for two at once.
-        sure: how probable a thing must be under a goal to be what the partner goes for.
+        sure: the least probability under a goal of a thing that the partner goes for.
     """
 
     goals: int = 10
@@ -54,14 +54,14 @@ class Settings:
 USUAL = Settings()
 
 PARTNER = ActionModel(rationality=0.45)
-"""How its partner is thought to choose."""
+"""The helper's model of its partner's choices."""
 
 
 class ExpectedTime(OnlineHelper):
-    """Does what is expected to let its partner finish soonest.
+    """A helper that chooses the action with the shortest expected time until its partner has finished.
 
     Attributes:
-        value: the expected ticks until then, of what it chose last.
+        value: the expected ticks until the partner has finished, given its last choice.
     """
 
     def __init__(self, goals: GoalsIn, settings: Settings = USUAL, model: ActionModel = PARTNER) -> None:
@@ -70,7 +70,7 @@ class ExpectedTime(OnlineHelper):
         self.value = math.inf
 
     def choose(self, view: View) -> Edge | None:
-        """The first step of the best plan; None to wait."""
+        """Return the first step of the best plan; None to wait."""
         self._look(view)
         if not self._forecasts:
             return self._back(view)
@@ -84,13 +84,13 @@ class ExpectedTime(OnlineHelper):
         return chosen or self._back(view)
 
     def _waiting(self, view: View) -> tuple[float, Edge | None]:
-        """The expected ticks if it only watches at first, and what it does for that."""
+        """Return the expected ticks if it only watches at first, and the edge for that."""
         if self._forecasts[0][0] >= CERTAIN:
             return math.inf, None
         return self._expected((), self.settings.patience), None
 
     def _look(self, view: View) -> None:
-        """The situation, the goals that stand for all, and how probably the things of each heap are wanted."""
+        """Compute the situation, the goals that stand for all, and how probably each heap's things are wanted."""
         posterior, space, other = self.posterior, self.space, self.other
         assert other is not None
         giving = self.ticks(view, [(self.partner, 1)])
@@ -121,7 +121,7 @@ class ExpectedTime(OnlineHelper):
         return [(int(order[each]), int(count) / number) for each, count in zip(chosen, counts, strict=True)]
 
     def _plans(self, view: View) -> Iterator[Sequence[Stop]]:
-        """What it could do next: bring or hand over what it holds, take one thing, or two."""
+        """Yield its possible next stops: bring or hand over the things in its hands, take one thing, or two."""
         heaps, settings = self._now.heaps, self.settings
         held = [number for number, heap in enumerate(heaps) if heap.holder == HELPER for _ in heap.things]
         for number in dict.fromkeys(held):
@@ -141,7 +141,7 @@ class ExpectedTime(OnlineHelper):
                         yield Stop(one), Stop(other)
 
     def _nearest(self) -> list[int]:
-        """The heaps that are worth a look: probably wanted, and brought in few ticks."""
+        """Return the heaps that are worth a look: probably wanted, and brought in few ticks."""
         found = []
         for number, heap in enumerate(self._now.heaps):
             if heap.holder < 0 and self._wanted[number] >= self.settings.take:
@@ -152,7 +152,7 @@ class ExpectedTime(OnlineHelper):
         return [number for _, number in sorted(found)[: self.settings.nearest]]
 
     def _expected(self, stops: Sequence[Stop], wait: float = 0.0) -> float:
-        """Expected ticks until the partner has reached its goal, and the price of what is taken needlessly."""
+        """Return the expected ticks until the partner has reached its goal, plus the price of needless things."""
         ticks = sum(share * each.finish(stops, wait) for share, each in self._forecasts)
         unwanted = sum(
             1 - (self._wanted[heap] if row == TAKE else self._rows[row]) for heap, row in stops if row != GIVE
@@ -170,7 +170,7 @@ class ExpectedTime(OnlineHelper):
         return Edge(self.space.relations[stop.row], thing, int(self.space.targets[stop.row]))
 
     def _back(self, view: View) -> Edge | None:
-        """Bring back what it holds and nobody wants."""
+        """Return the edge that brings back a thing in its hands that no goal wants."""
         wanted = {
             self.space.things[number]: probability
             for heap, probability in zip(self._now.heaps, self._wanted, strict=True)

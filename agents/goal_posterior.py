@@ -1,4 +1,4 @@
-"""The exact posterior over all goals that somebody may have, by the likelihood of each action that is seen.
+"""The exact posterior over all goals that an agent may have, by the likelihood of each observed action.
 
 A model of the one who acts says how probable an action is under a goal: it goes for one of the things that the goal
 still lacks, a near one rather than a far one, takes it, and carries it to where the goal wants it. Chapter 7
@@ -27,12 +27,12 @@ MOST = 1_000
 """Things of a predicate that goals want, at most."""
 
 FAR = 1e6
-"""Ticks to what can't be reached."""
+"""Ticks to a place that can't be reached."""
 
 
 @dataclass(frozen=True, slots=True)
 class ActionModel:
-    """How the one who acts is thought to choose.
+    """A model of an agent's choices.
 
     Attributes:
         rationality: how much less probable a thing becomes with each tick that it is farther.
@@ -51,10 +51,10 @@ USUAL_MODEL = ActionModel()
 
 
 class _Lacking(NamedTuple):
-    """What goals lack, as long as the same things count.
+    """The missing predicates of goals, as long as the same things count.
 
     Attributes:
-        missing: (G, P) what each goal lacks.
+        missing: (G, P) the count that each goal lacks.
         possible: (G,) 1 where it lacks something, and there are as many things as it lacks.
         able: (P, T) whether a thing fits a predicate and does not count for it yet.
         row, number: of each pair of a predicate and how many are missing, which many goals share.
@@ -72,7 +72,7 @@ class _Lacking(NamedTuple):
 
     @classmethod
     def of(cls, space: GoalSpace, counted: Flags) -> _Lacking:
-        """What the goals of a space lack where some things count."""
+        """Return the missing predicates of a space's goals, given the things that count."""
         missing, able = space.missing(counted), space.fits & ~counted
         possible = missing.any(axis=1) & (missing <= able.sum(axis=1)).all(axis=1)
         goals, rows = np.nonzero(missing)
@@ -90,8 +90,8 @@ class Posterior:
     Attributes:
         space: the goals.
         weights: (G,) their probabilities now.
-        missing: (G, P) what each goal lacks now.
-        pursued: (G, T) under each goal, the probability that a thing is what is being fetched or carried.
+        missing: (G, P) the count that each goal lacks now.
+        pursued: (G, T) under each goal, the probability that the agent fetches or carries a thing.
     """
 
     def __init__(self, space: GoalSpace, home: Home, stride: float, model: ActionModel = USUAL_MODEL) -> None:
@@ -108,11 +108,11 @@ class Posterior:
         self._counted: Flags = np.zeros((0, 0), np.bool_)
 
     def observe(self, scene: Scene, other: Pose) -> None:
-        """Take in what somebody has just tried, and the home since then.
+        """Update the posterior by an agent's last attempt, and by the home since then.
 
         Args:
             scene: now.
-            other: how that one stands, with what it last tried.
+            other: the pose of that agent, with its last attempt.
         """
         last = None if other.last is None else (other.last.instruction, other.last.failure)
         stood, self._stood = self._stood, (last, other.place)
@@ -134,11 +134,11 @@ class Posterior:
             self._last = None
 
     def _expect(self, scene: Scene, other: Pose) -> None:
-        """What is fetched or carried next under each goal.
+        """Compute the thing that is fetched or carried next under each goal.
 
-        Whoever must fetch all of some things saves most by beginning with those that are near now, but far from where
-        they are wanted: what counts is the cost from here less the cost from there, or that of the dearest thing that
-        is needed otherwise.
+        An agent that must fetch all of some things saves most by beginning with things that are near now, but far from
+        their target. The score is the cost from here less the cost from the target, or less that of the dearest thing
+        that is needed otherwise.
         """
         lacking, me = self._lacking, self._home.index[other.node]
         row, number = lacking.row, lacking.number
@@ -160,7 +160,7 @@ class Posterior:
         self.pursued = np.divide(found, total, out=np.zeros_like(found), where=total > 0)
 
     def costs(self, closed: int, other: Pose) -> Floats:
-        """(P, T) ticks until a thing counts for a predicate, if it is brought there next; FAR if it can't be."""
+        """Return (P, T) ticks until a thing counts for a predicate, if it is brought there next; FAR if it can't be."""
         start = self.distances.cell(other.place)
         me = self._home.index[other.node]
         found = np.full(self.space.fits.shape, FAR)
@@ -179,7 +179,7 @@ class Posterior:
         return found
 
     def round_trips(self, closed: int) -> Floats:
-        """(P, T) ticks in which a thing is fetched from where a predicate wants it; FAR of what somebody holds."""
+        """Return (P, T) ticks to fetch a thing from a predicate's target; FAR if a character holds the thing."""
         distances = self.distances
         found = np.full(self.space.fits.shape, FAR)
         for number, (relation, node) in enumerate(self.places):
@@ -196,7 +196,7 @@ class Posterior:
         return found
 
     def _weigh(self, step: Step) -> None:
-        """Weigh the goals by an action, and what may be pursued under each."""
+        """Weigh the goals by an action, and update the possible pursuits under each goal."""
         match = self._matching(step)
         if match is None:
             return
@@ -208,17 +208,17 @@ class Posterior:
         self.pursued = np.where(total > 0, joint / np.where(total > 0, total, 1.0), self.pursued)
 
     def notice(self, row: int) -> None:
-        """Weigh the goals by a thing that somebody has brought unseen to where a predicate wants it."""
+        """Weigh the goals by a thing that the agent has brought, unseen, to the target of a predicate."""
         slip = self.model.slip
         self._keep((1 - slip) * (self.space.counts[:, row] > 0) + slip)
 
     def answered(self, row: int, count: int) -> None:
-        """Weigh the goals by what somebody says: a predicate that is still wanted, and how many are missing."""
+        """Weigh the goals by an answer: a predicate that is still wanted, and how many are missing."""
         slip, lacking = self.model.slip, np.maximum(1, (self.missing > 0).sum(axis=1))
         self._keep((1 - slip) * (self.missing[:, row] == count) / lacking + slip * slip)
 
     def _rest(self) -> None:
-        """Weigh the goals by a tick in which nothing was done: who can fetch nothing waits for what others have."""
+        """Weigh the goals by a tick without action: an agent with nothing to fetch waits for the things of others."""
         self._keep(np.where(self.pursued.any(axis=1), self.model.rest, 1.0))
 
     def _keep(self, likelihood: Floats) -> None:
@@ -228,7 +228,10 @@ class Posterior:
             self.weights = weights / total
 
     def _matching(self, step: Step) -> Floats | None:
-        """(G, T) whether an action is one towards a thing, under a goal; None of an action that tells nothing."""
+        """Return (G, T) whether an action is one towards a thing, under a goal.
+
+        The result is None for an action that says nothing about a goal.
+        """
         nodes = [self._home.index[ref.node] for ref in step.objects if ref.node in self._home.index]
         known, name = self._known, step.action
         if not nodes or known.state_of(name) == "CLOSED":
@@ -263,7 +266,7 @@ class Posterior:
         return found
 
     def _wanted_at(self, node: int, of_room: bool = False) -> Floats:
-        """(G, T) whether a goal lacks a thing on or in some furniture, or in a room."""
+        """Return (G, T) whether a goal lacks a thing on or in some furniture, or in a room."""
         inside, targets = self._home.inside, self.space.targets
         here = np.array([node == each or (of_room and bool(inside[each] >> node & 1)) for each in targets.tolist()])
         lacking = (self.missing > 0) * here.astype(np.float64)
@@ -272,21 +275,21 @@ class Posterior:
 
     @property
     def expected(self) -> Floats:
-        """(P,) the probability that each predicate is still wanted at least once more."""
+        """Return (P,) the probability that each predicate is still wanted at least once more."""
         return self.weights @ (self.missing > 0)
 
     def probability(self, number: int) -> float:
-        """The probability of a goal by its number."""
+        """Return the probability of a goal by its number."""
         return float(self.weights[number])
 
     def likeliest(self, number: int) -> Numbers:
-        """The numbers of the likeliest goals, the likeliest first."""
+        """Return the numbers of the likeliest goals, the likeliest first."""
         return np.argsort(-self.weights, kind="stable")[:number]
 
 
 @lru_cache(maxsize=8)
 def _taking(knowledge: Knowledge) -> frozenset[str]:
-    """The actions by which one gets something into a hand."""
+    """Return the actions by which one gets something into a hand."""
     return frozenset(
         action.name
         for action in knowledge.actions.values()

@@ -1,4 +1,4 @@
-"""The goals that somebody may have, as arrays over the things of a home: what inference and helping reckon with."""
+"""The possible goals of an agent, as arrays over the things of a home, for inference and helping."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ Flags = NDArray[np.bool_]
 
 
 class Scene(NamedTuple):
-    """What somebody knows of a home.
+    """An agent's knowledge of a home.
 
     Attributes:
         places: where each thing of a space is.
-        closed: the set of what is closed.
+        closed: the set of closed nodes.
     """
 
     places: list[Place]
@@ -36,12 +36,12 @@ class Scene(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """An edge of the graph that somebody brings about.
+    """An edge of the graph that an agent brings about.
 
     Attributes:
-        relation: `ON` or `INSIDE` furniture; HOLDS of what a character is to have; "" for taking a thing along,
-            without knowing where to.
-        thing: index of what is carried.
+        relation: `ON` or `INSIDE` furniture; HOLDS for a thing that a character is to have; "" for taking a thing
+            along, without knowing where to.
+        thing: index of the thing that is carried.
         target: index of the furniture or character; -1 for taking it along.
     """
 
@@ -51,10 +51,10 @@ class Edge(NamedTuple):
 
 
 Counts = tuple[int, ...]
-"""How many a goal wants of each predicate of a space."""
+"""The number of things that a goal wants for each predicate of a space."""
 
 Places = list[Place]
-"""Where each thing of a space is."""
+"""The place of each thing of a space."""
 
 
 GoalsIn = Callable[[Home], Mapping[Goal, float]]
@@ -68,7 +68,7 @@ class GoalSpace:
     Attributes:
         goals: all of them.
         prior: (G,) their probabilities.
-        predicates: (P) what goals count, naming furniture of the home.
+        predicates: (P) the counted literals of goals, naming furniture of the home.
         targets: (P,) index of the furniture of each.
         counts: (G, P) how many are wanted.
         things: indices of the things.
@@ -85,7 +85,7 @@ class GoalSpace:
 
     @classmethod
     def of(cls, goals: Mapping[Goal, float], home: Home) -> GoalSpace:
-        """The goals of a home; literals about characters are left out."""
+        """Return the goals of a home; literals about characters are left out."""
         places = {
             literal: home.index[literal.target]
             for goal in goals
@@ -118,36 +118,36 @@ class GoalSpace:
 
     @cached_property
     def relations(self) -> tuple[str, ...]:
-        """Of each predicate."""
+        """Return the relation of each predicate."""
         return tuple(each.name for each in self.predicates)
 
     @cached_property
     def classes(self) -> tuple[str, ...]:
-        """Of the things that each predicate counts."""
+        """Return the classes of the things that each predicate counts."""
         return tuple(str(each.subject) for each in self.predicates)
 
     @cached_property
     def wanted(self) -> tuple[Counts, ...]:
-        """(G) how many each goal wants of each predicate."""
+        """Return (G) how many each goal wants of each predicate."""
         return tuple(map(tuple, self.counts.tolist()))
 
     def goal(self, counts: Counts) -> Goal:
-        """The goal of some counts of predicates."""
+        """Return the goal of some counts of predicates."""
         return Goal(tuple((each, count) for each, count in zip(self.predicates, counts, strict=True) if count))
 
     @cached_property
     def rows_of(self) -> tuple[tuple[int, ...], ...]:
-        """(T) the predicates that each thing may count for."""
+        """Return (T) the predicates that each thing may count for."""
         return tuple(tuple(np.flatnonzero(column).tolist()) for column in self.fits.T)
 
     @cached_property
     def number(self) -> dict[int, int]:
-        """The number of each thing, by its index."""
+        """Return the number of each thing, by its index."""
         return {thing: number for number, thing in enumerate(self.things)}
 
     @cached_property
     def row_at(self) -> dict[Edge, int]:
-        """The predicate that each thing counts for at each place."""
+        """Return the predicate that each thing counts for at each place."""
         pairs = zip(self.things, self.rows_of, strict=True)
         return {Edge(self.relations[r], thing, int(self.targets[r])): r for thing, rows in pairs for r in rows}
 
@@ -156,15 +156,15 @@ class GoalSpace:
         return bool(self.targets[row] == node) and self.relations[row] == relation
 
     def places(self, world: World) -> Places:
-        """(T) where each thing is now: what it is on or in, who holds it, or its room."""
+        """Return (T) the place of each thing now: the node it is on or in, its holder, or its room."""
         return [place_of(world, thing) for thing in self.things]
 
     def scene(self, world: World) -> Scene:
-        """All of a world, for who sees everything."""
+        """Return the scene of a whole world, for an observer that sees everything."""
         return Scene(self.places(world), world.states[CLOSED])
 
     def counted(self, places: Places) -> Flags:
-        """(P, T) whether a thing counts for a predicate where it is."""
+        """Return (P, T) whether a thing counts for a predicate where it is."""
         inside = np.array([relation == "INSIDE" for relation, _ in places], np.bool_)
         nodes = np.array([-1 if relation == HOLDS else node for relation, node in places], np.int64)
         here: Flags = self.fits & (self.targets[:, None] == nodes) & (self._inside[:, None] == inside)
@@ -172,10 +172,10 @@ class GoalSpace:
 
     @cached_property
     def _inside(self) -> Flags:
-        """(P,) whether things are wanted in the furniture, not on it."""
+        """Return (P,) whether things are wanted in the furniture, not on it."""
         return np.array([relation == "INSIDE" for relation in self.relations], np.bool_)
 
     def missing(self, counted: Flags) -> Numbers:
-        """(G, P) how many of each predicate a goal still lacks."""
+        """Return (G, P) how many of each predicate a goal still lacks."""
         found: Numbers = np.maximum(0, self.counts - counted.sum(axis=1, dtype=np.int32))
         return found

@@ -1,8 +1,8 @@
-"""What it is worth to help with one edge of the graph, or with two, one in each hand (thesis 7.3.4, equation 7.1).
+"""The value of helping with one edge of the graph, or with two, one in each hand (thesis 7.3.4, equation 7.1).
 
-The thesis weighs edges one by one. Here an edge is followed by the next best one, and what is brought second may be
-taken along before the first is put: the same equation then says when both hands are worth the detour. An edge is
-needed with the probability that a goal lacks as many as the partner and the helper are bringing already, and one more.
+The thesis weighs edges one by one. Here an edge is followed by the next best one. The helper may take the second thing
+along before it puts the first: the same equation then decides if both hands are worth the detour. A goal needs an edge
+if it lacks one more than the partner and the helper already bring.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ OPENING = 6
 
 @dataclass(frozen=True, slots=True)
 class Weights:
-    """Of equation 7.1.
+    """Weights of equation 7.1.
 
     Attributes:
         reward, cost, moves: w_r, w_c and w_m.
         ahead: L_max, ticks after which an edge is expected that no predicted plan brings about.
-        returns: whether what is not wanted is brought back; if not, w_m is 0.
+        returns: whether unwanted things are brought back; if not, w_m is 0.
         hands: how many things it carries at once.
         looked: edges of the highest value that are combined with each other.
     """
@@ -50,7 +50,7 @@ USUAL_WEIGHTS = Weights()
 
 
 class Helper(Protocol):
-    """What a helper knows of its own ways."""
+    """A helper's knowledge of its own ways."""
 
     space: GoalSpace
     me: int
@@ -59,20 +59,20 @@ class Helper(Protocol):
 
     @property
     def theirs(self) -> int:
-        """The set of what the partner holds."""
+        """Return the set of things that the partner holds."""
 
     def arrivals(self, view: View, stops: Iterable[tuple[int, int]]) -> list[float]:
         """Ticks until each of some stops is done (see `online_helper.OnlineHelper`)."""
 
     def taking(self, place: Place) -> tuple[int, int]:
-        """The stop at which something is taken."""
+        """Return the stop at which something is taken."""
 
     def putting(self, relation: str, target: int) -> tuple[int, int]:
-        """The stop at which something is put."""
+        """Return the stop at which something is put."""
 
 
 class _Leg(NamedTuple):
-    """A stop: node, ticks there, and what comes about; None where something is taken."""
+    """A stop: node, ticks there, and the edge that comes about; None where a thing is taken."""
 
     node: int
     ticks: int
@@ -80,7 +80,7 @@ class _Leg(NamedTuple):
 
 
 class HelpingPlans:
-    """The values of what a helper could do next, in one view.
+    """The values of a helper's possible next plans, in one view.
 
     Attributes:
         values: by first edge, the value of the best plan that begins with it; `("", thing, -1)` is to take it along.
@@ -96,9 +96,9 @@ class HelpingPlans:
         """Weigh plans.
 
         Args:
-            helper: who helps.
-            view: what it sees.
-            prospects: goals with their shares, and what is predicted under each.
+            helper: the helper whose plans are weighed.
+            view: its view.
+            prospects: goals with their shares, and the prediction under each.
             weights: of equation 7.1.
         """
         self._helper, self._view, self._weights = helper, view, weights
@@ -120,7 +120,7 @@ class HelpingPlans:
         return place.relation, thing, place.node
 
     def _predicted(self, prospects: Sequence[tuple[float, Counts, Prospect]]) -> None:
-        """L_M of each edge, and, of what is in nobody's final goal, how probably it comes about (algorithm 3)."""
+        """Compute L_M of each edge, and the probability of each edge that is in no final goal (algorithm 3)."""
         ahead = self._weights.ahead
         self._expected: dict[Edge, float] = {}
         self._passing: defaultdict[Edge, float] = defaultdict(float)
@@ -130,7 +130,10 @@ class HelpingPlans:
                 self._passing[edge] += share
 
     def _lacking(self, prospects: Sequence[tuple[float, Counts, Prospect]]) -> None:
-        """Return how probably a goal lacks one, two, ... of each predicate beside what the partner carries."""
+        """Compute the probability that a goal lacks one, two, .
+
+        Of each predicate, after the things the partner carries.
+        """
         space = self._helper.space
         there = space.counted(self._helper.scene.places).sum(axis=1).tolist()
         carried = [rows for thing, rows in zip(space.things, space.rows_of, strict=True) if self._theirs >> thing & 1]
@@ -145,7 +148,7 @@ class HelpingPlans:
                     self._needs[row, nth] += share
 
     def _plans(self) -> Iterator[tuple[Edge, list[_Leg]]]:
-        """First edges with what is done one after the other."""
+        """Yield first edges, each with the stops of its plan in order."""
         edges = [edge for edge in self._expected if not self._theirs >> edge.thing & 1]
         if self._theirs:
             edges = [edge for edge in edges if edge.relation != HOLDS]
@@ -166,7 +169,7 @@ class HelpingPlans:
                     yield from self._both(one, other)
 
     def _best(self, edges: Sequence[Edge]) -> list[Edge]:
-        """The edges that are worth most by themselves."""
+        """Return the edges that are worth most by themselves."""
         values = {edge: self._value([self._take(edge), self._put(edge)]) for edge in edges}
         return sorted(values, key=lambda edge: (-values[edge], edge))[: self._weights.looked]
 
@@ -194,7 +197,7 @@ class HelpingPlans:
         return self._helper.arrivals(self._view, ((leg.node, leg.ticks) for leg in legs))
 
     def _value(self, legs: Sequence[_Leg]) -> float:
-        """V(s, e) of equation 7.1, summed over the edges of a plan; what is held already is away as it is."""
+        """Return V(s, e) of equation 7.1, summed over the edges of a plan; a thing in hand counts as away already."""
         weights, times = self._weights, self._times(legs)
         value, brought = -weights.cost * times[-1], set()
         for leg, time in zip(legs, times, strict=True):
@@ -206,7 +209,7 @@ class HelpingPlans:
         return value
 
     def _probability(self, edge: Edge, brought: set[int]) -> float:
-        """p(e): that it is needed beside what is brought before it, and what else is in the helper's hands."""
+        """Return p(e): the probability that an edge is needed, given the earlier edges and the things in hand."""
         space = self._helper.space
         row = space.row_at.get(edge)
         if row is None:

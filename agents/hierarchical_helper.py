@@ -14,31 +14,33 @@ from hearth.simulation.observation.views import Pose, View
 
 
 class Partner(Protocol):
-    """Who is helped, as far as a helper with the true goal may know its plan (thesis B.2): what it does now."""
+    """A partner whose current subgoal a helper with the true goal may know (thesis B.2)."""
 
     @property
     def subgoal(self) -> Subgoal | None:
-        """What it is doing; None if nothing."""
+        """Return its current subgoal; None if it has none."""
 
 
 HELPING = Habits(closes=False, gives=True)
-"""Habits of helpers: closing what one has opened is a habit of people (thesis B.1.1) that helps nobody."""
+"""Habits of helpers: to close opened things is a habit of people (thesis B.1.1) that helps no agent."""
 
 
 class Hierarchical(HumanLike):
-    """Pursues a goal that it is given beside somebody, to whom it leaves what that one is doing.
+    """An agent that pursues its goal next to a partner, and leaves the partner's current subgoal to the partner.
+
+    If no other subgoal is left and it sees nothing in the partner's hands, it pursues that subgoal, too.
 
     Where nothing else is left to be done and, as far as it can see, the partner's hands are empty, it does that, too.
     """
 
     def __init__(self, partner: Partner | None = None, habits: Habits = HELPING, *, timed: bool = False) -> None:
-        """A helper.
+        """Make a helper.
 
         Args:
             partner: whose subgoal it leaves alone. The thesis gives a helper with the true goal its partner's plan;
                 without one, as with a goal that was inferred or is random, it leaves nothing.
             habits: of planning.
-            timed: it leaves to the partner only what the partner reaches first, as far as it knows.
+            timed: it leaves to the partner only the things that the partner reaches first, as far as it knows.
         """
         super().__init__(habits)
         self.partner = partner
@@ -50,17 +52,17 @@ class Hierarchical(HumanLike):
         self._other: Pose | None = None
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of its plan, now that it has seen where the partner is."""
+        """Return the first instruction of its plan, now that it has seen where the partner is."""
         self._note_other(observation)
         return super().act(observation, legal)
 
     def _note_other(self, view: View) -> None:
-        """Return where the other one is: as last seen; in any other room, if it is not where it was."""
+        """Update the place of the other agent: as last seen; in any other room, if it is no longer there."""
         self._other = view.others[-1] if view.others else self._other
         note_others(self.belief, view, self.chooser)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
-        """The subgoals but those of its partner; those too, if there are no others."""
+        """Return the subgoals but those of its partner; those too, if there are no others."""
         mine = super().available(view, open_now, missing)
         theirs = self.partner.subgoal if self.partner else None
         if theirs is None or (view.world.agents[view.agent].held and mine is not open_now):
@@ -75,8 +77,9 @@ class Hierarchical(HumanLike):
         return mine.part == theirs.part and missing[mine.part][0] < 2
 
     def _left_to_partner(self, view: View, theirs: Subgoal) -> bool:
-        """Return whether the partner is at the thing of its subgoal before oneself; it is if it has it, or if one knows
-        neither where the partner nor where the thing is.
+        """Return whether the partner reaches the thing of its subgoal before this agent.
+
+        It does if it has the thing, or if neither the partner's place nor the thing's is known.
         """
         place, other = self.belief.where.get(theirs.thing), self._other
         if place is None or other is None or not self.belief.known >> theirs.thing & 1:

@@ -1,7 +1,7 @@
 """A human-like agent with faults: less than rational, forgetful, untidy, mistaken, changing its mind, distracted.
 
-Who gives the rates decides what for: `human_population` has people to be helped. Demonstrations have errands of their
-own, which depend on a challenge's goals (`challenges/demonstrator.py`).
+The caller gives the rates, and with them the purpose: `human_population` has people to be helped. Demonstrations have
+errands of their own, which depend on a challenge's goals (`challenges/demonstrator.py`).
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import CLOSED
 
 MOST_TICKS = 20
-"""Ticks after which an agent gives up what is not for its goal."""
+"""Ticks after which an agent gives up an errand."""
 
 ERRANDS = replace(PLAIN, closes=False)
-"""Habits while it does that: what it opens it leaves open."""
+"""Habits during an errand: the agent leaves open the things that it opens."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Faults:
 
 
 class Faulty(HumanLike):
-    """The human-like agent with faults; of none, it does what that one does."""
+    """The human-like agent with faults; without faults, it acts as the human-like agent."""
 
     def __init__(self, faults: Faults, habits: Habits = PLAIN) -> None:
         super().__init__(habits)
@@ -82,7 +82,7 @@ class Faulty(HumanLike):
         self._seed = seed
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of its plan, or of what it does instead."""
+        """Return the first instruction of its plan, or the instruction that a fault puts in its place."""
         self._forget(observation)
         if self._happens(self.faults.change_of_mind):
             self._turn()
@@ -105,7 +105,7 @@ class Faulty(HumanLike):
         return subgoals[self.chooser.choices(list(values), weights)[0]]
 
     def _happens(self, probability: float) -> bool:
-        """Return whether something happens now; what never does draws nothing."""
+        """Return whether an event of some probability happens now; probability 0 draws no random number."""
         return probability > 0 and self.chooser.random() < probability
 
     def _forget(self, view: View) -> None:
@@ -120,7 +120,7 @@ class Faulty(HumanLike):
             self.subgoal = None
 
     def _tempted(self, view: View, step: Step | None) -> Literal[Name] | None:
-        """What it brings about instead of an instruction, by ids; None if it goes on."""
+        """Return the literal, by ids, that it makes true instead of an instruction; None if it goes on."""
         home = view.world.home
         me = view.world.agents[view.agent]
         places = list(indices(home.properties["SURFACES"] & home.furniture & view.mask))

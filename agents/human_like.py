@@ -24,14 +24,14 @@ from hearth.simulation.world.states import CLOSED, OPEN
 
 @dataclass(frozen=True, slots=True)
 class Habits:
-    """How a human-like agent decides.
+    """Settings for the decisions of a human-like agent.
 
     Attributes:
         search: settings of the tree search.
-        closes: whether it closes what it opened, once nothing wanted is left there.
+        closes: whether it closes the containers that it opened, once no wanted thing is left there.
         looks_in: the containers in which it looks first (see `belief.Extent`); in the thesis any.
         doubt: ticks that a subgoal counts more if its thing was not seen.
-        gives: it hands over what another character is to hold.
+        gives: it hands over the things that another character is to hold.
         sees_all: it knows the whole world as it is (the oracles of 6.5).
     """
 
@@ -47,10 +47,10 @@ PLAIN = Habits()
 
 
 class HumanLike:
-    """Does what brings its goal about, as far as it knows where things are.
+    """An agent that brings its goal about by its beliefs about the places of things.
 
     Attributes:
-        subgoal: what it is doing now; None before its first tick, and when nothing is left to be done.
+        subgoal: its current subgoal; None before its first tick, and when none is left.
     """
 
     def __init__(self, habits: Habits = PLAIN) -> None:
@@ -71,7 +71,7 @@ class HumanLike:
         self._blocked: set[Subgoal] = set()
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of its plan."""
+        """Return the first instruction of its plan."""
         everything = observation.world.home.everything
         self.belief.observe(replace(observation, mask=everything) if self.habits.sees_all else observation)
         self._note_opened(observation)
@@ -107,7 +107,7 @@ class HumanLike:
             self.subgoal = self.choose(view, subgoals, missing)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
-        """The subgoals among which it chooses: those whose things it holds, before all others."""
+        """Return the subgoals among which it chooses: those whose things it holds, before all others."""
         held = view.world.agents[view.agent].held
         return [each for each in open_now if each.target >= 0 and held >> each.thing & 1] or open_now
 
@@ -118,7 +118,7 @@ class HumanLike:
         return subgoals[self.search(view, subgoals, missing).best]
 
     def search(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Tree:
-        """The tree over some subgoals."""
+        """Return the tree over some subgoals."""
         needed = {part: number for part, (number, _) in missing.items()}
         parts = [each.part for each in subgoals]
 
@@ -150,7 +150,7 @@ class HumanLike:
         return view.me.last is not None and view.me.last.failure is not None
 
     def _needed(self, missing: Missing, held: int) -> int:
-        """The things that could still count for a missing part, and what it holds because it is to hold it."""
+        """Return the things that could still count for a missing part, and those in its hands that it is to hold."""
         found = 0
         for wanted in self.aims.wanted:
             if wanted.part in missing:
@@ -160,22 +160,23 @@ class HumanLike:
         return found & self.aims.things
 
     def _spare(self, view: View, needed: int) -> tuple[int, ...]:
-        """What it holds and would put down first, if it needs a hand: what is not needed, then what is not its subgoal
-        now.
+        """Return the things that it would put down first if it needs a hand.
+
+        Things that are not needed come first, then those that are not of its current subgoal.
         """
         pursued = -1 if self.subgoal is None else self.subgoal.thing
         others = [i for i in rows.held_indices(view.world.agents[view.agent]) if i != pursued]
         return tuple(sorted(others, key=lambda i: bool(needed >> i & 1)))
 
     def _clearing(self, search: Regression, needed: int) -> Step | None:
-        """Put something down, if both hands are full of what is not needed."""
+        """Put a thing down, if both hands are full of things that are not needed."""
         me = search.me
         if not (me.right and me.left) or me.held & needed or not search.spare:
             return None
         return search.first(Literal(HANDS[0], (self.me, search.spare[0]), negated=True))
 
     def _note_opened(self, view: View) -> None:
-        """Remember what it opened; forget what is closed again, and doors, which it needs open."""
+        """Remember the containers that it opened; forget closed ones, and doors, which it needs open."""
         last, home = view.me.last, view.world.home
         if last is not None and last.failure is None:
             instruction = last.instruction
@@ -184,7 +185,7 @@ class HumanLike:
         self.opened &= self.belief.states[OPEN] & ~home.doors
 
     def _closing(self, search: Regression, step: Step | None, open_now: Sequence[Subgoal], needed: int) -> Step | None:
-        """Close what it opened before it walks away, if nothing wanted is left there and nothing more is to go in."""
+        """Close an opened container before it walks away, if no wanted thing is left there and none is to go in."""
         if not self.habits.closes or not self.opened or not self._leaves(search, step):
             return None
         where = self.belief.where
@@ -194,5 +195,5 @@ class HumanLike:
         return search.first(Literal("CLOSED", (container,))) if container >= 0 else None
 
     def _leaves(self, search: Regression, step: Step | None) -> bool:
-        """Return whether an instruction ends what there was to do here."""
+        """Return whether an instruction ends its work at this place."""
         return step is None or step.action in search.home.knowledge.group("goes")

@@ -18,18 +18,18 @@ TURNS = (5, 20)
 
 
 class Slow(Faulty):
-    """Does something in every other tick only."""
+    """An agent that acts in every other tick only."""
 
     def __init__(self) -> None:
         super().__init__(Faults())
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """As the human-like agent, or nothing."""
+        """Return the human-like agent's instruction, or none."""
         return None if observation.tick % 2 else super().act(observation, legal)
 
 
 class NearSighted(Faulty):
-    """Sees only what is around it, where all others see the whole home, and forgets where things were."""
+    """A person that sees only the area around it, where all others see the whole home, and forgets places of things."""
 
     near_sighted = True
 
@@ -38,7 +38,7 @@ class NearSighted(Faulty):
 
 
 class ChangesGoal(Faulty):
-    """Begins with another goal than the task's, gives it up in the middle, and leaves what it did as it is.
+    """A person that begins with another goal than the task's, gives it up in the middle, and leaves its results.
 
     Args:
         goals: that there may be in a home, of which the first is drawn.
@@ -59,7 +59,7 @@ class ChangesGoal(Faulty):
             super().reset(observation, first, seed)
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """As the human-like agent, for the goal that it has by now."""
+        """Return the human-like agent's instruction for the present goal."""
         if self._turn_at and observation.tick >= self._turn_at:
             self._turn_at, opened = 0, self.opened
             super().reset(observation, self._own, self._seed)
@@ -68,7 +68,7 @@ class ChangesGoal(Faulty):
 
 
 def _is_other(first: Goal, own: Goal, home: Home) -> bool:
-    """Return whether a goal shares no predicate with another, and can be reached with what there is."""
+    """Return whether a goal shares no predicate with another, and a home has the things to reach it."""
     return not {each for each, _ in first} & {each for each, _ in own} and all(
         _number(each, home) >= wanted for each, wanted in first
     )

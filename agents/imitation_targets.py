@@ -16,7 +16,7 @@ from hearth.simulation.observation.views import View
 
 
 class ShownChoices(Hierarchical):
-    """The hierarchical planner, which notes what it chose and what a policy would have been shown.
+    """The hierarchical planner, which records its choices and the inputs that a policy would have had.
 
     Attributes:
         choices: of subgoals.
@@ -35,7 +35,7 @@ class ShownChoices(Hierarchical):
         self.spells: list[tuple[int, list[Choice]]] = []
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The planner's instruction."""
+        """Return the planner's instruction."""
         self.reader.note(observation)
         step = super().act(observation, legal)
         if step is not None and self.subgoal is not None and self.subgoal.part in self.reader.pairs:
@@ -51,7 +51,7 @@ class ShownChoices(Hierarchical):
         return self.spells[-1][1]
 
     def choose(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Subgoal | None:
-        """The planner's subgoal."""
+        """Return the planner's subgoal."""
         found = super().choose(view, subgoals, missing)
         pair = self.reader.pairs.get(found.part) if found is not None else None
         if pair is not None:

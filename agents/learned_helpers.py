@@ -26,7 +26,7 @@ PATIENCE = 40
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What was chosen, for learning from it: the tick, what was shown, and the choice."""
+    """A choice to learn from: the tick, the policy's input, and the choice."""
 
     tick: int
     scene: Scene
@@ -36,8 +36,8 @@ class Choice:
 class Hybrid(HumanLike):
     """A policy chooses the class of things and the place of the next subgoal; regression does the rest.
 
-    Of the things of the class it takes what it holds, else the one that costs least by belief, where the thesis takes
-    any. If nothing of what the policy chose is missing by belief, it waits for a tick and asks again.
+    Of the things of the class it takes one that it holds, else the one that costs least by belief; the thesis takes
+    any. If no part of the policy's choice is missing by belief, it waits for a tick and asks again.
 
     Attributes:
         choices: of subgoals, since the episode began.
@@ -60,17 +60,17 @@ class Hybrid(HumanLike):
         self._state: Any = None
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction of the plan for its subgoal."""
+        """Return the first instruction of the plan for its subgoal."""
         self.reader.note(observation)
         note_others(self.belief, observation, self.chooser)
         return super().act(observation, legal)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
-        """All subgoals: the policy chooses."""
+        """Return all subgoals: the policy chooses."""
         return open_now
 
     def choose(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Subgoal | None:
-        """One of what the policy chose; None if nothing of that is missing."""
+        """Return a subgoal that the policy chose; None if no such subgoal is missing."""
         if not subgoals:
             return None
         scene = self.reader.subgoals(view, missing).scene
@@ -82,7 +82,7 @@ class Hybrid(HumanLike):
 
 
 class Learned(Hybrid):
-    """HRL: what to do for a subgoal is chosen by a second policy, action by action.
+    """HRL: a second policy chooses the actions for a subgoal, one by one.
 
     Attributes:
         actions: its choices since the episode began.
@@ -103,7 +103,7 @@ class Learned(Hybrid):
         self._since = 0
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """What the second policy chooses for the subgoal."""
+        """Return the second policy's action for the subgoal."""
         self.reader.note(observation)
         note_others(self.belief, observation, self.chooser)
         self.belief.observe(observation)

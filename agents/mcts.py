@@ -62,7 +62,7 @@ class Tree:
             needed: how many subgoals each part needs.
             cost: of a subgoal from a cell.
             cell: where the agent is.
-            chooser: of rollouts and of what is tried first.
+            chooser: of rollouts and of the order of first trials.
             settings: of the search.
         """
         self._parts, self._needed, self._cost, self._chooser = parts, needed, _remembered(cost), chooser
@@ -76,7 +76,7 @@ class Tree:
 
     @property
     def best(self) -> int:
-        """The number of the subgoal that was tried most often; of several the one of the highest value."""
+        """Return the number of the subgoal that was tried most often; of several the one of the highest value."""
         return max(self.visits, key=lambda i: (self.visits[i], self.values[i]))
 
     def _worst(self, cell: int) -> float:
@@ -121,7 +121,7 @@ class Tree:
         return [i for i, part in enumerate(self._parts) if needed[part] > 0 and i not in used]
 
     def _selected(self, node: _Node) -> int:
-        """The child of the highest upper bound; one that was never tried goes first."""
+        """Return the child of the highest upper bound; one that was never tried goes first."""
         untried = [i for i, child in node.children.items() if not child.visits]
         if untried:
             return untried[int(self._chooser.random() * len(untried))]

@@ -23,7 +23,7 @@ class NetworkProposals:
         Args:
             space: the goals, all that there are.
             model: a checkpoint's folder, or the name of one that comes with Hearth.
-            watched: index of who pursues a goal.
+            watched: index of the agent that pursues a goal.
             start: where things are at the start, as far as is known.
 
         Raises:
@@ -40,7 +40,7 @@ class NetworkProposals:
         self._known: dict[Counts, np.ndarray] = {}
 
     def probabilities(self, places: Places) -> np.ndarray:
-        """(P, c): how probably each predicate is wanted 0, 1, ... times."""
+        """Return (P, c): how probably each predicate is wanted 0, 1, ... times."""
         state = self._changes.since(places)
         if state not in self._known:
             self._known = {state: self._network.probabilities(state)}
@@ -53,6 +53,6 @@ class NetworkProposals:
         return list(zip(*columns, strict=True))
 
     def likeliest(self, places: Places) -> Counts:
-        """The most probable goal."""
+        """Return the most probable goal."""
         found: Counts = tuple(self.probabilities(places).argmax(axis=1).tolist())
         return found

@@ -16,18 +16,20 @@ from hearth.schemas.goals import Goal
 from hearth.simulation.observation.views import View
 
 Source = Choice["exact", "uniform", "likeliest", "gpn"]
-"""Where particles come from: the exact posterior, all goals with equal probability, the likeliest goal alone, or the
-goal proposal network, which needs the extra `models`.
+"""The source of particles.
+
+The exact posterior, all goals with equal probability, the likeliest goal alone, or the goal proposal network, which
+needs the extra `models`.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How NOPA helps.
+    """Settings of NOPA.
 
     Attributes:
         proposals: of goals.
-        model: the network that proposes them, where one does: a checkpoint's folder, or a name of `model list`.
+        model: the network that proposes them, if one does: a checkpoint's folder, or a name of `model list`.
         particles: K, how many goals are proposed at once.
         horizon: T_prop, ticks for which a plan is predicted and after which goals are proposed anew.
         weights: of equation 7.1.
@@ -64,7 +66,7 @@ class Nopa(OnlineHelper):
         self._age = 0.0
 
     def choose(self, view: View) -> Edge | None:
-        """The first edge of the best plan; None where none is worth more than waiting."""
+        """Return the first edge of the best plan; None where none is worth more than waiting."""
         planner = self.planner()
         self._reject(view)
         if not self._particles or self._age >= self.settings.horizon:
@@ -108,13 +110,13 @@ class Nopa(OnlineHelper):
 
     @property
     def proposed(self) -> dict[Counts, float]:
-        """The goals of its particles, with their shares."""
+        """Return the goals of its particles, with their shares."""
         shares: defaultdict[Counts, float] = defaultdict(float)
         for goal, _ in self._particles:
             shares[goal] += 1 / len(self._particles)
         return dict(shares)
 
     def _weighed(self, planner: Planner) -> list[tuple[float, Counts, Prospect]]:
-        """The goals of the particles with their shares and what is predicted under each from now on."""
+        """Return the goals of the particles, with their shares and the prediction under each from now on."""
         horizon = self.settings.horizon
         return [(share, goal, planner.prospect(goal, horizon)) for goal, share in self.proposed.items()]

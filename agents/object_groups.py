@@ -1,4 +1,4 @@
-"""What two people who fetch things find in a home: heaps of equal things, and the ticks of ways between them."""
+"""A home as two agents that fetch things find it: heaps of equal things, and the ticks of ways between them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import Pose
 
 SHORT = 1.2
-"""Metres before the end of a way from which one can already reach what is there, as measured in episodes."""
+"""Meters before the end of a way from which an agent can already reach the node there, as measured in episodes."""
 
 FAR = 1_000
-"""Ticks to what can't be reached."""
+"""Ticks to a place that can't be reached."""
 
 MAIN, HELPER = 0, 1
 
@@ -27,7 +27,7 @@ class Heap:
 
     Attributes:
         rows: the predicates for which they would count elsewhere.
-        node: index of what they are on or in; -1 in somebody's hands.
+        node: index of the node that they are on or in; -1 in the hands of a character.
         inside: whether they are in it.
         things: their numbers in the goal space.
         holder: `MAIN` or `HELPER` who holds them; -1 if nobody does.
@@ -47,8 +47,8 @@ class Situation:
         space: the goals.
         heaps: all things that goals could want elsewhere.
         starts: the cells in which both stand.
-        shut: the set of what is closed.
-        giving: ticks until the helper has handed over what it holds.
+        shut: the set of closed nodes.
+        giving: ticks until the helper has handed over the things in its hands.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class Situation:
             hands: indices of the nodes of the one who is helped, and of the helper.
             poses: of the one who is helped, and of the helper.
             ways: of both.
-            giving: ticks until the helper has handed over what it holds.
+            giving: ticks until the helper has handed over the things in its hands.
         """
         self.space, self.giving = space, giving
         self._ways = ways
@@ -98,12 +98,12 @@ class Situation:
         return self._legs[key]
 
     def after(self, who: int, cell: int, node: int, ticks: float) -> int:
-        """The cell at which one is some ticks after setting out for something."""
+        """Return the cell of an agent some ticks after setting out for a node."""
         return self._ways[who].after(cell, node, ticks * self._ways[who].stride)
 
     @cached_property
     def targets(self) -> tuple[tuple[int, bool], ...]:
-        """Of each row the furniture, and whether things go inside it."""
+        """Return the furniture of each row, and whether things go inside it."""
         pairs = zip(self.space.targets.tolist(), self.space.relations, strict=True)
         return tuple((node, name == "INSIDE") for node, name in pairs)
 

@@ -1,4 +1,4 @@
-"""Helping somebody whose goal is unknown (thesis chapter 7): watch, infer, choose a helping subgoal, act on it."""
+"""Helping a partner with an unknown goal (thesis chapter 7): watch, infer, choose a helping subgoal, act on it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from hearth.simulation.world.bits import mask_of
 from hearth.simulation.world.states import CLOSED
 
 CROOKED = 1.3
-"""How much longer a way is than a straight line."""
+"""Ratio of the length of a way to the straight line."""
 
 
 MOST_PROPOSED = 100
@@ -33,16 +33,16 @@ MOST_PROPOSED = 100
 
 
 class OnlineHelper(ABC):
-    """A helper that sees everything and infers what is wanted; `choose` says how it helps.
+    """A helper that sees everything and infers the partner's goal; `choose` gives its way of helping.
 
     While its partner is out of view it waits.
 
     Attributes:
-        posterior: over all goals, by what was seen.
+        posterior: over all goals, given the observations.
         other: how its partner stands, as last seen; None before that.
         scene: where things are, as far as it knows.
         first_places: where it saw things first.
-        subgoal: what it is doing; None if it waits.
+        subgoal: its current subgoal; None if it waits.
     """
 
     def __init__(self, goals: GoalsIn, model: ActionModel = USUAL_MODEL) -> None:
@@ -66,7 +66,7 @@ class OnlineHelper(ABC):
         self._puts_down = False
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """The first instruction towards what helps most."""
+        """Return the first instruction towards the most helpful edge."""
         if not self.look(observation):
             return None
         self.subgoal = self.choose(observation)
@@ -75,7 +75,7 @@ class OnlineHelper(ABC):
         return self._first(Regression(observation, legal, self.belief, self._spare(observation)), self.subgoal)
 
     def look(self, view: View) -> bool:
-        """Take in what is seen now; whether its partner is."""
+        """Update the beliefs by an observation; return whether the partner is in view."""
         self.belief.observe(view)
         known, where = self.belief.known, self.belief.where
         for thing in self.space.things:
@@ -91,7 +91,7 @@ class OnlineHelper(ABC):
         return True
 
     def places(self, view: View) -> Places:
-        """Return where things are: as seen by who sees everything, else as believed."""
+        """Return the places of things: as observed by a helper that sees everything, else as believed."""
         if not self.home.everything & ~view.mask:
             return self.space.places(view.world)
         self.belief.observe(view)
@@ -103,13 +103,13 @@ class OnlineHelper(ABC):
 
     @property
     def proposed(self) -> dict[Counts, float]:
-        """The goals that it reckons with, with their probabilities."""
+        """Return the goals that it reckons with, with their probabilities."""
         likely = self.posterior.likeliest(MOST_PROPOSED).tolist()
         return {self.space.wanted[goal]: self.posterior.probability(goal) for goal in likely}
 
     @abstractmethod
     def choose(self, view: View) -> Edge | None:
-        """What to help with now; None to wait."""
+        """Return the edge to help with now; None to wait."""
 
     def _first(self, search: Regression, subgoal: Edge) -> Step | None:
         relation, thing, target = subgoal
@@ -120,9 +120,9 @@ class OnlineHelper(ABC):
         return search.first(Literal("ON" if relation == HOLDS else relation, (thing, target)))
 
     def _clearing(self, search: Regression, subgoal: Edge) -> Step | None:
-        """Put something down, if both hands are full and what it has come to is closed.
+        """Put a thing down, if both hands are full and the node that it has come to is closed.
 
-        Until that is done it does not go back to what is closed.
+        Until then it does not go back to the closed node.
         """
         target = subgoal.target
         shut = subgoal.relation == "INSIDE" and bool(self.scene.closed >> target & 1)
@@ -137,17 +137,17 @@ class OnlineHelper(ABC):
         return tuple(i for i in rows.held_indices(view.world.agents[view.agent]) if i != pursued)
 
     def held(self, view: View) -> tuple[int, ...]:
-        """What it holds, of the things that goals are about."""
+        """Return the things in its hands that goals are about."""
         return tuple(i for i in rows.held_indices(view.world.agents[view.agent]) if i in self.space.number)
 
     def planner(self) -> Planner:
-        """Of the partner's plans, from where it was last seen."""
+        """Return a planner of the partner's plans, from its last observed place."""
         assert self.other is not None
         return Planner(self.space, self.scene, self.partner, self.other, self.posterior.distances)
 
     @property
     def theirs(self) -> int:
-        """The set of what its partner holds, of the things that goals are about."""
+        """Return the set of things in its partner's hands that goals are about."""
         return mask_of(thing for thing in self.space.things if self.belief.where[thing] == (HOLDS, self.partner))
 
     def ticks(self, view: View, stops: Iterable[tuple[int, int]]) -> float:
@@ -179,9 +179,9 @@ class OnlineHelper(ABC):
         return CROOKED * math.dist(mine.point, theirs.point)
 
     def taking(self, place: Place) -> tuple[int, int]:
-        """The stop at which something is taken: where, and the ticks of opening and grabbing."""
+        """Return the stop at which something is taken: where, and the ticks of opening and grabbing."""
         return place.node, 1 + bool(place.relation == "INSIDE" and self.scene.closed >> place.node & 1)
 
     def putting(self, relation: str, target: int) -> tuple[int, int]:
-        """The stop at which something is put."""
+        """Return the stop at which something is put."""
         return target, 1 + bool(relation == "INSIDE" and self.scene.closed >> target & 1)

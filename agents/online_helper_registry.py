@@ -22,7 +22,7 @@ class OnlineKind:
 
     Attributes:
         make: makes the helper of the goals that there may be.
-        about: what it is, for tables.
+        about: a description, for tables.
         network: the goal proposal network that it asks, which needs the extra `models`; "" for none.
         talks: whether it says something, which challenges allow by `messages`.
     """
@@ -70,4 +70,4 @@ ONLINE: dict[str, OnlineKind] = {
     "likeliest": _nopa("planner for the likeliest goal", Settings(proposals="likeliest", horizon=1.0)),
     "empowerment": OnlineKind(Empowerment, "what most goals have in their plans"),
 }
-"""How to help somebody whose goal one does not know."""
+"""The helpers for a partner whose goal is unknown, by name."""

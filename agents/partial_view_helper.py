@@ -1,7 +1,7 @@
-"""A helper that sees only what is around it: it goes to watch its partner while that is worth more than fetching.
+"""A helper with a partial view: it goes to watch its partner while that is worth more than fetching.
 
-Beyond the thesis, which names partial observation as open (7.6). Watching has a price: the way to where the partner is
-believed to be, and the ticks in which nothing is fetched. What somebody has brought unseen is evidence, too.
+Beyond the thesis, which names partial observation as open (7.6). Watching has a price: the way to the partner's
+believed place, and the ticks in which nothing is fetched. A thing that the partner has brought unseen is evidence, too.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ NEAR = "CLOSE"
 
 @dataclass(frozen=True, slots=True)
 class Watching(Settings):
-    """How it helps.
+    """Settings of the helper.
 
     Attributes:
         seeks: it goes to where it sees its partner; if not, it watches only who is in view anyway.
@@ -40,11 +40,11 @@ class Watching(Settings):
 USUAL = Watching()
 
 SEARCHING = ActionModel(searching=0.1)
-"""Of a partner that does not see everything either."""
+"""Model of a partner that does not see everything either."""
 
 
 class Watchful(ExpectedTime):
-    """Helps with what it believes, and looks for its partner where that is expected to save time."""
+    """A helper that acts by its beliefs, and looks for its partner where that is expected to save time."""
 
     def __init__(self, goals: GoalsIn, settings: Watching = USUAL, model: ActionModel = SEARCHING) -> None:
         super().__init__(goals, settings, model)
@@ -59,7 +59,7 @@ class Watchful(ExpectedTime):
         self.other = Pose(1 - observation.agent, node, None, "standing")
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The first instruction towards what helps most, which may be to see more."""
+        """Return the first instruction towards the most helpful edge, which may be to see more."""
         places = dict(zip(self.space.things, self.posterior.places, strict=False))
         before = {thing: place for thing, place in places.items() if self.belief.known >> thing & 1}
         seen = self.look(observation)
@@ -78,7 +78,7 @@ class Watchful(ExpectedTime):
         return self._first(search, self.subgoal)
 
     def _notice(self, before: dict[int, Place]) -> None:
-        """Weigh the goals by what the partner brought while it was out of view.
+        """Weigh the goals by the things that the partner brought while it was out of view.
 
         Args:
             before: where things were that it had seen.
@@ -92,7 +92,7 @@ class Watchful(ExpectedTime):
                     self.posterior.notice(row)
 
     def _waiting(self, view: View) -> tuple[float, Edge | None]:
-        """As one who sees its partner, or, after the way there, once it does."""
+        """Return the expected ticks as for a helper that sees its partner, or, after the way there, once it does."""
         if view.others or self._forecasts[0][0] >= CERTAIN:
             return super()._waiting(view)
         return self._expected((), self.settings.patience + self._away(view)), self._seeking()
@@ -107,7 +107,7 @@ class Watchful(ExpectedTime):
         return self.distances.ticks(metres)
 
     def _believed(self, thing: int) -> Place:
-        """Return where it believes a thing to be; what it has not seen is not yet where a goal may want it."""
+        """Return the believed place of a thing; an unseen thing is not yet at a place that a goal wants."""
         place = super()._believed(thing)
         if self.belief.known >> thing & 1:
             return place

@@ -1,4 +1,4 @@
-"""What somebody will do next if they have a certain goal: a plan, and when each edge of the graph comes about.
+"""The future actions of an agent with a certain goal: a plan, and the time at which each edge of the graph comes about.
 
 The intermediate states of NOPA's particles (thesis 7.3.1): the plan is the nearest thing first, to a horizon.
 """
@@ -21,7 +21,7 @@ class Prospect:
     """A predicted plan.
 
     Attributes:
-        nodes: what its walks, openings, grabs and puts until the horizon are about.
+        nodes: the nodes of its walks, openings, grabs and puts until the horizon.
         edges: edge -> ticks until it comes about, of those until the horizon.
         later: edges of the goal that come about after it.
     """
@@ -39,7 +39,7 @@ class _Plan:
         lacking: row of a predicate -> how many it still lacks.
         things: numbers of the things that are left.
         cell: where the one who acts is then.
-        opened: what that one has opened.
+        opened: the containers that the agent has opened.
     """
 
     lacking: dict[int, int]
@@ -59,14 +59,14 @@ class Planner:
     """
 
     def __init__(self, space: GoalSpace, scene: Scene, me: int, other: Pose, distances: Distances) -> None:
-        """Ask about somebody.
+        """Make a planner for an agent.
 
         Args:
             space: the goals.
             scene: where things are.
-            me: index of that one's node.
+            me: index of the agent's node.
             other: how that one stands.
-            distances: of that one's ways.
+            other: the agent's pose.
         """
         self.space = space
         self._closed, self._distances, self._me = scene.closed, distances, me
@@ -79,7 +79,7 @@ class Planner:
         self._known: dict[tuple[int, int], tuple[float, int]] = {}
 
     def prospect(self, goal: Counts, horizon: float) -> Prospect:
-        """The plan for a goal until a number of ticks."""
+        """Return the plan for a goal until a number of ticks."""
         pairs = enumerate(zip(goal, self._found, strict=True))
         lacking = {row: wanted - found for row, (wanted, found) in pairs if wanted > found}
         things = np.flatnonzero(self._away[list(lacking)].any(axis=0)).tolist()
@@ -92,7 +92,7 @@ class Planner:
         return Prospect(frozenset(plan.nodes), plan.edges, tuple(self._later(plan)))
 
     def _ways(self, plan: _Plan) -> Iterator[tuple[float, int, int]]:
-        """What could be fetched next: ticks, number of the thing, row of the predicate."""
+        """Yield the things that could be fetched next: ticks, number of the thing, row of the predicate."""
         for row, number in plan.lacking.items():
             for thing in plan.things if number else ():
                 if self._away[row, thing] and thing not in self._taken:

@@ -1,4 +1,4 @@
-"""What a learned policy is shown of a view, and what its choices mean (thesis B.3.4, B.3.5)."""
+"""The input of a learned policy from a view, and the meaning of its choices (thesis B.3.4, B.3.5)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Moment:
 
 
 def words_of(wanted: Wanted, home: Home) -> tuple[str, str]:
-    """The class of things of a part of a goal, and the class of what they are brought to."""
+    """Return the class of things of a part of a goal, and the class of their target."""
     literal = wanted.literal
     if wanted.candidates.by_target:
         return str(literal.target), AGENT
@@ -44,7 +44,9 @@ def words_of(wanted: Wanted, home: Home) -> tuple[str, str]:
 
 
 class SceneReader:
-    """The scenes of one agent in one episode. It remembers which rooms it was in and what it has looked into.
+    """The scenes of one agent in one episode.
+
+    They record the rooms that it was in and the containers it has looked into.
 
     Attributes:
         pairs: the numbers of each part of the goal; of none whose words the policy does not know.
@@ -66,18 +68,18 @@ class SceneReader:
             self.shown |= targets
 
     def note(self, view: View) -> None:
-        """Take in which room it is in and what stands open there."""
+        """Record the agent's room and the open containers in view."""
         opened = view.world.states[STATE_ID["OPEN"]] & self.fixed & view.mask
         room = rows.agent_room(view.world, view.world.agents[view.agent])
         self.looked |= opened | (1 << room if room >= 0 else 0)
 
     def subgoals(self, view: View, missing: Missing) -> Moment:
-        """What is shown before a subgoal is chosen: all parts of the goal that are missing by belief."""
+        """Return the policy's input for choosing a subgoal: all parts of the goal that are missing by belief."""
         counts = {part: number for part, (number, _) in missing.items() if part in self.pairs}
         return self._moment(view, counts)
 
     def actions(self, view: View, subgoal: Subgoal, legal: Legal) -> Moment:
-        """What is shown before an action is chosen: a subgoal, and what could be done."""
+        """Return the policy's input for choosing an action: a subgoal, and the possible actions."""
         moment = self._moment(view, {subgoal.part: 1})
         masks = self._masks(view, subgoal, legal)
         able = tuple(tuple(bool(mask >> i & 1) for i in moment.nodes) for mask in masks)
@@ -111,8 +113,9 @@ class SceneReader:
         return Moment(Scene(classes, tuple(features), wanted), nodes)
 
     def _masks(self, view: View, subgoal: Subgoal, legal: Legal) -> list[int]:
-        """The nodes with which each kind of action could be done; what is put is the subgoal's kind of thing, if it is
-        held.
+        """Return the nodes with which each kind of action is possible.
+
+        Only the subgoal's kind of thing is put, if held.
         """
         found = [0] * 5
         thing = self._put(view, subgoal)
@@ -125,12 +128,12 @@ class SceneReader:
         return found
 
     def _put(self, view: View, subgoal: Subgoal) -> int:
-        """What it would put down: of what it holds a thing of the subgoal's kind, else any; -1 if it holds nothing."""
+        """Return the thing that it would put down: one of the subgoal's kind, else any; -1 if it holds nothing."""
         held = view.world.agents[view.agent].held
         return lowest(held & self.counted.get(subgoal.part, 0) or held) if held else -1
 
     def step(self, view: View, subgoal: Subgoal, legal: Legal, moment: Moment, choice: Pair) -> Step | None:
-        """The instruction that a choice stands for; None where it can't be done."""
+        """Return the instruction that a choice stands for; None where it can't be done."""
         kind, position = choice
         if not moment.scene.legal[kind][position]:
             return None
@@ -145,7 +148,7 @@ class SceneReader:
         return None
 
     def choice(self, step: Step, moment: Moment) -> Pair | None:
-        """The inverse: what somebody else's instruction is as a choice; None where no choice stands for it."""
+        """Return another agent's instruction as a choice, the inverse; None where no choice stands for it."""
         kind = _kinds(self.home.knowledge).get(step.action)
         if kind is None or not step.objects:
             return None
@@ -162,7 +165,7 @@ PUT = 4
 
 @lru_cache(maxsize=8)
 def _kinds(knowledge: Knowledge) -> dict[str, int]:
-    """The kind of each action that a policy may choose (`models.helping.policy_inputs.KINDS`)."""
+    """Return the kind of each action that a policy may choose (`models.helping.policy_inputs.KINDS`)."""
     found: dict[str, int] = {}
     for name in knowledge.group("played"):
         if name in knowledge.group("goes"):
@@ -183,7 +186,7 @@ def _class_number(name: str, knowledge: Knowledge) -> int:
 
 
 def vocabulary(goals: Sequence[tuple[Goal, Home, int]]) -> Words:
-    """The words of goals in homes, with the index of who pursues them."""
+    """Return the words of goals in homes, with the index of the agent that pursues each."""
     things: dict[str, None] = {}
     places: dict[str, None] = {}
     for goal, home, me in goals:

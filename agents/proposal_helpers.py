@@ -16,7 +16,7 @@ from hearth.simulation.observation.views import View
 
 
 class ProposedPlans(OnlineHelper):
-    """Does the first action that the hierarchical planner most often chooses for the goals that are proposed now."""
+    """A helper that takes the most frequent first action of the hierarchical planner over the proposed goals."""
 
     def __init__(self, goals: GoalsIn, model: str = "goal-proposals", particles: int = 1) -> None:
         """Choose how.
@@ -38,7 +38,7 @@ class ProposedPlans(OnlineHelper):
         self._shares: dict[Counts, float] = {}
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """The instruction of most plans; of equally many, the first in order."""
+        """Return the instruction of most plans; of equally many, the first in order."""
         places = self.places(observation)
         goals = [self._network.likeliest(places)]
         if self._particles > 1:
@@ -60,7 +60,7 @@ class ProposedPlans(OnlineHelper):
 
     @property
     def proposed(self) -> dict[Counts, float]:
-        """The goals that were proposed, with their shares."""
+        """Return the goals that were proposed, with their shares."""
         return self._shares
 
     def choose(self, view: View) -> Edge | None:

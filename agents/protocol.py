@@ -11,7 +11,7 @@ from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
 
 Choice = Step | Message | None
-"""What an agent chooses in a tick."""
+"""An agent's choice in a tick."""
 
 
 class Resigned(Exception):  # noqa: N818 - nothing is wrong
@@ -19,25 +19,26 @@ class Resigned(Exception):  # noqa: N818 - nothing is wrong
 
 
 class Agent(Protocol):
-    """Whoever acts in an episode. It keeps its own generator, and learns of the world by observations alone.
+    """An agent in an episode. It keeps its own generator, and learns of the world by observations alone.
 
-    An observation holds the whole world, for speed; an agent reads of it what its mask shows, and what never changes:
-    rooms, furniture, doors, what things afford. `tests/agents/` scrambles what is unseen and expects the same choices.
+    An observation holds the whole world, for speed. An agent reads only the part in its mask, and the part that never
+    changes: rooms, furniture, doors, affordances. `tests/agents/` scrambles the unobserved part and expects the same
+    choices.
     """
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode.
 
         Args:
-            observation: what it sees before the first tick.
-            goal: what it is to reach; None for a helper that is not told.
+            observation: its observation before the first tick.
+            goal: the goal to reach; None for a helper that does not know it.
             seed: of all that it does at random.
         """
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """The instruction that it tries in this tick, or what it says instead; None to wait.
+        """Return the instruction that it tries in this tick, or its message instead; None to wait.
 
         Args:
-            observation: what it sees now, with what it and those it sees last tried.
-            legal: what it could do now, of the actions of the challenge.
+            observation: its current observation, with its own last attempt and those of the agents in view.
+            legal: its possible instructions now, of the actions of the challenge.
         """

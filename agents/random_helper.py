@@ -30,7 +30,7 @@ class RandomHelper:
         return None
 
     def _chosen(self, masks: tuple[int, ...]) -> list[int]:
-        """A node for each argument, no two the same; drawn until that is so."""
+        """Return a node for each argument, no two the same; drawn until that is so."""
         while True:
             chosen = [self.chooser.choice(list(indices(mask))) for mask in masks]
             if len(set(chosen)) == len(chosen):

@@ -1,8 +1,9 @@
 """Regression: from a literal that is to hold back to an instruction that can be done now (thesis B.1.1).
 
-The action table is asked which actions bring a literal about and what each needs first; what does not hold by belief of
-that is the next literal, until an action is legal. So for `INSIDE(plate, dishwasher)`: put it in, which needs it held,
-which needs it within reach and its container open, which needs that within reach, which needs a walk towards its room.
+The search asks the action table which actions bring a literal about and which conditions each needs first. A condition
+that does not hold by belief is the next literal, until an action is legal. So for `INSIDE(plate, dishwasher)`: put it
+in, which needs it held, which needs it within reach and its container open, which needs that within reach, which needs
+a walk towards its room.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, lowest
 
 ME, FIRST, SECOND = "a", "o", "s"
-"""The variables of the action table: who acts, and the objects."""
+"""The variables of the action table: the agent, and the objects."""
 
 DEEPEST = 8
 """Literals that stand for each other before a search is given up."""
@@ -39,7 +40,7 @@ class Regression:
     """The search in one tick.
 
     Attributes:
-        seen: what is in view.
+        seen: the set of nodes in view.
         spare: held things from the one to be put down first, should a hand be needed.
     """
 
@@ -54,7 +55,7 @@ class Regression:
         self.spare = spare
 
     def first(self, literal: Literal[int], above: tuple[Literal[int], ...] = ()) -> Step | None:
-        """The instruction of now by which a literal is to hold in the end; None where none is found."""
+        """Return the instruction of now by which a literal is to hold in the end; None where none is found."""
         if literal in above or len(above) >= DEEPEST:
             return None
         ways = list(self._ways(literal))
@@ -70,14 +71,14 @@ class Regression:
         return next((step for action, bound in ways if (step := self._prepared(action, bound, above))), None)
 
     def _prepared(self, action: Action, bound: Bound, above: tuple[Literal[int], ...]) -> Step | None:
-        """The instruction of now by which the first condition of an action that does not hold is to hold."""
+        """Return the instruction of now by which the first condition of an action that does not hold is to hold."""
         for condition in action.preconditions:
             if missing := self._missing(condition.formula, bound):
                 return next((step for each in missing if (step := self.first(each, above))), None)
         return None
 
     def _ways(self, literal: Literal[int]) -> Iterator[Way]:
-        """The actions that make a literal true, the plainest first, with what their variables stand for."""
+        """Yield the actions that make a literal true, the plainest first, with the values of their variables."""
         for action, terms in _making(self.home.knowledge, literal.name, len(literal.terms), literal.negated):
             bound = dict(zip(terms, literal.terms, strict=True))
             if bound.setdefault(ME, self.me.index) != self.me.index:
@@ -90,7 +91,7 @@ class Regression:
         return self._legal_step(action.name, *(bound[variable] for variable in _variables(action)))
 
     def _legal_step(self, name: str, *nodes: int) -> Step | None:
-        """The instruction, if it can be done now."""
+        """Return the instruction, if it can be done now."""
         masks = self.legal.masks.get(name)
         if masks is None or len(masks) != len(nodes):
             return None
@@ -100,7 +101,7 @@ class Regression:
         return Step(name, tuple(ObjectRef(home.classes[i], 0, home.ids[i]) for i in nodes), self.agent)
 
     def _towards(self, node: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A walk to a node, or to where it is believed to be, or what opens the way there."""
+        """Return a walk to a node, or to its believed place, or an instruction that opens the way there."""
         for name in self._moves():
             if (step := self._legal_step(name, node)) is not None:
                 return step
@@ -109,7 +110,7 @@ class Regression:
         return self._through(node, above) if self.home.rooms >> node & 1 else None
 
     def _through(self, room: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A closed door on the way to a room opened, or a walk to where more doors are seen, nearest first."""
+        """Return a closed door on the way to a room opened, or a walk to where more doors are seen, nearest first."""
         home, closed = self.home, self.seen & self.belief.states[STATE_ID["CLOSED"]]
         rooms = [room]
         for each in rooms:  # grows
@@ -123,12 +124,17 @@ class Regression:
         return next((step for i in others for name in self._moves() if (step := self._legal_step(name, i))), None)
 
     def _moves(self) -> tuple[str, ...]:
-        """The actions after which one is at, or nearer to, their object: by metres where those are allowed."""
+        """Return the actions after which the agent is at, or nearer to, their object.
+
+        By meters where those are allowed.
+        """
         return _moves(self.home.knowledge)
 
     def place(self, node: int) -> int:
-        """What something is believed to be on or in, and of what stays where it is the room; -1 of a room
-        and of a character of whom nothing is known."""
+        """Return the believed node that a thing is on or in, and the room of a fixed thing.
+
+        The answer is -1 for a room and for a character whose place is unknown.
+        """
         if node in self.belief.where:
             return self.belief.where[node].node
         if (self.home.rooms | self.home.characters) >> node & 1:
@@ -136,7 +142,7 @@ class Regression:
         return rows.room_of(self.world, node)
 
     def _put_down(self, thing: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A held thing on a surface within reach, or else on the nearest that is in view."""
+        """Return a held thing on a surface within reach, or else on the nearest that is in view."""
         home = self.home
         surfaces = home.properties["SURFACES"] & home.furniture & self.seen
         for name in sorted(home.knowledge.group("puts") & self.legal.masks.keys()):
@@ -150,12 +156,12 @@ class Regression:
         return None
 
     def _metres(self, node: int) -> float:
-        """As the crow flies to something that stays where it is; 0 without geometry."""
+        """Return the straight distance to a fixed thing, meters; 0 without geometry."""
         box, pose = self.home.node(node).box, self.me.pose
         return 0.0 if box is None or pose is None else math.dist(pose.point, (box.center[0], box.center[2]))
 
     def _missing(self, formula: Formula, bound: Bound) -> tuple[Literal[int], ...]:
-        """What would make a condition hold, best first; nothing if it holds by belief, or if nothing is known to."""
+        """Return the literals that would make a condition hold, best first; none if it holds, or if none is known."""
         if isinstance(formula, And):
             return tuple(each for part in formula.parts for each in self._missing(part, bound))
         if isinstance(formula, Or):
@@ -167,7 +173,7 @@ class Regression:
         return self._means(formula, tuple(bound.get(term.name, -1) for term in formula.terms))
 
     def _means(self, formula: Literal[Term], nodes: tuple[int, ...]) -> tuple[Literal[int], ...]:
-        """The literals that would make one predicate of the action table hold."""
+        """Return the literals that would make one predicate of the action table hold."""
         name = formula.name
         if name == "state":
             return (Literal(formula.terms[1].name, nodes[:1], formula.negated),)
@@ -183,7 +189,7 @@ class Regression:
         return ()
 
     def _holds(self, formula: Formula, bound: Bound) -> bool:
-        """Return whether a condition holds by belief; what an agent has no belief about, does."""
+        """Return whether a condition holds by belief; a condition without a belief about it holds."""
         if isinstance(formula, And):
             return all(self._holds(part, bound) for part in formula.parts)
         if isinstance(formula, Or):
@@ -209,7 +215,7 @@ class Regression:
         return not (self.me.right and self.me.left) if name == "free_hand" else None
 
     def near(self, node: int) -> bool:
-        """Return whether the agent is close to something; to what is out of view, if it is to what that is in."""
+        """Return whether the agent is close to a thing; if it is out of view, to the closed node that it is in."""
         if not self.seen >> node & 1:
             node = self.belief.shut_in(node)
         return node >= 0 and bool(self.seen >> node & 1) and rows.is_close(self.world, self.me, node)
@@ -217,11 +223,12 @@ class Regression:
 
 @lru_cache(maxsize=512)
 def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple[tuple[Action, tuple[str, ...]], ...]:
-    """The actions that make a literal true, or false, with the variables of its terms: those that the thesis animates
-    first, and none that only does more than a plainer one.
+    """Return the actions that make a literal true, or false, with the variables of its terms.
+
+    Those that the thesis animates first, and none that only does more than a plainer one.
     """
     found = _effects(knowledge, HANDS[0] if name == HOLDS else name, terms, negated)
-    if not found and negated and terms == 1:  # nothing makes it false but what makes its opposite true
+    if not found and negated and terms == 1:  # only effects that make its opposite true make it false
         found = _effects(knowledge, OPPOSITE[name], terms, negated=False)
     avoided = knowledge.group("variant") | knowledge.group("unplanned")
     ways = {
@@ -233,7 +240,7 @@ def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple
 
 
 def _effects(knowledge: Knowledge, name: str, terms: int, negated: bool) -> list[tuple[Action, Effect]]:
-    """The effects on a predicate of the things that an action names; `ON` of one is its state, of two a relation."""
+    """Return the effects on a predicate of an action's things; `ON` of one thing is its state, of two a relation."""
     return [
         (action, effect)
         for action in knowledge.actions.values()
@@ -253,7 +260,7 @@ def _name(effect: Effect) -> str:
 
 @lru_cache(maxsize=8)
 def _moves(knowledge: Knowledge) -> tuple[str, ...]:
-    """The actions after which one is at, or nearer to, their object: by metres where those are allowed."""
+    """Return the actions after which an agent is at, or nearer to, their object: by meters where those are allowed."""
     goes = knowledge.group("goes") - knowledge.group("variant") - knowledge.group("unplanned")
     return tuple(sorted(goes, key=lambda name: (name not in MOVES, name)))
 

@@ -10,7 +10,8 @@ from hearth.agents.goal_space import GoalSpace, Numbers, Places
 from hearth.schemas.literals import HOLDS
 
 ELSEWHERE = 3
-"""Predicates of a class beside those of goals: held by who is watched; on, or in, what no goal names."""
+"""Predicates of a class in addition to those of goals: held by the watched agent; on, or in, a node that no goal names.
+"""
 
 
 class StateChanges:
@@ -21,7 +22,7 @@ class StateChanges:
 
     Attributes:
         space: the goals, all that there are.
-        watched: index of who pursues one.
+        watched: index of the agent that pursues one.
         first: the places of things at the start.
     """
 
@@ -31,7 +32,7 @@ class StateChanges:
 
     @cached_property
     def _class_of(self) -> list[int]:
-        """(T) the number of each thing's class, by the first predicate for which it counts."""
+        """Return (T) the number of each thing's class, by the first predicate for which it counts."""
         groups = list(dict.fromkeys(self.space.classes))
         return [groups.index(self.space.classes[rows[0]]) for rows in self.space.rows_of]
 
@@ -53,5 +54,5 @@ class StateChanges:
         return found
 
     def since(self, places: Places) -> tuple[int, ...]:
-        """The increases; decreases are 0."""
+        """Return the increases; decreases are 0."""
         return tuple(np.maximum(0, self._counts(places) - self._start).tolist())

@@ -1,4 +1,4 @@
-"""Subgoals: what is still to be done for a goal, by belief, one thing at a time (thesis B.1.1)."""
+"""Subgoals: the remaining parts of a goal, by belief, one thing at a time (thesis B.1.1)."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.home import Home
 
 HELD, RESTS = 1, 2
-"""When a part of a goal that is about characters comes, after those about things."""
+"""Order of the parts of a goal that are about characters, after those about things."""
 
 Missing = dict[int, tuple[int, int]]
-"""By part of a goal that is not reached by belief: how many are missing, and the set of what counts."""
+"""The missing parts of a goal by belief: part -> the number missing, and the set of nodes that count."""
 
 
 class Subgoal(NamedTuple):
@@ -27,7 +27,7 @@ class Subgoal(NamedTuple):
     Attributes:
         literal: about indices of nodes: `ON(plate, table)`, `HOLDS(me, book)`, `ON(me, sofa)`, `ON(television)`.
         part: which of the goal's literals it is for.
-        thing: what is carried or handled: the index of the plate, the book, the sofa, the television.
+        thing: the index of the carried or handled thing: the plate, the book, the sofa, the television.
         target: where it is to go; -1 if it goes nowhere.
     """
 
@@ -55,12 +55,12 @@ class Wanted:
 
     @property
     def literal(self) -> Literal[Name]:
-        """The literal as the goal has it."""
+        """Return the literal as the goal has it."""
         return self.candidates.literal
 
     @property
     def counted(self) -> int:
-        """What may be counted for it."""
+        """Return the nodes that may be counted for it."""
         return self.candidates.targets if self.last else self.candidates.subjects
 
 
@@ -80,7 +80,7 @@ class Aims:
             goal: counted literals; joined parts are not pursued.
             home: of the episode.
             me: index of the agent's node.
-            gives: what another character is to hold, it hands over.
+            gives: it hands over the things that another character is to hold.
         """
         self._home, self._me, self._gives = home, me, gives
         self._handed = 0
@@ -105,7 +105,7 @@ class Aims:
         return self._gives and wanted.last == HELD
 
     def met(self, wanted: Wanted, belief: Belief, view: View) -> int:
-        """The set of what is counted for a literal by belief."""
+        """Return the set of nodes that are counted for a literal by belief."""
         name, targets = wanted.literal.name, wanted.candidates.targets
         if self._by_others(wanted):
             found = self._given(wanted, belief)
@@ -122,7 +122,7 @@ class Aims:
         return wanted.counted & ~found if wanted.literal.negated else found
 
     def _given(self, wanted: Wanted, belief: Belief) -> int:
-        """What others were last seen to hold of what they are to hold."""
+        """Return the things that other agents were last seen to hold, of those that they are to hold."""
         seen = wanted.counted & belief.known
         held = (t for t in indices(seen) if belief.where[t].relation == HOLDS)
         subjects = wanted.candidates.subjects
@@ -134,7 +134,7 @@ class Aims:
         return wanted.last == HELD and not wanted.candidates.subjects >> self._me & 1
 
     def missing(self, belief: Belief, view: View) -> Missing:
-        """The parts of the goal that are not reached by belief."""
+        """Return the parts of the goal that are not reached by belief."""
         found = {}
         self.settled = 0
         for wanted in self.wanted:
@@ -146,8 +146,10 @@ class Aims:
         return found
 
     def open(self, belief: Belief, missing: Missing) -> list[Subgoal]:
-        """The subgoals that would bring a missing part nearer: first those about things, then what it is to hold,
-        then where to rest. What another character holds is left to it.
+        """Return the subgoals that would bring a missing part nearer.
+
+        Those about things come first, then the thing that it is to hold, then the place to rest. A thing that another
+        character holds is left to it.
         """
         for last in range(3):
             found = [

@@ -27,7 +27,7 @@ class Distances:
         self._legs: dict[tuple[int, int], Leg] = {}
 
     def cell(self, pose: Pose | None) -> int:
-        """The cell in which an agent stands, or the nearest; -1 without geometry."""
+        """Return the cell in which an agent stands, or the nearest; -1 without geometry."""
         if self._here is None or pose is None:
             return -1
         ways = self._here.ground.ways
@@ -35,7 +35,7 @@ class Distances:
         return at if at >= 0 else ways.nearest(pose.point, ~ways.main)
 
     def leg(self, start: int, node: int) -> Leg:
-        """The walk from a cell to something that stays where it is; doors count as open."""
+        """Return the walk from a cell to something that stays where it is; doors count as open."""
         try:
             return self._legs[start, node]
         except KeyError:
@@ -53,7 +53,7 @@ class Distances:
         return field.distance[start], _end(field, start)
 
     def after(self, start: int, node: int, metres: float) -> int:
-        """The cell at which one is after some metres of the walk to something."""
+        """Return the cell that an agent reaches after some meters of the walk to a node."""
         if self._here is None or start < 0:
             return start
         field = self._here.ground.ways.field(self._here.ground.stands(node))
@@ -63,13 +63,13 @@ class Distances:
         return cell
 
     def end(self, node: int) -> int:
-        """A cell at which one stands for something that stays where it is; -1 without geometry."""
+        """Return a cell at which one stands for something that stays where it is; -1 without geometry."""
         if self._here is None or node >= len(self._here.ground.home):
             return -1
         return next(iter(self._here.ground.stands(node)), -1)
 
     def ticks(self, metres: float) -> int:
-        """Ticks until one is within reach of what is that far away."""
+        """Return the ticks until an agent is within reach of a thing at some distance."""
         return max(0, math.ceil((metres - REACH / 2) / self.stride)) if math.isfinite(metres) else 1_000
 
 

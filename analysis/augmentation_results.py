@@ -1,4 +1,4 @@
-"""Results of augmentation: outcomes of pairs, and figures beside those of the thesis (table 5.1, figure 5-4)."""
+"""Results of augmentation: outcomes of pairs, and figures compared with the thesis's (table 5.1, figure 5-4)."""
 
 from collections import Counter
 from pathlib import Path
@@ -26,7 +26,7 @@ SHOWN_CLASSES = ("cup", "sauce_pan")
 
 
 def outcome(folder: Path) -> dict[str, Any]:
-    """Numbers of tried pairs of a program and a perturbed environment, by outcome.
+    """Return numbers of tried pairs of a program and a perturbed environment, by outcome.
 
     Raises:
         HearthError: MISSING_FILE, if the stage has not run.
@@ -70,7 +70,7 @@ _GROUPS = {"executable": "parent_id IS NULL", "augmented": "parent_id IS NOT NUL
 
 
 def figures(dataset: Path) -> dict[str, Any]:
-    """The numbers of table 5.1 and figure 5-4 for a published dataset, beside the thesis.
+    """Return the numbers of table 5.1 and figure 5-4 for a published dataset, with the thesis's.
 
     Returns:
         `strength` of augmenting; `table`: programs, lengths, nodes and edges of ours and the thesis's; `lengths`:
@@ -109,7 +109,7 @@ def _row(data: Any, group: str) -> dict[str, float | None]:
 
 
 def _lengths(data: Any, group: str) -> dict[str, int]:
-    """Numbers of programs by length class, named by its upper end; the last is open."""
+    """Return numbers of programs by length class, named by its upper end; the last is open."""
     rows = data.rows(f"SELECT len(steps), count(*) FROM programs WHERE {_GROUPS[group]} GROUP BY 1")[1]
     found = dict.fromkeys([*(f"up to {end}" for end in LENGTHS), "more"], 0)
     for length, count in rows:
@@ -134,7 +134,7 @@ def _conditions(data: Any, name: str) -> dict[str, dict[str, float]]:
 
 
 def _near_duplicates(data: Any) -> int:
-    """Number of augmented programs with the steps of a sibling in the same home."""
+    """Return the number of augmented programs with the steps of a sibling in the same home."""
     query = """
         WITH child AS (SELECT DISTINCT p.program_id, p.parent_id, e.home, p.steps
                        FROM programs p JOIN executions e USING (program_id) WHERE p.parent_id IS NOT NULL),

@@ -1,4 +1,4 @@
-"""What the main agent of an episode believes of where wanted things are, as time goes by (thesis 6.4, figure B-3)."""
+"""The main agent's beliefs about the places of wanted things in an episode, over time (thesis 6.4, figure B-3)."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
 MOMENTS = 5
-"""How many moments are looked at: the start, the end, and between."""
+"""Number of moments to look at: the start, the end, and between."""
 
 
 class Believed(NamedTuple):
-    """Where the things of one class are believed to be at a tick: the expected number of them by class of place."""
+    """Believed places of the things of one class at a tick: the expected number of them by class of place."""
 
     tick: int
     thing: str
     places: dict[str, float]
 
     def row(self) -> dict[str, Any]:
-        """The same for a table: the most probable places first."""
+        """Return a row for a table: the most probable places first."""
         shown = sorted(self.places.items(), key=lambda each: (-each[1], each[0]))[:5]
         return {"tick": self.tick, "thing": self.thing, "believed": ", ".join(f"{p} {n:.2f}" for p, n in shown)}
 
 
 def followed(task: Task, start: World, ticks: Sequence[Tick], moments: int = MOMENTS) -> list[Believed]:
-    """The belief of who has seen what the main agent saw.
+    """Return the beliefs of an observer that gets the main agent's observations.
 
     Args:
         task: whose things are of interest.
@@ -65,7 +65,7 @@ def _now(tick: int, belief: Belief, world: World) -> list[Believed]:
 
 
 def drawn(found: Sequence[Believed]) -> str:
-    """The belief as a picture, a row for each class of things and moment."""
+    """Return the belief as a picture, a row for each class of things and moment."""
     ordered = sorted(found, key=lambda each: (each.thing, each.tick))
     rows: dict[str, Counter[str]] = {}
     for each in ordered:

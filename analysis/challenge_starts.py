@@ -1,4 +1,4 @@
-"""Where things are when tasks start: the distributions of the thesis's figures B-4 and B-5."""
+"""Starting places of things in tasks: the distributions of the thesis's figures B-4 and B-5."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def starts(suite: Suite, knowledge: Knowledge) -> Starts:
 
 
 def place_of(world: World, i: int) -> str:
-    """`ON table`, `INSIDE fridge`: what a thing is on or in."""
+    """Return the place of a thing, as `ON table` or `INSIDE fridge`."""
     for relation, places in (("ON", rows.on(world, i)), ("INSIDE", rows.inside(world, i))):
         furniture = places & ~world.home.rooms
         if furniture:

@@ -1,4 +1,4 @@
-"""All methods of the thesis's figures 6-5 and 7-3 on the same tasks, beside what the thesis says of them."""
+"""All methods of the thesis's figures 6-5 and 7-3 on the same tasks, with the thesis's text about them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ CONFIDENT = 1.96
 
 
 TABLES: dict[str, dict[str, Any]] = packaged("hearth.analysis", "challenge_table.yaml")["tables"]
-"""By challenge: the split, the number of the thesis's figure, who is helped, and the methods."""
+"""By challenge: the split, the number of the thesis's figure, the main agent, and the methods."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class Method:
     Attributes:
         name: as in the thesis.
         helper: of the registry.
-        thesis: what the thesis says of it.
-        results: what came of it; None where there is no such helper yet.
+        thesis: the thesis's text about it.
+        results: the results; None where there is no such helper yet.
     """
 
     name: str
@@ -63,7 +63,7 @@ def methods(
         folder: gets a file of results for each method.
         known: gives the knowledge.
         workers: processes.
-        watch: for the name of a method, what is called with the number of its episodes done.
+        watch: for the name of a method, the function that is called with the number of its episodes done.
         table: whose methods; the challenge's own where empty.
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -90,7 +90,7 @@ def _ready(helper: str) -> bool:
 
 
 def by_set(results: Results) -> dict[str, dict[str, float]]:
-    """The speedup for each goal set, with half the width of its 95 % interval (figures 7-6a, C-3)."""
+    """Return the speedup for each goal set, with half the width of its 95 % interval (figures 7-6a, C-3)."""
     sets = {task.id: task.sets[0] for task in results.header.suite.tasks}
     found = speedups(results.outcomes(False), results.outcomes(results.header.helped[-1]))
     shown = {}
@@ -101,7 +101,10 @@ def by_set(results: Results) -> dict[str, dict[str, float]]:
 
 
 def rows(found: Sequence[Method]) -> list[dict[str, Any]]:
-    """The table: means over tasks with half the width of their 95 % intervals, and paired tests against the first."""
+    """Return the table.
+
+    Means over tasks with half the width of their 95 % intervals, and paired tests against the first.
+    """
     table = []
     for method in found:
         row: dict[str, Any] = {"method": method.name}

@@ -35,7 +35,7 @@ SAID = {
 }
 
 THESIS = {Completeness.COMPLETE: 0.64, Completeness.MINOR: 0.28, Completeness.CRUCIAL: 0.08}
-"""Of 100 programs, by the median of five raters (thesis 3.4.1)."""
+"""Shares of programs by completeness, by the median of five raters (thesis 3.4.1)."""
 
 MOST_FAULTS = 200
 """Rows without a rating that are reported, at most."""
@@ -66,7 +66,7 @@ def estimate(program: Program, home: Home, known: Knowledge, seed: int) -> Compl
 
 
 def sheet(programs: Sequence[tuple[str, Program]], raters: int) -> str:
-    """A CSV for raters: each program once per rater, with an empty column `rating`."""
+    """Return a CSV for raters: each program once per rater, with an empty column `rating`."""
     rows: list[tuple[object, ...]] = [(*COLUMNS[:-1], f"rating ({HELP})")]
     for rater in range(1, raters + 1):
         for program_id, program in programs:
@@ -76,7 +76,7 @@ def sheet(programs: Sequence[tuple[str, Program]], raters: int) -> str:
 
 
 def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
-    """The ratings by program; rows without a rating are ignored.
+    """Return the ratings by program; rows without a rating are ignored.
 
     Raises:
         HearthError: every row whose rating is not 1, 2 or 3, up to `MOST_FAULTS`, and every table that can't be read
@@ -101,12 +101,12 @@ def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
 
 
 def medians(ratings: Mapping[str, Sequence[Completeness]]) -> dict[str, Completeness]:
-    """The median of each program's ratings; of two middle ones the better."""
+    """Return the median of each program's ratings; of two middle ones the better."""
     return {name: median_low(given) for name, given in ratings.items() if given}
 
 
 def shares(classes: Iterable[Completeness]) -> dict[Completeness, float]:
-    """The share of each class."""
+    """Return the share of each class."""
     counts = Counter(classes)
     total = max(1, counts.total())
     return {each: counts[each] / total for each in Completeness}

@@ -1,4 +1,4 @@
-"""Whether augmented programs do the steps of their originals in the circumstances in which the originals do them.
+"""The check that augmented programs do the steps of their originals in the circumstances of the originals.
 
 Both are run again from a dataset. Which steps a program has kept is found anew, from the steps alone: nothing that
 repairing recorded is used.
@@ -47,7 +47,7 @@ class Found(NamedTuple):
         counts: `programs`, and those that do all they have kept in the same circumstances (`programs as_original`); and
             the same of the `steps` that they have kept.
         seats: for each action, the programs that do it and whose original does it seated (`seated`), and those that
-            never do it seated (`otherwise`): who types standing, and sits down then, has done something else.
+            never do it seated (`otherwise`): a person who types standing, and then sits down, has done something else.
         odd: programs with a step in other circumstances.
     """
 
@@ -113,7 +113,7 @@ def _measured(job: tuple[str, list[Pair]]) -> Found:
 def _kept(
     program: Program, wanted: Sequence[Postconditions], execution: Execution, nodes: dict[Key, int]
 ) -> tuple[int, int]:
-    """(steps of the original that a program has, those that it does as the original does).
+    """Return (steps of the original that a program has, those that it does as the original does).
 
     Two longest common subsequences: of the steps, and of the steps done in the same circumstances.
     """
@@ -146,7 +146,7 @@ def _longest(matches: Sequence[Sequence[bool]]) -> int:
 
 
 def _seats(original: Execution, execution: Execution) -> Iterator[tuple[str, str]]:
-    """For each of a program's actions that the original does seated: `seated`, and `otherwise` if it never does so."""
+    """Yield for each action that the original does seated: `seated`, and `otherwise` if the program never does so."""
     seated = _done_seated(execution)
     for action in sorted(_done_seated(original) & {step.action for step in execution.program.steps}):
         yield action, "seated"
@@ -155,7 +155,7 @@ def _seats(original: Execution, execution: Execution) -> Iterator[tuple[str, str
 
 
 def _done_seated(execution: Execution) -> set[str]:
-    """The actions done sitting or lying."""
+    """Return the actions done sitting or lying."""
     done = zip(execution.worlds, execution.program.ticks(), strict=False)
     return {
         step.action

@@ -85,7 +85,7 @@ def _ranked(counts: Counter[Any]) -> list[tuple[Any, int]]:
 
 
 def blank(width: float, height: float) -> tuple[Figure, Any]:
-    """A figure of a size in inches, and its axes."""
+    """Return a figure of a size in inches, and its axes."""
     figure: Figure = library("matplotlib.figure").Figure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots()
 
@@ -132,7 +132,7 @@ def _bars(counts: Counter[str], label: str) -> Figure:
 
 
 def _together(found: Corpus, objects: Counter[str]) -> Figure:
-    """Numbers of programs that use both of two frequent objects."""
+    """Return numbers of programs that use both of two frequent objects."""
     names = [name for name, _ in _ranked(objects)[:USED_TOGETHER]]
     place = {name: number for number, name in enumerate(names)}
     counts = np.full((len(names), len(names)), np.nan)
@@ -155,7 +155,7 @@ def _matrix(alike: Similarities) -> Figure:
 def _heat_map(
     values: Any, names: list[str], label: str, size: tuple[float, float], fontsize: int, **limits: float
 ) -> Figure:
-    """A square matrix with the same names along both sides; empty without names."""
+    """Return a square matrix with the same names along both sides; empty without names."""
     figure, axes = blank(*size)
     if names:
         figure.colorbar(axes.imshow(values, cmap="viridis", **limits), ax=axes, shrink=0.7, label=label)

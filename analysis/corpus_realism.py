@@ -1,4 +1,6 @@
-"""Is a corpus like people's? One corpus asked about another, beside the other's own halves asked about each other.
+"""The similarity of a corpus to people's, measured by its predictions of the people's corpus.
+
+The halves of the people's corpus predict each other for comparison.
 
 Each draw splits the other corpus into halves A and B and draws as many programs of this one as A has; every measure is
 taken of A against B and of the draw against B. Their ratio is 1 if the corpora can't be distinguished.
@@ -26,7 +28,7 @@ from hearth.scoring.bootstrap import intervals
 
 DRAWS, ORDER = 20, 3
 SMOOTHING = f"interpolated Witten-Bell, order {ORDER}, over the steps of both corpora"
-"""How probabilities are smoothed: printed with the perplexities."""
+"""The smoothing of probabilities, printed with the perplexities."""
 
 FEWEST = 4
 """Programs that either corpus needs."""
@@ -41,7 +43,7 @@ class Sample(NamedTuple):
 
 
 def programs(corpus: Corpus) -> list[Sample]:
-    """The programs of a corpus, in the order of their ids."""
+    """Return the programs of a corpus, in the order of their ids."""
     found = sorted(corpus.programs, key=lambda each: each.program_id)
     texts = {name: tuple(re.findall(r"[^\W_]+", text.lower())) for name, text in corpus.descriptions.items()}
     return [
@@ -71,22 +73,22 @@ def divergence(one: Counter[str], other: Counter[str]) -> float:
 
 
 def actions(found: Iterable[Sample]) -> Counter[str]:
-    """Number of steps with each action."""
+    """Return the number of steps with each action."""
     return Counter(step.partition(" ")[0] for one in found for step in one.steps)
 
 
 def objects(found: Iterable[Sample]) -> Counter[str]:
-    """Number of steps with each object."""
+    """Return the number of steps with each object."""
     return Counter(name for one in found for step in one.steps for name in step.split(" ")[1:])
 
 
 def lengths(found: Iterable[Sample]) -> Counter[str]:
-    """Number of programs with each number of steps."""
+    """Return the number of programs with each number of steps."""
     return Counter(str(len(one.steps)) for one in found)
 
 
 def words(found: Iterable[Sample]) -> Counter[str]:
-    """Number of times each word is in descriptions."""
+    """Return the number of times each word is in descriptions."""
     return Counter(word for one in found for word in one.words)
 
 
@@ -186,7 +188,10 @@ def _halves(found: Sequence[Sample], chance: Random, by_activity: bool) -> tuple
 
 
 def portrait(found: Sequence[Sample]) -> dict[str, float | int | None]:
-    """A corpus by itself: sizes, lengths, similarity within activities (table 3.1), and statistics of its words."""
+    """Return a corpus by itself.
+
+    Sizes, lengths, similarity within activities (table 3.1), and statistics of its words.
+    """
     texts = list(dict.fromkeys(one.words for one in found if one.words))
     sizes = [len(one.steps) for one in found]
     counts = [len(text) for text in texts]
@@ -215,7 +220,7 @@ def _within(found: Sequence[Sample]) -> float | None:
 
 
 def similarities(found: Sequence[Sample]) -> Mapping[str, float | None]:
-    """For each activity, the mean normalised LCS over pairs of its programs; None for one program (table 3.1)."""
+    """Return the mean normalised LCS over pairs of programs of each activity; None for one program (table 3.1)."""
     from rapidfuzz.distance import LCSseq
 
     members: dict[str, list[tuple[str, ...]]] = defaultdict(list)
@@ -229,6 +234,6 @@ def similarities(found: Sequence[Sample]) -> Mapping[str, float | None]:
 
 
 def of_activities(found: Sequence[Sample], others: Sequence[Sample]) -> list[Sample]:
-    """The programs whose activity others have, too."""
+    """Return the programs whose activity others have, too."""
     wanted = {one.activity for one in others}
     return [one for one in found if one.activity in wanted]

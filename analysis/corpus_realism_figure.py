@@ -1,4 +1,4 @@
-"""A corpus beside another, drawn: frequencies of actions and objects, lengths, similarity, and what each knows."""
+"""A drawing of two corpora: frequencies of actions and objects, lengths, similarity, and mutual predictions."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _similarities(axes: Any, corpora: Mapping[str, Sequence[numbers.Sample]]) ->
 
 
 def _ratios(axes: Any, found: Mapping[str, Any]) -> None:
-    """Ratios of what this corpus and the other's own half know, with their intervals."""
+    """Draw the ratios of this corpus's scores to those of the other's own half, with their intervals."""
     rows = [(name, kinds["ratio"]) for name, kinds in found.items() if "ratio" in kinds]
     for place, (_, ratio) in enumerate(rows):
         axes.plot([ratio["low"], ratio["high"]], [place, place], color=COLOURS["ours"], linewidth=3)

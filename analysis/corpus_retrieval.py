@@ -1,4 +1,4 @@
-"""What a larger corpus is worth: retrieval of programs by description, trained on its first part and on all of it."""
+"""The value of a larger corpus: retrieval of programs by description, trained on its first part and on all of it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -63,7 +63,7 @@ def before_and_after(known: Knowledge, seed: int = 0, tested: Sequence[str] | No
 
 
 def _described(found: Corpus) -> list[SplitProgram]:
-    """The programs with a description, in the order of their ids."""
+    """Return the programs with a description, in the order of their ids."""
     programs = [
         SplitProgram(
             one.program_id,
@@ -80,7 +80,9 @@ def _described(found: Corpus) -> list[SplitProgram]:
 
 
 def _apart(test: Sequence[SplitProgram], train: Sequence[SplitProgram]) -> set[str]:
-    """The ids of the training programs that are of other activities than the tests and not near duplicates of any."""
+    """Return the ids of the training programs that are of other activities than the tests and not near duplicates of
+    any.
+    """
     # Both corpora may have programs of one id.
     every = [replace(one, program_id=str(number).zfill(9)) for number, one in enumerate((*test, *train))]
     known = SplitPrograms.of(every)

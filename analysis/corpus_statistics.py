@@ -129,7 +129,7 @@ def _free_text(block: str) -> str:
 
 
 def funnel(corpus: Corpus) -> dict[str, int]:
-    """Numbers of descriptions and programs after each filter (thesis 3.4)."""
+    """Return numbers of descriptions and programs after each filter (thesis 3.4)."""
     first = len({written.description_id for written in corpus.programs})
     return {
         "descriptions": len(corpus.descriptions),
@@ -141,7 +141,7 @@ def funnel(corpus: Corpus) -> dict[str, int]:
 
 
 def variety(corpus: Corpus) -> dict[str, int]:
-    """Numbers of different activities, actions, objects and steps, ignoring instances."""
+    """Return numbers of different activities, actions, objects and steps, ignoring instances."""
     steps = [step for written in corpus.programs for step in written.steps]
     return {
         "activities": len({activity_id(written.title) for written in corpus.programs}),
@@ -152,7 +152,7 @@ def variety(corpus: Corpus) -> dict[str, int]:
 
 
 def averages(corpus: Corpus) -> tuple[int, float, float, float]:
-    """A row of table 4.1: programs, steps per program, sentences and words per description."""
+    """Return a row of table 4.1: programs, steps per program, sentences and words per description."""
     texts = [text for text in corpus.descriptions.values() if text.strip()]
     sentences = [max(1, len(_SENTENCE.findall(text))) for text in texts]
     words = [len(_WORD.findall(text)) for text in texts]
@@ -168,7 +168,7 @@ def frequencies(corpus: Corpus) -> tuple[Counter[str], Counter[str]]:
 
 
 def together(corpus: Corpus) -> Counter[tuple[str, str]]:
-    """Numbers of programs that use both of two objects; rooms count as objects."""
+    """Return numbers of programs that use both of two objects; rooms count as objects."""
     found: Counter[tuple[str, str]] = Counter()
     for written in corpus.programs:
         found.update(combinations(sorted({ref.name for step in written.steps for ref in step.objects}), 2))
@@ -246,7 +246,7 @@ def _between(pairs: NDArray[np.float32], one: list[int], other: list[int]) -> fl
 
 
 def _sorted(between: NDArray[np.float32]) -> list[int]:
-    """An order with similar activities adjacent: leaves of a hierarchical clustering (figure 3-6)."""
+    """Return an order with similar activities adjacent: leaves of a hierarchical clustering (figure 3-6)."""
     if len(between) < 3:
         return list(range(len(between)))
     from scipy.cluster.hierarchy import leaves_list, linkage
@@ -259,7 +259,7 @@ def _sorted(between: NDArray[np.float32]) -> list[int]:
 
 
 def beside_thesis(activities: Sequence[Activity]) -> Iterator[tuple[str, tuple[int, float, float], Activity | None]]:
-    """The rows of table 3.1, each with our activity of the same name, if any."""
+    """Yield the rows of table 3.1, each with our activity of the same name, if any."""
     ours = {normal_name(one.title): one for one in activities} | {one.activity: one for one in activities}
     for title, row in THESIS_DIVERSITY.items():
         yield title, row, ours.get(activity_id(title))

@@ -79,7 +79,7 @@ class Coverage:
         return len(self.homes) if where == ANY_HOME else 1
 
     def summary(self) -> dict[str, Any]:
-        """The figures, for printing."""
+        """Return the figures, for printing."""
         codes = Counter(str(failure.code) for _, _, failure in self.failed)
         for _, where, failure in self.impossible:
             codes[str(failure.code)] += self._homes_of(where)
@@ -101,7 +101,7 @@ class Coverage:
 
 
 def scripts(sources: Iterable[str], knowledge: Knowledge) -> Iterator[Script | Reject]:
-    """The programs of sources with canonical names and without node ids; graphs of a release are not read."""
+    """Yield the programs of sources with canonical names and without node ids; graphs of a release are not read."""
     for _, item in ingest.items(labelled(sources)):
         for row in ingest.read(_without_graphs(item)):
             if isinstance(row, Reject):
@@ -199,7 +199,7 @@ class _Stored:
             self._rows = []
 
     def close(self) -> int:
-        """The bytes of the whole file."""
+        """Return the bytes of the whole file."""
         self._flush()
         self._writer.close()
         return self._bytes.getbuffer().nbytes

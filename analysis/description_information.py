@@ -1,7 +1,7 @@
-"""How much of drawn programs their descriptions say: what an ideal reader would make of them.
+"""The share of drawn programs that their descriptions say: the score of an ideal reader.
 
-Half of a program's parts go unsaid, as in the thesis's corpora (3.3; table 4.1 has 3.4 sentences for 9.6 steps). No
-model can know those but by chance: scores of models are to be read beside those of a reader who understands every
+Half of a program's parts go unsaid, as in the thesis's corpora (3.3; table 4.1 has 3.4 sentences for 9.6 steps). A
+model can only guess those parts. The score to compare models with is therefore that of a reader who understands every
 clause, and knows how often each part is in a program.
 """
 
@@ -30,7 +30,7 @@ class Reading(NamedTuple):
 
 
 def ideal(asked: Reading, grammar: Grammar) -> Synthetic:
-    """The program that an ideal reader of a description writes.
+    """Return the program that an ideal reader of a description writes.
 
     Mentioned parts are understood, and the objects that their clauses name; the title gives the first task. Other parts
     of these tasks are written if they are likely, with the likeliest objects. Tasks that are not mentioned are left
@@ -55,20 +55,22 @@ def _parts(asked: Reading, grammar: Grammar) -> Iterator[ChosenPart]:
 
 
 def unsaid(part: Part) -> float:
-    """The probability that a program has a part which its description does not mention (Bayes)."""
+    """Return the probability that a program has a part which its description does not mention (Bayes)."""
     silent = part.chance * (1 - part.described)
     return silent / (silent + 1 - part.chance) if silent else 0.0
 
 
 def mean_lcs(asked: Sequence[Reading], grammar: Grammar) -> float:
-    """The mean LCS (of steps, actions and objects) of ideal readers' programs with the true ones; 0 for none."""
+    """Return the mean LCS (of steps, actions and objects) of ideal readers' programs with the true ones; 0 for none."""
     pairs = ((_steps(ideal(each, grammar)), _steps(each.program)) for each in asked)
     scores = score_pairs(pairs)
     return sum(score.mean for score in scores) / len(scores) if scores else 0.0
 
 
 def figures(programs: Sequence[Synthetic], rows: Sequence[SplitText], grammar: Grammar) -> dict[str, float]:
-    """The mean LCS of ideal readers, to three digits: of first descriptions in all, and in the test of each split.
+    """Return the mean LCS of ideal readers, to three digits.
+
+    Of first descriptions in all, and in the test of each split.
 
     Args:
         programs: in the order of their numbers.

@@ -18,11 +18,11 @@ from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world.world import World
 
 COLOURS = ("#d1495b", "#2a6fbb")
-"""Of the main agent and of the helper."""
+"""Colors of the main agent and of the helper."""
 
 
 def episode_of(found: Results, file: str, task: str, episode: int, alone: bool) -> tuple[Task, Record]:
-    """An episode of results, and its task.
+    """Return an episode of results, and its task.
 
     Args:
         found: the results.
@@ -42,13 +42,13 @@ def episode_of(found: Results, file: str, task: str, episode: int, alone: bool) 
 
 
 def ticks_of(task: Task, record: Record, knowledge: Knowledge) -> tuple[World, list[Tick]]:
-    """The start of an episode and what happened; errors as of `episodes.again`."""
+    """Return the start of an episode and its ticks; errors as of `episodes.again`."""
     start = start_of(task, knowledge, None if record.helped else 1)
     return start, replayed(challenge(task.challenge), task, record, start)[0]
 
 
 def trails(start: World, ticks: Sequence[Tick]) -> list[Trail]:
-    """The way of each agent; within a stride the shortest one on the floor, which does not cut corners of walls.
+    """Return the way of each agent; within a stride the shortest one on the floor, which does not cut corners of walls.
 
     Raises:
         HearthError: NOT_RENDERED: the agents have no places.
@@ -72,7 +72,7 @@ def trails(start: World, ticks: Sequence[Tick]) -> list[Trail]:
 
 
 def panels_of(found: Results, task: Task, record: Record, knowledge: Knowledge) -> list[Panel]:
-    """An episode as a drawing; one with a helper beside that of the main agent alone, where the run has it.
+    """Return an episode as drawings: the helped one, and next to it the main agent alone, where the run has it.
 
     Raises:
         HearthError: NOT_RENDERED: the agents have no places.
@@ -91,7 +91,7 @@ def _panel(record: Record, start: World, ticks: Sequence[Tick], helper: str) -> 
 
 
 def furniture(task: Task, world: World) -> set[str]:
-    """The classes of furniture that a task's goal names."""
+    """Return the classes of furniture that a task's goal names."""
     home = world.home
     every = [term for literal, _ in task.goal_in(home) for term in literal.terms]
     return {home.classes[home.index[term]] for term in every if isinstance(term, int)}
@@ -106,7 +106,7 @@ def _handles(tick: Tick, number: int) -> bool:
 
 
 def narrated(ticks: Sequence[Tick]) -> Iterator[tuple[int, int, str, str]]:
-    """What was done but for walking: tick, agent, instruction in words, and why it failed, if it did."""
+    """Yield all actions but walking: tick, agent, instruction in words, and the reason of a failure."""
     for number, tick in enumerate(ticks):
         for agent, step in sorted(tick.instructions.items()):
             known = tick.world.home.knowledge

@@ -1,4 +1,4 @@
-"""What a helper believed during an episode, as the thesis's figure 7-4: probabilities over time, key actions below."""
+"""A helper's beliefs in an episode, as in the thesis's figure 7-4: probabilities over time, key actions below."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Action = tuple[int, int, str, str]
 
 
 def drawn(found: Beliefs, actions: Sequence[Action]) -> str:
-    """SVG: a line for each of the likeliest predicates, those of the goal thick, and what both did below."""
+    """Return SVG: a line for each of the likeliest predicates, those of the goal thick, and actions below."""
     ticks = max(1, len(found.moments))
     most = [max((moment.wanted[n] for moment in found.moments), default=0.0) for n in range(len(found.predicates))]
     order = sorted(range(len(most)), key=lambda n: (found.goal[n] == 0, -most[n], n))[: len(LINES)]

@@ -1,4 +1,4 @@
-"""Whether helpers do harm: people of kinds that no helper was tuned with, alone and helped."""
+"""The test that helpers do no harm: people of kinds that no helper was tuned with, alone and helped."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from hearth.storage.parallel import Seen, unseen
 def helped_people(
     suite: Suite, helpers: Sequence[str], seeds: int, folder: Path, known: Known, workers: int = 1, seen: Seen = unseen
 ) -> Iterator[dict[str, Any]]:
-    """A row for each kind and helper, then one for each helper's worst kind.
+    """Yield a row for each kind and helper, then one for each helper's worst kind.
 
     Args:
         suite: the tasks.

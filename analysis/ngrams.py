@@ -36,7 +36,7 @@ class WittenBell:
             yield tuple(padded[place - self.order + 1 : place]), padded[place]
 
     def probability(self, token: str, history: tuple[str, ...]) -> float:
-        """The probability of a step of the vocabulary after the steps before it."""
+        """Return the probability of a step of the vocabulary after the steps before it."""
         found = 1 / self.size
         for start in range(len(history), -1, -1):
             counts = self.after.get(history[start:])
@@ -45,7 +45,7 @@ class WittenBell:
         return found
 
     def perplexity(self, programs: Iterable[Tokens]) -> float:
-        """The perplexity of a step; ends of programs count as steps."""
+        """Return the perplexity of a step; ends of programs count as steps."""
         surprise = steps = 0.0
         for program in programs:
             for history, token in self._positions(program):

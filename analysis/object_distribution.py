@@ -41,7 +41,7 @@ def observed(path: Path, knowledge: Knowledge, limit: int | None = None) -> tupl
         for home, name in sorted(value.get("graphs", {}).items()):
             text = release.text_of(value, value["grounded"][home]) if home in value.get("grounded", {}) else ""
             graphs = release.json_of(value, name)
-            # What a build refuses of the release does not count either.
+            # Programs of the release that a build refuses do not count either.
             refused = isinstance(graphs, Diagnostic) or isinstance(release.graphs_of(graphs, name), Diagnostic)
             if isinstance(text, str) and not refused:
                 _count_graph(graphs["init_graph"], _bound(text), knowledge, places, states)
@@ -94,7 +94,7 @@ def _pair(state: str) -> str:
 def sampled(
     path: Path, homes: Homes, names: Sequence[str], seed: int = 0, limit: int | None = None, size: Size = USUAL
 ) -> tuple[Counts, Counts]:
-    """The same for environments sampled for these programs, with the homes in turn."""
+    """Return the same counts for environments sampled for these programs, with the homes in turn."""
     places: Counts = defaultdict(Counter)
     states: Counts = defaultdict(Counter)
     for number, script in enumerate(_programs(path, homes.knowledge, limit)):
@@ -118,7 +118,7 @@ def _programs(path: Path, knowledge: Knowledge, limit: int | None) -> Iterator[S
 
 
 def distances(one: Counts, other: Counts) -> dict[str, tuple[float, int, int]]:
-    """For each common class: total variation distance (0 to 1), and the number of observations in both."""
+    """Return for each common class the total variation distance (0 to 1), and the number of observations in both."""
     found = {}
     for kind in sorted(one.keys() & other.keys()):
         a, b = one[kind], other[kind]
@@ -128,19 +128,19 @@ def distances(one: Counts, other: Counts) -> dict[str, tuple[float, int, int]]:
 
 
 def held(counts: Counts) -> Counts:
-    """The counts without `NOWHERE`: the release leaves most added things in the middle of a room."""
+    """Return the counts without `NOWHERE`: the release leaves most added things in the middle of a room."""
     found = {kind: Counter({p: n for p, n in places.items() if p != NOWHERE}) for kind, places in counts.items()}
     return {kind: places for kind, places in found.items() if places}
 
 
 def overall(found: Mapping[str, tuple[float, int, int]]) -> float | None:
-    """The mean distance, weighted by the classes' frequency in the release."""
+    """Return the mean distance, weighted by the classes' frequency in the release."""
     total = sum(seen for _, seen, _ in found.values())
     return round(sum(apart * seen for apart, seen, _ in found.values()) / total, 3) if total else None
 
 
 def diversity(program: Program, homes: Homes, name: str, samples: int, seed: int = 0) -> dict[str, Any]:
-    """Number of different environments among samples of one program, and their conditions by class."""
+    """Return the number of different environments among samples of one program, and their conditions by class."""
     conditions = infer(program, homes.knowledge)
     if isinstance(conditions, Failure):
         return {"samples": 0, "distinct": 0, "impossible": conditions.message()}
@@ -165,7 +165,7 @@ def diversity(program: Program, homes: Homes, name: str, samples: int, seed: int
 
 
 def _key(environment: Environment) -> tuple[Any, ...]:
-    """A key that is equal for environments of one home with equal graphs."""
+    """Return a key that is equal for environments of one home with equal graphs."""
     kinds = tuple((node.id, node.class_name) for node in environment.nodes)
     home = environment.world.home
     return kinds, tuple(home.on), tuple(home.inside), tuple(home.close), home.states, tuple(home.agent_rows)
@@ -192,7 +192,7 @@ def of_programs(path: Path, knowledge: Knowledge, classes: Sequence[str], limit:
 
 
 def of_cases(folder: Path, classes: Sequence[str]) -> Counts:
-    """The same over a stage's cases (`sample` or `augment`), with violated conditions as perturbed."""
+    """Return the same counts over a stage's cases (`sample` or `augment`), with violated conditions as perturbed."""
     found: Counts = {name: Counter() for name in classes}
     for part in sorted(folder.glob("part-*.parquet")):
         for row in read_rows(part, ["conditions"]):

@@ -1,4 +1,4 @@
-"""How well helpers infer the goal while it is pursued: F1 over time (figures 7-3b, C-4), log loss, calibration."""
+"""The quality of goal inference during an episode: F1 over time (figures 7-3b, C-4), log loss, calibration."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LEAST = 1e-9
 
 @dataclass(frozen=True)
 class Question:
-    """An episode whose helper is asked what it believes."""
+    """An episode whose helper is asked for its beliefs."""
 
     task: Task
     record: Record
@@ -37,7 +37,7 @@ class Question:
 
 
 def answer(question: Question) -> Beliefs:
-    """What the helper believes in each tick."""
+    """Return the helper's beliefs in each tick."""
     return beliefs(question.task, question.record, question.helper, question.known())
 
 
@@ -84,7 +84,7 @@ def _at(curves: Sequence[Sequence[tuple[float, float]]], number: int) -> dict[st
 
 
 def calibration(found: Sequence[Beliefs]) -> dict[str, Any]:
-    """The calibration of predicates' probabilities over all ticks (see `inference`)."""
+    """Return the calibration of predicates' probabilities over all ticks (see `inference`)."""
     pairs = [
         (probability, wanted > 0)
         for each in found

@@ -1,4 +1,4 @@
-"""A page of predictions beside what people wrote, as figures 4-5, 4-6, 5-5, A-1, A-2 and A-4; with pictures, 4-8.
+"""A page of predictions next to people's programs, as figures 4-5, 4-6, 5-5, A-1, A-2 and A-4; with pictures, 4-8.
 
 Examples are taken at equal steps of LCS from the worst to the best, each of another activity: nobody chose them.
 """
@@ -33,17 +33,17 @@ SHOWN = {
     "f1": "F1",
     "goal_fraction": "share of the goal",
 }
-"""The scores of an example, and what the page calls them."""
+"""The scores of an example, and the page's names for them."""
 
 SIZE = (320, 240)
-"""Of a picture, pixels."""
+"""Size of a picture, pixels."""
 
 
 class PredictionExample(NamedTuple):
     """A prediction that the page shows.
 
     Attributes:
-        request: what the model was asked.
+        request: the model's request.
         home: in which.
         scores: those of `SHOWN`, as text.
         ran: the prediction, as it runs there.
@@ -60,17 +60,17 @@ class PredictionExample(NamedTuple):
 
     @property
     def steps(self) -> list[tuple[str, str, bool]]:
-        """Lines of the reference and of the prediction, and whether both have it."""
+        """Return lines of the reference and of the prediction, and whether both have it."""
         return [(_text(line.left), _text(line.right), line.common) for line in self.beside]
 
     @property
     def sketch(self) -> list[str]:
-        """The main steps that a model of sketches was given."""
+        """Return the main steps that a model of sketches was given."""
         return [print_step(step) for step in self.request.sketch]
 
     @property
     def drawn(self) -> list[tuple[str, str]]:
-        """The pictures as addresses of data."""
+        """Return the pictures as addresses of data."""
         return [(step, f"data:image/png;base64,{b64encode(data).decode()}") for step, data in self.pictures]
 
 
@@ -100,7 +100,7 @@ def spread_over(found: Sequence[Scored], count: int) -> list[Scored]:
 def prediction_examples(
     dataset: Dataset, found: Sequence[Scored], count: int = 9, pictures: int = 4, sketches: str = ANNOTATED
 ) -> Iterator[PredictionExample]:
-    """The predictions that the page shows.
+    """Yield the predictions that the page shows.
 
     Args:
         dataset: to which they belong.
@@ -139,7 +139,7 @@ def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[t
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.scene.home_geometry import with_geometry
 
-    # Not the run's start graph: what the environment moves would be drawn where the home has it.
+    # Not the run's start graph: things that the environment moves would be drawn where the home has them.
     graph = with_geometry(dataset.home(home), home, dataset.knowledge).graph
     trajectory = trajectory_of(ran, graph, dataset.knowledge)
     ticks = list(ran.program.ticks())
@@ -151,7 +151,7 @@ def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[t
 
 
 def examples_page(shown: Sequence[PredictionExample], title: str, count: int) -> str:
-    """The page as HTML, which opens from disk; every text is escaped.
+    """Return the page as HTML, which opens from disk; every text is escaped.
 
     Args:
         shown: in this order.

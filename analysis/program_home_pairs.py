@@ -18,7 +18,7 @@ class FilmedPair(NamedTuple):
     """A program that ran to its end in a home.
 
     Attributes:
-        execution: what happened.
+        execution: the execution that is filmed.
         home: the home's name.
         graph: the home's graph, with boxes.
     """
@@ -29,7 +29,7 @@ class FilmedPair(NamedTuple):
 
 
 def pairs(sources: Sequence[str], knowledge: Knowledge, seed: int = 0) -> Iterator[FilmedPair]:
-    """The programs of some sources in an order that the seed decides, each in the next of our homes.
+    """Yield the programs of some sources in an order that the seed decides, each in the next of our homes.
 
     Programs that cannot run there are left out.
     """

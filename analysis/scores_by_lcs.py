@@ -1,4 +1,4 @@
-"""Figure 4-9 with automatic scores in the place of judges: what programs of each band of LCS do when they run.
+"""Figure 4-9 with automatic scores in the place of judges: results of running programs of each band of LCS.
 
 In the thesis people rated films of programs, and their ratings rose with LCS. No person was asked here: the engine says
 whether a program runs, how much of the reference's goal it reaches, and how much of its change of the home it makes.
@@ -16,17 +16,17 @@ from hearth.schemas.libraries import library
 from hearth.scoring.evaluate import METRICS, Scored
 
 BANDS = (0.25, 0.5, 0.65, 0.8, 0.95)
-"""Where bands of LCS begin, beside 0; from .5 on as in figure 4-9."""
+"""Lower bounds of bands of LCS, after 0; from .5 on as in figure 4-9."""
 
 JUDGES = {"executable": "runs", "goal_fraction": "share of the goal", "f1": "F1 of the change"}
-"""The scores that stand for judges, and what they are called in the figure."""
+"""The scores that stand for judges, and the figure's names for them."""
 
 
 class BandRow(NamedTuple):
     """The programs of a band of LCS, of steps by class.
 
     Attributes:
-        low, high: the band; only the last one has its upper end.
+        low, high: the band; only the last band includes its upper end.
         programs: in it.
         scores: the mean of each of `JUDGES`; None where no program has the score.
     """

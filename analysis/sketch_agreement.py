@@ -48,7 +48,7 @@ def compare(first: Path, second: Path, seed: int = 0) -> dict[str, Any]:
 
 
 def kappa(pairs: list[tuple[Keep, Keep]]) -> float:
-    """Cohen's kappa over steps: agreement beyond what both shares of kept steps would give by chance."""
+    """Return Cohen's kappa over steps: agreement beyond the chance agreement of both shares of kept steps."""
     steps = [each for one, other in pairs for each in zip(one, other, strict=True)]
     observed = sum(one == other for one, other in steps) / len(steps)
     first, second = (sum(each[place] for each in steps) / len(steps) for place in (0, 1))

@@ -110,7 +110,7 @@ class SketchEvaluation:
         return ranked
 
     def disagreements(self) -> Iterator[dict[str, Any]]:
-        """The programs with different sketches; each step with those that keep it."""
+        """Yield the programs with different sketches; each step with those that keep it."""
         for annotated, keep in self.rows:
             if keep != annotated.answer:
                 program = annotated.script.program
@@ -140,7 +140,7 @@ def _average(keeps: Iterable[Keep]) -> float | None:
 
 
 def annotated(place: Place, name: str, scripts: Iterable[Script], knowledge: Knowledge) -> Iterator[Annotated | None]:
-    """The annotations of a file with their programs; None for an annotation without a program.
+    """Yield the annotations of a file with their programs; None for an annotation without a program.
 
     A program is identified by its id, else by title, length and kept steps if these are unique.
 
@@ -169,7 +169,7 @@ def annotated(place: Place, name: str, scripts: Iterable[Script], knowledge: Kno
 
 
 def _described(script: Script, row: IngestedRow) -> Script:
-    """The script, with the annotation's description if it has none."""
+    """Return the script, with the annotation's description if it has none."""
     if script.program.description:
         return script
     return script._replace(program=replace(script.program, description=row["description"]))

@@ -98,7 +98,7 @@ def _labelled(label: str, values: Iterable[float]) -> dict[str, float]:
 
 
 def _counts(found: Iterable[Example]) -> dict[str, tuple[int, int]]:
-    """By rated name, numbers of steps and of those kept; of all steps under the empty name."""
+    """Return by rated name the numbers of steps and of kept steps; of all steps under the empty name."""
     steps: Counter[str] = Counter()
     kept: Counter[str] = Counter()
     for one in found:
@@ -114,7 +114,7 @@ def fit(found: Sequence[Example], fitted_on: str, base: SketchModel | None = Non
 
     Args:
         found: annotated programs, of two activities at least.
-        fitted_on: what they are, in words; stored in the model.
+        fitted_on: the kind of the programs, in words; stored in the model.
         base: a model of other annotations that this one builds on.
         seed: of the trees.
 
@@ -172,7 +172,7 @@ def _linear(matrix: Any, answers: NDArray[Any]) -> tuple[float, list[float]]:
 
 
 def parts(activities: Sequence[str], count: int, seed: int) -> NDArray[Any]:
-    """A part, from 0, for each row, whole activities in one part, parts of nearly equal size."""
+    """Return a part, from 0, for each row, whole activities in one part, parts of nearly equal size."""
     import numpy as np
 
     sizes = Counter(activities)
@@ -184,7 +184,7 @@ def parts(activities: Sequence[str], count: int, seed: int) -> NDArray[Any]:
 
 
 def _boosted(rows: _Rows, seed: int) -> tuple[float, tuple[Tree, ...]]:
-    """The logit before the trees, and the trees of several runs, each weighing its share."""
+    """Return the logit before the trees, and the trees of several runs, each weighing its share."""
     import numpy as np
     from sklearn.ensemble import GradientBoostingClassifier
 

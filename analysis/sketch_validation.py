@@ -1,4 +1,4 @@
-"""Cross-validation of learned sketches over activities, beside rules and majorities, with intervals of their leads."""
+"""Cross-validation of learned sketches over activities, with rules, majorities, and intervals of the leads."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ def _by_base(train: Sequence[Example], base: SketchModel | None, seed: int) -> C
 
 
 def _majority(place: int) -> Learned:
-    """Steps whose name at a place (0: the action, 1: with its objects) is kept more often than not, else by action."""
+    """Return steps whose name at a place (0.
+
+    The action, 1: with its objects) is kept more often than not, else by action.
+    """
 
     def learned(train: Sequence[Example], base: SketchModel | None, seed: int) -> Callable[[Example], Keep]:
         margins: Counter[str] = Counter()
@@ -50,7 +53,7 @@ def _majority(place: int) -> Learned:
 
 
 def _model(change: Callable[[SketchModel], SketchModel]) -> Learned:
-    """A fitted model, or one of its parts."""
+    """Return a fitted model, or one of its parts."""
 
     def learned(train: Sequence[Example], base: SketchModel | None, seed: int) -> Callable[[Example], Keep]:
         model = change(fit(train, "training folds", base, seed))
@@ -114,7 +117,7 @@ def _total(counts: dict[str, Counts]) -> dict[str, float]:
 
 
 def _lead(mine: dict[str, Counts], usual: dict[str, Counts], seed: int) -> dict[str, float]:
-    """The difference in F1 and its percentile interval; activities are drawn with replacement."""
+    """Return the difference in F1 and its percentile interval; activities are drawn with replacement."""
     import numpy as np
 
     table = np.array([[[c.both, c.extra, c.missing] for c in each.values()] for each in (mine, usual)], dtype=float)

@@ -74,7 +74,7 @@ def gallery(
     programs: Sequence[Program], knowledge: Knowledge, count: int = 24, seed: int = 0,
     size: tuple[int, int] = (320, 240), quality: str = "draft",
 ) -> Iterator[Pictured]:  # fmt: skip
-    """Steps in as many homes.
+    """Yield steps in as many homes.
 
     Args:
         programs: from which steps are chosen.
@@ -99,7 +99,7 @@ def _pictured(
     name: str, graph: EnvironmentGraph, programs: Iterator[Program], knowledge: Knowledge, done: Counter[str],
     number: int, seed: int, size: tuple[int, int], quality: str,
 ) -> Pictured | None:  # fmt: skip
-    """The step of some programs that is most worth a picture in a home: of an action that was shown least."""
+    """Return the step of some programs that is most worth a picture in a home: of an action that was shown least."""
     place, hour = Home.from_graph(graph, name, knowledge), HOURS[number % len(HOURS)]
     best: Pictured | None = None
     for program in programs:
@@ -128,7 +128,7 @@ def _rank(step: Step, done: Counter[str]) -> tuple[int, bool]:
 def picture_of(
     trajectory: Trajectory, keyframe: Keyframe, graph: EnvironmentGraph, size: tuple[int, int], quality: str = "draft"
 ) -> tuple[Image, bool]:
-    """A picture of what is done, from where it is seen best; and whether person and object can be recognised in it."""
+    """Return a picture of a step from its best camera, and whether person and object can be recognized in it."""
     rooms = {node.id: node.box for node in graph.nodes if node.category == ROOM_CATEGORY}
     named = tuple(dict.fromkeys(seen_as(node, keyframe.places) for node in named_nodes(keyframe.steps, rooms)))
     actor = keyframe.acting

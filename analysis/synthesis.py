@@ -31,7 +31,7 @@ DEFAULT_COUNT = 5_193
 FILE = Path(__file__).parent / "synthesis.yaml"
 
 LARGEST_WEIGHT = 1e12
-"""Of a grammar, at most."""
+"""Largest sum of weights in a grammar."""
 
 _TRIES = 60
 _DRAWS = 10_000
@@ -56,7 +56,7 @@ class Weighted:
 
     @classmethod
     def of(cls, weights: Mapping[Any, float]) -> Weighted:
-        """The entries of a mapping with positive weight.
+        """Return the entries of a mapping with positive weight.
 
         Raises:
             ValueError: there are none, or weights that are not numbers of any use.
@@ -67,7 +67,7 @@ class Weighted:
         return cls(tuple(kept), tuple(accumulate(kept.values())), max(kept, key=lambda name: kept[name]))
 
     def draw(self, chance: Random) -> str:
-        """A random name."""
+        """Return a random name."""
         return chance.choices(self.things, cum_weights=self.sums)[0]
 
 
@@ -90,7 +90,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """An activity: titles, distributions of objects by slot, parts, and what it is for."""
+    """An activity: titles, distributions of objects by slot, parts, and its aims."""
 
     name: str
     titles: tuple[str, ...]
@@ -136,7 +136,7 @@ class Synthetic:
     mentioned: tuple[tuple[ChosenPart, ...], ...] = ()
 
     def lines(self) -> list[str]:
-        """The steps as text."""
+        """Return the steps as text."""
         return [" ".join([f"[{action}]", *(f"<{name}> (1)" for name in names)]) for action, names in self.steps]
 
 
@@ -178,7 +178,7 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
 
 
 def _inherited(entry: Mapping[str, Any], entries: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A task's entry, with what it lacks from the task that it is like."""
+    """Return a task's entry, with its missing parts from the task that it is like."""
     return {**entries[entry["like"]], "aims": (), **entry} if "like" in entry else entry
 
 
@@ -227,7 +227,7 @@ def _faults(task: Task, known: Knowledge, words: Wording, file: str) -> Iterator
 
 
 def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -> Iterator[Synthetic]:
-    """Distinct programs, the same for the same seed; a larger count begins with a smaller one's.
+    """Yield distinct programs, the same for the same seed; a larger count begins with a smaller one's.
 
     Args:
         count: number of programs.
@@ -253,7 +253,7 @@ def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -
 
 
 def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | None:
-    """A program, or None if it is not executable: a third object to hold, a lamp switched on twice."""
+    """Return a program, or None if it is not executable: a third object to hold, a lamp switched on twice."""
     wanted = int(grammar.plan.draw(chance))
     names: list[str] = []
     for _ in range(_DRAWS):
@@ -283,7 +283,7 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
 
 
 def joined(parts: Iterable[ChosenPart], known: Knowledge) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The steps of some parts with their objects, and standing up before one walks away."""
+    """Yield the steps of some parts with their objects, and standing up before one walks away."""
     seated = False
     for _, part, chosen in parts:
         for action, slots in part.steps:
@@ -295,7 +295,7 @@ def joined(parts: Iterable[ChosenPart], known: Knowledge) -> Iterator[tuple[str,
 
 
 def _steps(parts: Sequence[ChosenPart], known: Knowledge) -> list[tuple[str, tuple[str, ...]]]:
-    """The steps of the parts, none twice in a row; empty if they contradict each other or hands are full."""
+    """Return the steps of the parts, none twice in a row; empty if they contradict each other or hands are full."""
     made: dict[tuple[str, str], str] = {}
     held: set[str] = set()
     seated = False
@@ -339,7 +339,7 @@ def _possible(
 def _describe(
     parts: Sequence[ChosenPart], aims: Sequence[str], grammar: Grammar, held_out: bool, chance: Random
 ) -> tuple[str, tuple[ChosenPart, ...]]:
-    """A description of the parts, and those that it mentions; commonsense ones may be omitted (thesis 3.3)."""
+    """Return a description of the parts, and those that it mentions; commonsense ones may be omitted (thesis 3.3)."""
     speaker = Speaker(grammar.words, chance.random() < grammar.first, chance)
     said = [each for each in parts if chance.random() < each.part.described] or list(parts[:1])
     clauses, mentioned = [], []
@@ -352,7 +352,7 @@ def _describe(
 
 
 def record(found: Synthetic, number: int, seed: int, splits: Mapping[str, str | None]) -> dict[str, Any]:
-    """A program as a line of JSON Lines that `ingest` reads, labelled as generated, with its parts in splits."""
+    """Return a program as a line of JSON Lines that `ingest` reads, labelled as generated, with its parts in splits."""
     return {
         "program_id": f"synthetic:{seed}:{number}",
         "origin": "synthetic",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import re
 from collections import Counter
@@ -15,6 +14,7 @@ from hearth.analysis.synthesis import Synthetic
 from hearth.datasets.format.near_duplicates import near_texts
 from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.schemas.rng import derive
+from hearth.storage.csv_files import rows_writer
 from hearth.storage.files import write_bytes
 
 SPLITS = {
@@ -23,7 +23,10 @@ SPLITS = {
     "pairs": "test: programs with a pair of tasks that train has only apart",
     "objects": "test: programs with an object of which train has no program",
 }
-"""What each split holds out. A tenth of the rest is `validation`; near duplicates of a later part have none."""
+"""The held-out part of each split.
+
+A tenth of the rest is `validation`. Near duplicates of a later part have no part.
+"""
 
 _OUT = {"tasks": 10, "pairs": 6, "objects": 30}
 """One name of this number is held out."""
@@ -39,11 +42,12 @@ class SplitText(NamedTuple):
 
 
 def splits(programs: Sequence[Synthetic], seed: int = 0) -> list[SplitText]:
-    """The part of every description in every split, by number of the program, from 1, and of its description, from 0.
+    """Return the part of every description in every split, by number of the program, from 1, and of its description,
+    from 0.
 
     Args:
         programs: in the order of their numbers.
-        seed: of what is held out; what `paraphrases` holds out is the same for every seed.
+        seed: of the held-out names; those that `paraphrases` holds out are the same for every seed.
     """
     texts = [(number, place) for number, one in enumerate(programs, 1) for place in range(len(one.descriptions))]
     near = _near([normalised(programs[number - 1].descriptions[place]) for number, place in texts])
@@ -75,7 +79,7 @@ def _names(split: str, one: Synthetic) -> list[str]:
 
 
 def _near(texts: Sequence[str]) -> list[list[int]]:
-    """For each text, the places of equal and nearly equal ones."""
+    """Return for each text the places of equal and nearly equal ones."""
     found: list[list[int]] = [[] for _ in texts]
     places: dict[str, list[int]] = {}
     for place, text in enumerate(texts):
@@ -94,7 +98,7 @@ _ORDER = ("train", "validation", "test")
 
 
 def _apart(parts: Sequence[str], near: Sequence[Sequence[int]]) -> Iterator[str | None]:
-    """The parts, without those of which a near duplicate is in a later part."""
+    """Yield the parts, without those of which a near duplicate is in a later part."""
     for part, like in zip(parts, near, strict=True):
         later = any(_ORDER.index(parts[other]) > _ORDER.index(part) for other in like)
         yield None if later else part
@@ -124,7 +128,7 @@ def figures(programs: Sequence[Synthetic], rows: Sequence[SplitText] = ()) -> di
 
 
 def of_first(rows: Sequence[SplitText]) -> dict[int, dict[str, str | None]]:
-    """The part of each program's first description in every split, by number of the program."""
+    """Return the part of each program's first description in every split, by number of the program."""
     found: dict[int, dict[str, str | None]] = {}
     for row in rows:
         if row.description == 0:
@@ -135,7 +139,7 @@ def of_first(rows: Sequence[SplitText]) -> dict[int, dict[str, str | None]]:
 def write(rows: Sequence[SplitText], seed: int, path: Path) -> None:
     """Write the parts of descriptions as CSV: split, program id, number of the description, part."""
     table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(("split", "program_id", "description", "part"))
-    writer.writerows((row.split, f"synthetic:{seed}:{row.program}", row.description, row.part or "") for row in rows)
+    write_rows = rows_writer(table)
+    write_rows([("split", "program_id", "description", "part")])
+    write_rows((row.split, f"synthetic:{seed}:{row.program}", row.description, row.part or "") for row in rows)
     write_bytes(path, table.getvalue().encode())

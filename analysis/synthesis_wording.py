@@ -38,13 +38,13 @@ class Wording:
     """The words.
 
     Attributes:
-        synonyms: a phrase of the grammar -> what may stand for it.
-        nouns: an object -> what people call it.
+        synonyms: a phrase of the grammar -> its alternatives.
+        nouns: an object -> people's names for it.
         like: adjectives.
         openers, links, endings: beginnings of the first, later and last sentences.
         aims: clauses of purpose and time.
         asides: sentences that name no step.
-        lists: what `<name>` stands for.
+        lists: the alternatives of `<name>`.
         known: other names of objects.
     """
 
@@ -65,7 +65,7 @@ class Wording:
         return re.compile(rf"(?<![\w{{])(?:{found})(?!\w)")
 
     def expanded(self, text: str, chance: Random) -> str:
-        """A text with an entry of its list for each `<name>`, and for those within."""
+        """Return a text with an entry of its list for each `<name>`, and for those within."""
         while "<" in text:
             text = _LIST.sub(lambda match: chance.choice(self.lists[match[1]]), text, count=1)
         return text
@@ -80,11 +80,11 @@ class Wording:
         return ""
 
     def reworded(self, clause: str, chance: Random) -> str:
-        """A clause with synonyms of its phrases."""
+        """Return a clause with synonyms of its phrases."""
         return self._phrases.sub(lambda match: chance.choice(self.synonyms[match[0]]), clause)
 
     def noun(self, name: str, chance: Random) -> str:
-        """What somebody calls a thing."""
+        """Return a person's word for a thing."""
         return chance.choice(self.nouns.get(name) or (plain(name),))
 
 
@@ -121,7 +121,7 @@ _PLAIN = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ce
 
 
 def plain(name: str) -> str:
-    """The name of a class as words."""
+    """Return the name of a class as words."""
     return _PLAIN.get(name) or name.removeprefix("food_").removeprefix("clothes_").replace("_", " ")
 
 
@@ -141,7 +141,7 @@ def _of_kind(say: tuple[str, ...], held_out: bool) -> tuple[str, ...]:
 
 
 def slots_of(template: str, subject: str, objects: Collection[str]) -> set[str]:
-    """The slots of objects that a clause names: see `Speaker.clause`."""
+    """Return the slots of objects that a clause names: see `Speaker.clause`."""
     return {*_SLOT.findall(_with_subject(template, subject, objects))}
 
 
@@ -150,7 +150,7 @@ def _with_subject(template: str, subject: str, objects: Collection[str]) -> str:
 
 
 class Speaker:
-    """Somebody who describes a program: remembers the last thing named, and speaks in one person."""
+    """A person who describes a program: remembers the last thing named, and speaks in one grammatical person."""
 
     def __init__(self, words: Wording, first_person: bool, chance: Random) -> None:
         self.words, self.first, self.chance = words, first_person, chance
@@ -158,7 +158,8 @@ class Speaker:
         self.last = ""
 
     def clause(self, template: str, objects: Mapping[str, str], subject: str = "") -> str:
-        """A clause with names of its objects, each called the same throughout, or `it` if it was the last one named.
+        """Return a clause with names of its objects, each called the same throughout, or `it` if it was the last one
+        named.
 
         Args:
             template: with slots of objects.
@@ -187,7 +188,7 @@ class Speaker:
         return f"{whose} {like}{noun}"
 
     def sentences(self, clauses: Sequence[str], aims: Sequence[str], join: float) -> list[str]:
-        """The clauses as sentences, some joined, some in the other order, with a purpose or time here and there."""
+        """Return the clauses as sentences, some joined, some in the other order, some with a purpose or time."""
         chance, rest = self.chance, list(clauses)
         found: list[str] = []
         aim = chance.randrange(len(rest)) if chance.random() < PURPOSE else -1
@@ -213,7 +214,7 @@ class Speaker:
         return f"I {self._bare(clause)}" if self.first else clause
 
     def _bare(self, clause: str) -> str:
-        """A clause without its subject, in the speaker's person."""
+        """Return a clause without its subject, in the speaker's person."""
         if not self.first:
             return clause
         return _YOU.sub(lambda match: "my" if match[1] else "I am" if match[2] else "I", clause)
@@ -241,7 +242,7 @@ def _capital(text: str) -> str:
 
 
 def mistyped(text: str, chance: Random) -> str:
-    """A text with one typing error: two letters swapped, one left out or one doubled, within a longer word."""
+    """Return a text with one typing error: two letters swapped, one left out or one doubled, within a longer word."""
     places = [match.start() for match in re.finditer(r"(?<=\w\w)\w(?=\w\w)", text)]
     if not places:
         return text

@@ -1,4 +1,4 @@
-"""How trainings of policies went, as a picture: imitation, then practice, a line for each checkpoint."""
+"""The course of policies' trainings, as a picture: imitation, then practice, a line for each checkpoint."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Run:
     Attributes:
         name: of its model.
         seed: of it.
-        scores: by phase, of each epoch; those of practice begin with what imitation had reached.
+        scores: by phase, of each epoch; those of practice begin with the last score of imitation.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Run:
 
 
 def runs(folders: Iterable[Path]) -> list[Run]:
-    """The trainings of checkpoints.
+    """Return the trainings of checkpoints.
 
     Raises:
         HearthError: MISSING_FILE, DAMAGED_FILE.
@@ -57,7 +57,7 @@ def runs(folders: Iterable[Path]) -> list[Run]:
 
 
 def drawn(found: Sequence[Run]) -> str:
-    """The picture, as SVG."""
+    """Return the picture, as SVG."""
     lines: list[str] = []
     for number, phase in enumerate(PHASES):
         there = [(run, run.scores[phase]) for run in found if phase in run.scores]

@@ -1,1 +1,1 @@
-"""What agents are asked to do, and how they did: tasks, goals, episodes, metrics, results; wire protocol."""
+"""Tasks for agents, and their results: tasks, goals, episodes, metrics, results; wire protocol."""

@@ -1,4 +1,4 @@
-"""Lines to and from somebody else: a child process, a loopback socket, or our own standard input and output.
+"""Lines to and from another program: a child process, a loopback socket, or our own standard input and output.
 
 A line that is too long is left out whole and reported; nobody is waited for longer than a deadline. Deadlines are
 times of `time.monotonic`. Threads read and write, since pipes can be waited for in no other way on every system.
@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-import signal
 import socket
-import subprocess
 import threading
 import time
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
+from hearth.challenges.agent_process import end, start
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -34,7 +33,7 @@ class Channel:
     Args:
         read: gives at most so many bytes, none once the other end is gone; it may wait.
         write: takes some of the bytes, and says how many; it may wait.
-        ends: called when nothing is read any more, and when nothing is written any more. Nobody else closes what is
+        ends: called when reading has ended, and when writing has ended. No other function closes a file that is
             read or written: its number could be another file's by the time that a thread uses it.
 
     Attributes:
@@ -89,7 +88,7 @@ class Channel:
         return self._skipping or len(self._received) < 2 * LONGEST_LINE
 
     def _writing(self) -> None:
-        """Write what is unsent."""
+        """Write the unsent bytes."""
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: self._ended or bool(self._unsent))
@@ -106,7 +105,7 @@ class Channel:
                 self._changed.notify_all()
 
     def send(self, line: bytes, deadline: float) -> None:
-        """Write a line. What can't be written by the deadline is written first the next time.
+        """Write a line; a rest that can't be written by the deadline is written first the next time.
 
         Raises:
             HearthError: TIMED_OUT; DISCONNECTED.
@@ -119,7 +118,10 @@ class Channel:
             self._flush(deadline)
 
     def _flush(self, deadline: float) -> None:
-        """Wait until nothing is unsent. Who has answered and gone was sent it, even before that is counted."""
+        """Wait until all output is sent.
+
+        An agent that has answered and exited had received everything, even if the count says otherwise.
+        """
         done = self._changed.wait_for(lambda: self._ended or not self._unsent, _left(deadline))
         if self._unsent and not self._received:
             self._need_open()
@@ -132,7 +134,7 @@ class Channel:
         self._skipping = end < 0
 
     def receive(self, deadline: float) -> bytes:
-        """The next line, without its end.
+        """Return the next line, without its end.
 
         Raises:
             HearthError: TIMED_OUT; DISCONNECTED; LINE_TOO_LONG, once for each such line.
@@ -147,7 +149,7 @@ class Channel:
                     raise HearthError.of(Code.TIMED_OUT, "the agent did not answer in time")
 
     def _line(self) -> bytes | None:
-        """A whole line of what was received, if there is one."""
+        """Return a whole line of the received bytes, if there is one."""
         end = self._received.find(b"\n")
         if end > LONGEST_LINE or (end < 0 and len(self._received) > LONGEST_LINE):
             self._skipping = True
@@ -188,7 +190,7 @@ class SocketChannel(Channel):
         """Close the socket."""
         super().close()
         with contextlib.suppress(OSError):
-            self._connection.shutdown(socket.SHUT_RDWR)  # who waits for it is woken
+            self._connection.shutdown(socket.SHUT_RDWR)  # wakes the reader
         for thread in self._threads:
             thread.join()
         self._connection.close()
@@ -208,9 +210,7 @@ class ProcessChannel(Channel):
         if not argv:
             raise HearthError.of(Code.EMPTY, "an agent's command is empty")
         try:
-            self.process = subprocess.Popen(
-                list(argv), stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, start_new_session=True
-            )
+            self.process = start(argv)
         except (OSError, ValueError) as error:
             message = f"the agent can't be started: {getattr(error, 'strerror', None) or error}"
             raise HearthError.of(Code.MISSING_FILE, message, file=argv[0][:200]) from error
@@ -219,25 +219,9 @@ class ProcessChannel(Channel):
         super().__init__(given.read, taken.write, (given.close, taken.close))
 
     def close(self, patience: float = 2.0) -> None:
-        """Close its input and wait some seconds for its end; then end it and what it started."""
+        """Close its input and wait some seconds for its end; then end the process and its children."""
         super().close()
-        for end in (None, *_ENDS):
-            if end is not None:
-                with contextlib.suppress(ProcessLookupError, PermissionError):
-                    end(self.process)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self.process.wait(patience)
-                break
-
-
-def _ends() -> tuple[Callable[[subprocess.Popen[bytes]], None], ...]:
-    """What ends a process: with all that it started, where processes have groups."""
-    if os.name == "nt":
-        return subprocess.Popen.terminate, subprocess.Popen.kill
-    return tuple(lambda process, by=by: os.killpg(process.pid, by) for by in (signal.SIGTERM, signal.SIGKILL))
-
-
-_ENDS = _ends()
+        end(self.process, patience)
 
 
 class StandardChannel(Channel):
@@ -262,7 +246,7 @@ class Listener:
         self.port: int = self._socket.getsockname()[1]
 
     def accept(self, wait: float) -> SocketChannel:
-        """The next agent that connects.
+        """Return the next agent that connects.
 
         Raises:
             HearthError: TIMED_OUT: none did within these seconds.

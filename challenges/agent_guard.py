@@ -1,4 +1,4 @@
-"""Agents of others in an episode: what crashes, hangs or answers nonsense ends it with a code, and nothing else."""
+"""Guards around others' agents in an episode: an agent that crashes, hangs or answers nonsense ends it with a code."""
 
 from __future__ import annotations
 
@@ -68,15 +68,17 @@ class Guarded:
             self.agent.reset(observation, goal, seed)
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """What it says, where that is allowed, or its instruction, if it may be tried; None otherwise.
+        """Return its message, where messages are allowed, or its instruction, if it may be tried; None otherwise.
 
         Raises:
             AgentError: there is no instruction: AGENT_FAILED, TIMED_OUT, BAD_ARGUMENT.
         """
         with self._watched():
             step = self.agent.act(observation, legal)
-            if step is None or (isinstance(step, Message) and self.messages and read_message(str(step)) == step):
-                return step
+            if step is None:
+                return None
+            if isinstance(step, Message) and self.messages and (said := read_message(str(step))) == step:
+                return said  # one of ours, whatever class the agent's is of
             if not isinstance(step, Step):
                 wanted = "a Step, a message that can be read, or None"
                 raise HearthError.of(Code.BAD_ARGUMENT, f"the answer is {type(step).__name__}, not {wanted}")
@@ -86,13 +88,13 @@ class Guarded:
             return None
 
     def _plain(self, step: Step, view: View) -> Step:
-        """The instruction as records have it: an action and nodes. Agents could write one in many ways."""
+        """Return the instruction as records have it: an action and nodes. Agents could write one in many ways."""
         home = view.world.home
         nodes = [ref.node for ref in step.objects if ref.node is not None]
         return Step(step.action, tuple(ObjectRef(home.classes[home.index[i]], 0, i) for i in nodes), self.number)
 
     def _may_try(self, step: Step, view: View) -> bool:
-        """Return whether it is about what is seen; the engine says then why it can't be done."""
+        """Return whether an instruction is about visible nodes; the engine then says why it is impossible."""
         ids = [ref.node for ref in step.objects]
         return step.action in self.allowed and all(isinstance(node, int) and view.sees(node) for node in ids)
 
@@ -104,24 +106,34 @@ class Guarded:
         except _Late:
             message = f"no answer within {self.seconds:g} s"
             raise AgentError(Diagnostic(Code.TIMED_OUT, message), self.number) from None
-        except (Exception, SystemExit, CancelledError, GeneratorExit) as error:
+        except _FAULTS as error:
             raise AgentError(_fault_of(error), self.number) from error
 
 
+_FAULTS = (Exception, SystemExit, CancelledError, GeneratorExit)
+"""Raised by an agent, they are its fault; an interrupt of the keyboard is ours."""
+
+
 def _fault_of(error: BaseException) -> Diagnostic:
-    """What an agent raised, of whose text nothing is taken for granted."""
-    if isinstance(error, HearthError) and error.diagnostics:
-        return error.diagnostics[0]
+    """Return the diagnostic of an error that an agent raised; its name, text and attributes may themselves fail."""
     try:
-        text = f": {error}"
-    except Exception:
-        text = ""
-    return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}{text}"[:300])
+        if type(error) is HearthError and error.diagnostics:
+            return error.diagnostics[0]
+        return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}: {error}"[:300])
+    except _FAULTS:
+        return Diagnostic(Code.AGENT_FAILED, _name_of(error))
+
+
+def _name_of(error: BaseException) -> str:
+    try:
+        return str(type.__dict__["__name__"].__get__(type(error)))[:300]
+    except _FAULTS:
+        return "an exception without a name"
 
 
 @contextmanager
 def _within(seconds: float) -> Iterator[None]:
-    """Interrupt what takes longer, where this is the thread that gets signals."""
+    """Interrupt a longer computation, if this is the thread that gets signals."""
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
         yield
         return

@@ -22,12 +22,12 @@ NAMES = ("wah", "owah")
 """The challenges; each is a file of this package."""
 
 VARIANTS = ("owah_partial", "owah_messages")
-"""Challenges beyond the thesis: each is one of `NAMES` with what its file says otherwise."""
+"""Challenges beyond the thesis: each is one of `NAMES` with the changes in its file."""
 
 
 @dataclass(frozen=True)
 class Split:
-    """Which tasks belong together.
+    """A set of tasks.
 
     Attributes:
         tasks: how many.
@@ -44,7 +44,7 @@ class Split:
 
 @dataclass(frozen=True)
 class Challenge:
-    """What agents are asked to do.
+    """A kind of task for agents.
 
     Attributes:
         name: its identifier.
@@ -52,7 +52,7 @@ class Challenge:
         grammar: its goals.
         never_at: classes of furniture that no thing of a goal is put at.
         ticks: after which an episode ends.
-        partial: whether agents see only what is around them.
+        partial: whether agents see only the area around them.
         messages: whether agents may say something instead of doing something (see `schemas.agent_messages`).
         bodies: whether agents stand in each other's way.
         strides: metres that each agent walks in a tick.
@@ -60,8 +60,8 @@ class Challenge:
         train, test: homes of training and of testing.
         held_out: how many goals of each set are for testing only.
         splits: by name.
-        demonstrations: how many there are beside the tasks.
-        habits: probabilities of what makes demonstrations hard to read (see `demonstrator`).
+        demonstrations: how many there are in addition to the tasks.
+        habits: probabilities of the habits that make demonstrations hard to read (see `demonstrator`).
     """
 
     name: str
@@ -92,7 +92,7 @@ class Challenge:
         return DEFAULT._replace(bodies=self.bodies, one_grip=True, made_bed=False, near_hands=False)
 
     def goals_in(self, home: Home) -> Mapping[Goal, float]:
-        """The goals of single sets that there may be in a home, with their probabilities."""
+        """Return the goals of single sets that there may be in a home, with their probabilities."""
         places = tuple(instance(name, home) for name in sorted(self.grammar.furniture))
         if places not in self._goals:  # homes with equal furniture have equal goals
             bound = {self.grammar.in_home(goal, home): share for goal, share in self.grammar.goals.items()}
@@ -104,13 +104,13 @@ class Challenge:
         return {}
 
     def allowed(self, knowledge: Knowledge) -> frozenset[str]:
-        """The actions that agents may try."""
+        """Return the actions that agents may try."""
         return knowledge.group(self.actions)
 
 
 @cache
 def challenge(name: str) -> Challenge:
-    """A challenge by name; read once.
+    """Return a challenge by name; read once.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is none of that name.

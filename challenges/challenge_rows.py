@@ -1,4 +1,4 @@
-"""A row of every table that a challenge publishes; each column has its meaning beside its type."""
+"""A row of every table that a challenge publishes; each column has its meaning next to its type."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class CountedRow(TypedDict):
 
 
 class TaskRow(TypedDict):
-    """A task: somebody wants something in a home."""
+    """A task: an agent has a goal in a home."""
 
     task_id: Annotated[str, "unique; files of tasks have it, too"]
     challenge: Annotated[str, "wah or owah"]
@@ -29,7 +29,7 @@ class TaskRow(TypedDict):
 
 
 class InstructionRow(TypedDict):
-    """What an agent tried in a tick."""
+    """An agent's attempt in a tick."""
 
     tick: Annotated[int, "from 0"]
     action: Annotated[str, "name of the action"]
@@ -44,7 +44,7 @@ class HabitRow(TypedDict):
 
 
 class DemonstrationRow(TypedDict):
-    """A task that somebody did alone, in its demonstration home."""
+    """A task that an agent did alone, in its demonstration home."""
 
     task_id: Annotated[str, "the task"]
     clean: Annotated[bool, "without habits: counting what was put where gives the goal away"]
@@ -81,7 +81,7 @@ class EpisodeRow(TypedDict):
 
 
 class TrajectoryRow(TypedDict):
-    """What an agent tried in a tick of an episode."""
+    """An agent's attempt in a tick of an episode."""
 
     episode_id: Annotated[str, "the episode"]
     tick: Annotated[int, "from 0"]
@@ -91,10 +91,10 @@ class TrajectoryRow(TypedDict):
 
 
 class PosteriorRow(TypedDict):
-    """How probable it was, for a helper that is not given the goal, that the goal has a predicate."""
+    """The probability, for a helper without the goal, that the goal has a predicate."""
 
     episode_id: Annotated[str, "the episode"]
-    tick: Annotated[int, "from 0; before what was done in it"]
+    tick: Annotated[int, "from 0; the belief before the actions of this tick"]
     predicate: Annotated[str, "as in `ON(plate, table)`; with the home's class of the furniture"]
     probability: Annotated[float, "by the exact posterior; rows below a hundredth are left out"]
     wanted: Annotated[int, "how often the true goal wants it; 0 if it does not"]

@@ -1,4 +1,4 @@
-"""Demonstrations: somebody does a task alone, in another home (thesis 6.3, B.2.2)."""
+"""Demonstrations: an agent does a task alone, in another home (thesis 6.3, B.2.2)."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Demonstration:
     """A task that was done.
 
     Attributes:
-        task: what was done.
+        task: the task that was done.
         actions: of each tick the instruction that was tried, `Grab 41`; None where nothing was.
-        habits: what else was begun, with the tick.
+        habits: the habits that were acted on, with the tick.
     """
 
     task: Task
@@ -36,7 +36,7 @@ class Demonstration:
     habits: tuple[tuple[int, str], ...]
 
     def ticks(self, knowledge: Knowledge) -> list[Tick]:
-        """What happened, done again."""
+        """Replay the demonstration and return its ticks."""
         which = challenge(self.task.challenge)
         env = Env(which.rules, which.partial)
         env.restore(self.task.demonstration_start(knowledge))
@@ -51,7 +51,7 @@ class Wish:
     """A demonstration to be played.
 
     Attributes:
-        task: what is to be done.
+        task: the task to do.
         rate: of habits; 0 for a clean demonstration, 1 for the challenge's, 2 for twice as many.
         known: gives the knowledge.
     """
@@ -62,7 +62,7 @@ class Wish:
 
 
 def demonstrate(wish: Wish) -> Demonstration:
-    """Let somebody do a task in its demonstration's home."""
+    """Let an agent do a task in its demonstration's home."""
     which, knowledge = challenge(wish.task.challenge), wish.known()
     for number in range(TRIES):
         last = number == TRIES - 1
@@ -90,7 +90,7 @@ def _played(task: Task, demonstrator: Demonstrator, knowledge: Knowledge, number
 def demonstrations(
     tasks: Sequence[Task], known: Known, rate: float = 1.0, workers: int = 1, seen: Seen = unseen
 ) -> Iterator[Demonstration]:
-    """The demonstrations of tasks, in their order, for any number of workers.
+    """Yield the demonstrations of tasks, in their order, for any number of workers.
 
     Args:
         tasks: which.

@@ -1,7 +1,7 @@
-"""Who demonstrates a task: a human-like agent that now and then does something else.
+"""The demonstrator of a task: a human-like agent that sometimes does something else.
 
-A clean demonstration gives the goal away: counting what was put where infers every goal. People open the wrong
-cupboard, put away something in passing, and change their minds.
+A clean demonstration gives the goal away: counting placements infers every goal. People open the wrong cupboard, put
+away something in passing, and change their minds.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Demonstrator:
     """The human-like agent with habits that have nothing to do with its goal.
 
     Attributes:
-        began: what else it began to do, with the tick: the habit's name.
+        began: the habits that it acted on, each with its tick and the habit's name.
     """
 
     def __init__(self, which: Challenge, task: Task, habits: Mapping[str, float]) -> None:
@@ -55,7 +55,7 @@ class Demonstrator:
         self.waiting = [name for name in once if self.chooser.random() < self.habits[name]]
 
     def act(self, observation: View, legal: Legal) -> Step | None:
-        """What it does now: for its goal, or something else."""
+        """Return its current instruction: for its goal, or for something else."""
         free = not observation.world.agents[observation.agent].held
         if self.errand is None and free and observation.tick >= FIRST:
             if (failing := self._failing(observation)) is not None:
@@ -133,5 +133,5 @@ class Demonstrator:
 
 
 def _met(progress: Progress) -> int:
-    """All nodes that count for a goal."""
+    """Return all nodes that count for a goal."""
     return reduce(or_, (mask for watch in progress.watches for mask in watch.met), 0)

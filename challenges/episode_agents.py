@@ -1,4 +1,4 @@
-"""Who takes part in episodes: agents by name, or somebody's own, and what the helper is asked to do."""
+"""The agents of episodes: agents by name or the user's own, and the goal of the helper."""
 
 from __future__ import annotations
 
@@ -22,22 +22,23 @@ from hearth.schemas.libraries import lacking, remedy
 from hearth.storage.files import file_digest
 
 NOBODY = "none"
-"""The helper of who acts alone."""
+"""The helper's name for a main agent that acts alone."""
 
 GOALS = ("true", "inferred", "inferred_states", "random", "none")
-"""What a helper may be asked to do: the main agent's goal, what counting or the network of models infers of it from a
-demonstration, another task's goal, nothing.
+"""The goals that a helper may have.
+
+The main agent's, the goal that counting or a network infers from a demonstration, another task's goal, none.
 """
 
 
 @dataclass(frozen=True)
 class Lineup:
-    """Who takes part.
+    """The agents that take part.
 
     Attributes:
         main: the agent that is helped, by name.
-        helper: who helps, by name; `none`, or `FILE.py:CLASS` for an agent of one's own.
-        goal: what the helper is asked to do; as its row in the registry says where empty.
+        helper: the helper's name; `none`, or `FILE.py:CLASS` for the user's own agent.
+        goal: the helper's goal; as its row in the registry says where empty.
         seconds: an agent may think about a tick as long as this.
     """
 
@@ -48,11 +49,11 @@ class Lineup:
 
     @property
     def code(self) -> str:
-        """A digest of the file of a helper of one's own; "" for ours."""
+        """Return a digest of the file of a user's own helper; "" for ours."""
         return file_digest(Path(self.helper.rpartition(":")[0]))[:32] if ":" in self.helper else ""
 
     def checked(self) -> Lineup:
-        """The same, with the goal that the helper is asked to reach.
+        """Return the same lineup, with the goal of the helper filled in.
 
         Raises:
             HearthError: BAD_ARGUMENT: there is no such agent or goal; MISSING_FILE.
@@ -71,7 +72,7 @@ class Lineup:
         return Lineup(self.main, self._helper, goal, self.seconds)
 
     def installed(self) -> Lineup:
-        """The same, if the networks that its helper asks can be asked here.
+        """Return the same lineup, if the networks that its helper needs are installed.
 
         Raises:
             HearthError: MISSING_FILE: the extra `models` is not installed.
@@ -84,7 +85,7 @@ class Lineup:
         return self
 
     def fits(self, which: Challenge) -> Lineup:
-        """The same, if its helper can work in a challenge.
+        """Return the same lineup, if its helper can work in a challenge.
 
         Raises:
             HearthError: BAD_ARGUMENT: it would end every episode there: it talks where nobody may, or its network was
@@ -103,7 +104,7 @@ class Lineup:
 
     @property
     def _helper(self) -> str:
-        """The helper that is made for this goal, where there is one: `hp` with the true goal is `hp_true`."""
+        """Return the helper that is made for this goal, where there is one: `hp` with the true goal is `hp_true`."""
         special = f"{self.helper}_{self.goal}"
         return special if special in HELPERS else self.helper
 
@@ -130,7 +131,7 @@ class Lineup:
         return found
 
     def _own(self, which: Challenge) -> Agent:
-        """A helper that is made without its partner: one that is not told the goal, or somebody's own."""
+        """Return a helper that is made without its partner: one that does not know the goal, or the user's own."""
         if self.helper in ONLINE:
             return ONLINE[self.helper].make(which.goals_in)
         made = load(self.helper)
@@ -147,7 +148,7 @@ class Lineup:
 
 
 def partial_of(agent: Any) -> bool | None:
-    """Return whether an agent sees only its surroundings, for `Player`.
+    """Return whether an agent sees only the part around it, for `Player`.
 
     Our oracles see everything, near-sighted agents never do; the challenge decides for all others.
     """
@@ -162,7 +163,7 @@ def _unknown(what: str, name: str, known: Any) -> HearthError:
 
 
 def load(place: str) -> Any:
-    """The class of an agent of one's own, as the command line names it: `FILE.py:CLASS`.
+    """Return the class of a user's own agent, named as on the command line: `FILE.py:CLASS`.
 
     Raises:
         HearthError: MISSING_FILE; BAD_ARGUMENT: the file has no such class, or does not run.

@@ -1,4 +1,4 @@
-"""Recorded episodes as arrays: what an agent saw, chose and earned in each tick."""
+"""Recorded episodes as arrays: an agent's observation, choice and reward in each tick."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class EpisodeArrays:
     Attributes:
         task: its id.
         seed: number of the episode of its task.
-        goal: what the main agent wants, as text.
+        goal: the main agent's goal, as text.
         observations: T + 1 dicts of arrays (see `observation_arrays.Encoder.spaces`).
         actions: (T, 3) triples (see `action_codes.Triples`); zeros where it waited or spoke.
         rewards: (T,) (see `rewards.Rewards`).
@@ -44,7 +44,7 @@ class EpisodeArrays:
 
 
 def session_of(task: Task, record: Record, knowledge: Knowledge) -> Session:
-    """The start of a recorded episode, for learners; a helper is told the goal if it was asked to reach it."""
+    """Return the start of a recorded episode, for learners; a helper gets the goal if it was asked to reach it."""
     which = challenge(task.challenge)
     start = start_of(task, knowledge, None if record.helped else 1)
     goal = task.goal_in(start.home)
@@ -63,7 +63,7 @@ def session_of(task: Task, record: Record, knowledge: Knowledge) -> Session:
 
 
 def arrays_of(task: Task, record: Record, agent: int, knowledge: Knowledge) -> tuple[EpisodeArrays, Session]:
-    """Do a recorded episode again, and note what an agent had of it.
+    """Replay a recorded episode, and return an agent's part of it.
 
     Raises:
         HearthError: UNKNOWN_AGENT: there was no such agent; every fault of the record's actions.
@@ -96,7 +96,7 @@ def _seen(session: Session, agent: int) -> Arrays:
 def episodes_of(
     results: Results, agent: int, knowledge: Knowledge, limit: int | None = None
 ) -> Iterator[tuple[EpisodeArrays, Session]]:
-    """The episodes of a run in which an agent took part: all with a helper, or, without one, all alone.
+    """Yield the episodes of a run in which an agent took part: all with a helper, or, without one, all alone.
 
     Args:
         results: of a run.

@@ -1,4 +1,4 @@
-"""Episodes as executions, so that what films programs films what agents and people did."""
+"""Episodes as executions, so that the cameras of programs can film agents and people."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from hearth.simulation.world.world import World
 
 
 def execution_of(start: World, ticks: Sequence[Tick], title: str = "", rules: Rules = DEFAULT) -> Execution:
-    """An episode as the execution of a program of what was done in it.
+    """Return an episode as the execution of a program of its successful actions.
+
+    Ticks in which no agent succeeded are left out: the world is the same after them.
 
     Ticks in which nobody did anything, or nobody could, are left out: the world is the same after them.
 

@@ -24,9 +24,9 @@ class Player:
     """An agent in an episode.
 
     Attributes:
-        agent: who decides.
-        goal: what it is asked to reach; None if nothing.
-        partial: whether it sees only what is around it; as the episode has it where None.
+        agent: the agent that decides.
+        goal: the goal it is asked to reach; None if it has none.
+        partial: whether it sees only the area around it; as the episode has it where None.
     """
 
     agent: Agent
@@ -42,7 +42,7 @@ class Played:
         env: with its ticks.
         progress: of the goal in the real world, at the start and after each tick.
         fault: why an agent could not go on, which ended the episode; None where all could.
-        said: what was said in each tick, by number.
+        said: the messages of each tick, by number.
     """
 
     env: Env
@@ -62,18 +62,18 @@ class Played:
 
 
 class Playing:
-    """An episode under way: what each player sees, one tick after the other, and whether it is over.
+    """An episode under way: each player's view, tick by tick, and whether it is over.
 
     Attributes:
         env: with its ticks.
         progress: of the goal in the real world, at the start and after each tick.
-        said: what was said in each tick, by number.
+        said: the messages of each tick, by number.
 
     Args:
         start: a world in which character n belongs to player n.
-        goal: what ends the episode.
-        actions: what may be tried; everything where None.
-        partial: for each player, whether it sees only what is around it.
+        goal: the goal that ends the episode.
+        actions: the allowed actions; all where None.
+        partial: for each player, whether it sees only the area around it.
         limit: ticks after which it ends.
         rules: of actions.
         messages: whether agents may say something instead of doing something; it is dropped otherwise.
@@ -105,14 +105,14 @@ class Playing:
         return self.progress[-1].satisfied or len(self.env.ticks) >= self.limit
 
     def view(self, number: int) -> View:
-        """What a player sees now."""
+        """Return a player's current observation."""
         self.env.partial = self._partial[number]
         seen = self.env.observe(number)
         last = self.said[-1] if self.said else {}
         return replace(seen, messages=tuple((n, said) for n, said in last.items() if n != number)) if last else seen
 
     def legal(self, number: int) -> Legal:
-        """What a player may do now."""
+        """Return a player's currently legal actions."""
         self.env.partial = self._partial[number]
         return self.env.legal(number, actions=self._allowed)
 
@@ -142,11 +142,11 @@ def play(
 
     Args:
         start: a world in which character n belongs to player n.
-        goal: what ends the episode; progress is counted in the real world only.
-        players: who acts.
+        goal: the goal that ends the episode; progress is counted in the real world only.
+        players: the agents that act.
         seed: of the episode; each agent gets one derived from it.
-        actions: what may be tried; everything where None.
-        partial: whether agents see only what is around them.
+        actions: the allowed actions; all where None.
+        partial: whether agents see only the area around them.
         limit: ticks after which it ends.
         rules: of actions.
         messages: whether agents may say something instead of doing something.

@@ -1,4 +1,4 @@
-"""Episodes of tasks: played by agents, or again from a record of what they did."""
+"""Episodes of tasks: played by agents, or replayed from a record of their actions."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ class Job:
     """An episode to be played.
 
     Attributes:
-        task: what is to be done.
+        task: the task to do.
         seed: number of the episode of its task.
-        lineup: who takes part.
+        lineup: the agents that take part.
         helped: whether the helper does.
-        helper_goal: what the helper is asked to do; None if nothing.
+        helper_goal: the helper's goal; None if it has none.
         known: gives the knowledge.
         make: makes the main agent, if it is not the lineup's; a function that other processes find.
     """
@@ -64,8 +64,8 @@ class Record:
         task: id of its task.
         seed: number of the episode of its task.
         helped: whether there was a helper.
-        helper_goal: what that was asked to do, in the words of the grammar; None if nothing.
-        actions: of each tick what each agent tried, `Grab 41`; None where it waited.
+        helper_goal: the helper's goal, in the words of the grammar; None if it has none.
+        actions: of each tick each agent's attempt, `Grab 41`; None where it waited.
         final: digest of the world at the end.
         metrics: the outcome.
         end: why an agent could not go on: its number, a code, a message; None where all could.
@@ -113,7 +113,7 @@ def played(job: Job) -> Record:
 
 
 def again(task: Task, record: Record, knowledge: Knowledge) -> tuple[Outcome, str]:
-    """What comes of doing again what was done: the outcome and the digest of the last world.
+    """Replay the actions of a record and return the outcome and the digest of the last world.
 
     Raises:
         HearthError: BAD_ARGUMENT: an action is not one of the challenge's; REPLAY_DIFFERS: something is done after the
@@ -128,7 +128,7 @@ def again(task: Task, record: Record, knowledge: Knowledge) -> tuple[Outcome, st
 def replayed(
     which: Challenge, task: Task, record: Record, start: World
 ) -> tuple[list[Tick], list[Goal | None], list[Progress]]:
-    """The ticks of a record, the agents' goals, and the progress of the first; errors as of `again`."""
+    """Return the ticks of a record, the agents' goals, and the progress of the first; errors as of `again`."""
     home = start.home
     helper_goal = None if record.helper_goal is None else which.grammar.read(record.helper_goal)
     goals = _goals(which, task, helper_goal, home, record.helped)
@@ -150,14 +150,14 @@ def replayed(
 def measured(
     which: Challenge, start: World, ticks: Sequence[Tick], goals: Sequence[Goal | None], progress: Sequence[Progress]
 ) -> Outcome:
-    """The metrics of an episode."""
+    """Return the metrics of an episode."""
     columns = analysed(which, start, ticks, goals, progress)
     return outcome(which, progress[-1].satisfied, len(ticks), columns)
 
 
 @lru_cache(maxsize=4)
 def start_of(task: Task, knowledge: Knowledge, agents: int | None) -> World:
-    """A task's start, kept for its next episode."""
+    """Return a task's start, kept for its next episode."""
     return task.start(knowledge, agents)
 
 
@@ -171,21 +171,21 @@ def _goals(which: Challenge, task: Task, helper_goal: Goal | None, home: Home, h
 def read_choices(
     texts: Sequence[str | None], home: Home, allowed: frozenset[str], messages: bool
 ) -> tuple[dict[int, Step], dict[int, Message]]:
-    """What each agent did, and what each said, in a tick of a record; errors as of `read_instruction`."""
+    """Return each agent's instruction and message in a tick of a record; errors as of `read_instruction`."""
     said = {n: told for n, text in enumerate(texts) if messages and text and (told := read_message(text)) is not None}
     rest = {n: text for n, text in enumerate(texts) if text is not None and n not in said}
     return {n: read_instruction(text, n, home, allowed) for n, text in rest.items()}, said
 
 
 def written(choice: Choice) -> str | None:
-    """What was done as records have it: `Grab 41`; what was said as `schemas.agent_messages` has it."""
+    """Return an instruction as records have it, `Grab 41`, or a message as `schemas.agent_messages` has it."""
     if choice is None or isinstance(choice, Message):
         return None if choice is None else str(choice)
     return " ".join([choice.action, *(str(ref.node) for ref in choice.objects)])
 
 
 def read_instruction(text: str, agent: int, home: Home, allowed: frozenset[str]) -> Step:
-    """The inverse of how records write instructions.
+    """Return the instruction of a record's text.
 
     Raises:
         HearthError: BAD_ARGUMENT: it is not an instruction about nodes of the home.

@@ -1,7 +1,7 @@
-"""What went wrong, or well, between two agents in an episode, counted from its ticks alone (thesis 6.5.3, figure 6-7).
+"""Faults and merits of two agents in an episode, counted from its ticks alone (thesis 6.5.3, figure 6-7).
 
-Everything is counted in the real world, from what was done and what each agent could see, so that a replay counts the
-same.
+Everything is counted in the real world, from the actions and from each agent's visible nodes, so that a replay counts
+the same.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Columns:
         false_beliefs: things that an agent had seen where they no longer are, since the other took them unseen.
         needless: things that the helper moved and that in the end neither count for the goal nor are where they were.
         revealed: containers that the helper opened and the main agent then saw open.
-        blocked: ticks that an agent lost to the other, who stood in its way, or had what it reached for.
+        blocked: ticks that an agent lost because the other stood in its way, or had the thing that it reached for.
         idle: ticks in which the helper did nothing, or nothing that could be done.
         failed: instructions that could not be done.
     """
@@ -64,12 +64,12 @@ NAMES = tuple(each.name for each in fields(Columns))
 def analysed(
     which: Challenge, start: World, ticks: Sequence[Tick], goals: Sequence[Goal | None], progress: Sequence[Progress]
 ) -> Columns:
-    """The columns of an episode.
+    """Return the columns of an episode.
 
     Args:
         which: the challenge.
         start: the world at its start.
-        ticks: what happened.
+        ticks: of the episode.
         goals: of each agent, naming furniture of the home; None where an agent has none.
         progress: of the main agent's goal, at the start and after each tick.
     """
@@ -128,7 +128,7 @@ class _Analysis:
     def _by(self, did: Step | None, before: Progress, lost: int, tick: Tick) -> int:
         """Return how many of these nodes an instruction is about and moves away.
 
-        One may also go to what the other takes.
+        An agent may also walk to the nodes that the other takes.
         """
         about = lost & self._named(did) if lost and did is not None else 0
         if not about or did is None:
@@ -161,7 +161,7 @@ class _Analysis:
             self.columns.blocked += failure.code is Code.CONFLICT or not others.isdisjoint(failure.objects)
 
     def _count_seen(self, did: dict[int, Step], tick: Tick) -> None:
-        """False beliefs and revealed places: what each agent sees, and has seen."""
+        """Count false beliefs and revealed places: each agent's present and past observations."""
         if len(self.start.agents) < 2:
             return
         seen = [self._seen(tick.world, number) for number in range(len(self.start.agents))]
@@ -186,7 +186,7 @@ class _Analysis:
         return visible(world, world.agents[number]) if self.which.partial else world.home.everything
 
     def finished(self, last: Progress) -> Columns:
-        """The columns, with what is known at the end only."""
+        """Return the columns, including those that are known at the end only."""
         assert self.world is not None
         counted = reduce(or_, (mask for watch in last.watches for mask in watch.met), 0)
         for i in indices(self.taken & ~counted):
@@ -195,7 +195,7 @@ class _Analysis:
 
 
 def _lost(before: Progress, after: Progress) -> int:
-    """The nodes that counted for a goal and do no longer."""
+    """Return the nodes that counted for a goal and do no longer."""
     if before is after:
         return 0
     found = 0

@@ -32,14 +32,14 @@ TRIES = 1_000
 class GoalSet:
     """A kind of activity: the predicates that its goals are made of.
 
-    Exactly one of `most`, `each` and `pool` says what is wanted.
+    Exactly one of `most`, `each` and `pool` gives the wanted things.
 
     Attributes:
         name: its identifier.
         title: its name in the thesis.
-        asked: what people are asked to do.
+        asked: the instruction for people.
         relation: of things to the target.
-        targets: classes of furniture; one is chosen.
+        targets: classes of furniture; one of them is chosen.
         most: class -> most wanted of it; `total` things in all, every goal equally probable.
         each: classes, or choices of one, of which as many are wanted as there are `people`.
         pool: classes, of which `total` things are wanted in all; how many classes, which and how many of each are
@@ -47,7 +47,7 @@ class GoalSet:
         total: fewest and most things.
         people: fewest and most.
         always: wanted each time, once.
-        free: of these, what is not counted among a goal's predicates.
+        free: of these, the literals that are not counted among a goal's predicates.
     """
 
     name: str
@@ -65,18 +65,18 @@ class GoalSet:
 
     @cached_property
     def classes(self) -> tuple[str, ...]:
-        """The classes of things that its goals count, but not those of `always`."""
+        """Return the classes of things that its goals count, but not those of `always`."""
         return (*self.most, *self.pool, *(name for choice in self.each for name in choice))
 
     @cached_property
     def predicates(self) -> tuple[Literal[Name], ...]:
-        """Every predicate of its goals."""
+        """Return every predicate of its goals."""
         pairs = product(self.classes, self.targets)
         return (*self.always, *(Literal.of(self.relation, name, target) for name, target in pairs))
 
     @cached_property
     def goals(self) -> Mapping[Goal, float]:
-        """Its goals with their probabilities, which sum to 1, in a fixed order."""
+        """Return its goals with their probabilities, which sum to 1, in a fixed order."""
         wanted = dict(self._wanted())
         share = 1 / (sum(wanted.values()) * len(self.targets))
         always = tuple((literal, 1) for literal in self.always)
@@ -97,7 +97,7 @@ class GoalSet:
 
     @cached_property
     def furniture(self) -> frozenset[str]:
-        """The furniture that its predicates name."""
+        """Return the furniture that its predicates name."""
         named = {str(literal.target) for literal in self.always if literal.name != HOLDS}
         return frozenset({*self.targets, *named})
 
@@ -113,7 +113,7 @@ class GoalSet:
 
 
 def _of_pool(pool: tuple[str, ...], total: int) -> Iterator[tuple[Counts, float]]:
-    """The multisets of a size: the number of classes is uniform, then which, then how many of each."""
+    """Yield the multisets of a size: the number of classes is uniform, then which, then how many of each."""
     kinds = range(1, min(len(pool), total) + 1)
     for number in kinds:
         ways = math.comb(len(pool), number) * math.comb(total - 1, number - 1)
@@ -158,12 +158,12 @@ class Grammar:
 
     @cached_property
     def predicates(self) -> tuple[Literal[Name], ...]:
-        """Every predicate of any goal, each once, in a fixed order: 30 of Watch-And-Help."""
+        """Return every predicate of any goal, each once, in a fixed order: 30 of Watch-And-Help."""
         return tuple(dict.fromkeys(each for one in self.sets.values() for each in one.predicates))
 
     @cached_property
     def goals(self) -> Mapping[Goal, float]:
-        """Every goal of a single set with its probability, all sets being equally probable.
+        """Return every goal of a single set with its probability, all sets being equally probable.
 
         1,123 of Watch-And-Help, 661 of Online Watch-And-Help.
         """
@@ -184,7 +184,7 @@ class Grammar:
 
     @cached_property
     def furniture(self) -> frozenset[str]:
-        """All furniture that predicates name; a task's home has all of it."""
+        """Return all furniture that predicates name; a task's home has all of it."""
         return frozenset(name for one in self.sets.values() for name in one.furniture)
 
     @cached_property
@@ -196,12 +196,12 @@ class Grammar:
         return {_squeezed(str(literal)): literal for literal in self.predicates}
 
     def sample(self, chooser: Random, sets: int = 1) -> tuple[Goal, tuple[str, ...]]:
-        """A goal of some sets, and their names; errors as of `sample_of`."""
+        """Return a goal of some sets, and their names; errors as of `sample_of`."""
         some = tuple(chooser.choice(list(combinations(self.sets, sets)) or [()]))
         return self.sample_of(some, chooser), some
 
     def sample_of(self, sets: Sequence[str], chooser: Random) -> Goal:
-        """A goal of some sets at once, drawn anew until it has few enough predicates.
+        """Return a goal of some sets at once, drawn anew until it has few enough predicates.
 
         Raises:
             HearthError: BAD_ARGUMENT: there are no sets, or all goals drawn are too large.
@@ -217,7 +217,7 @@ class Grammar:
         return chooser.choices(tuple(goals), tuple(goals.values()))[0]
 
     def joined(self, goals: Iterator[Goal]) -> Goal:
-        """All of these goals at once."""
+        """Return all of these goals at once."""
         found: dict[Literal[Name], int] = {}
         for goal in goals:
             for literal, number in goal:
@@ -229,25 +229,25 @@ class Grammar:
         return sum(number for literal, number in goal if literal not in self._free)
 
     def prior(self, goal: Goal) -> float:
-        """The probability of a goal of a single set; 0 of any other."""
+        """Return the probability of a goal of a single set; 0 of any other."""
         return self.goals.get(goal, 0.0)
 
     def counts(self, goal: Goal) -> tuple[int, ...]:
-        """Return how often each of `predicates` is wanted: what goal inference predicts (appendix B.3.1)."""
+        """Return how often each of `predicates` is wanted: the output of goal inference (appendix B.3.1)."""
         wanted = dict(goal)
         return tuple(wanted.get(literal, 0) for literal in self.predicates)
 
     def written(self, goal: Goal) -> dict[str, int]:
-        """A goal as data: its predicates' texts with their counts."""
+        """Return a goal as data: its predicates' texts with their counts."""
         return {str(literal): number for literal, number in goal}
 
     def read(self, given: Mapping[str, int] | str) -> Goal:
-        """The inverse of `written`; also of text, `ON(plate, dinnertable): 2 and INSIDE(wine, fridge)`.
+        """Invert `written`; also read text, `ON(plate, dinnertable): 2 and INSIDE(wine, fridge)`.
 
         Names may be as in the thesis: `IN`, `HOLD(Alice, book)`, `SIT(Alice, sofa)`; `;` and `,` may stand for `and`.
 
         Raises:
-            HearthError: SYNTAX; UNKNOWN_OBJECT for what is not a predicate of the grammar.
+            HearthError: SYNTAX; UNKNOWN_OBJECT for a literal that is not a predicate of the grammar.
         """
         pairs = list(given.items()) if isinstance(given, Mapping) else _pairs(given)
         found: dict[Literal[Name], int] = {}
@@ -265,7 +265,7 @@ class Grammar:
         return Goal(tuple((literal, found[literal]) for literal in self.predicates if literal in found))
 
     def in_home(self, goal: Goal, home: Home) -> Goal:
-        """The goal that names the home's instances of furniture (the first by id), and things by their classes.
+        """Return the goal that names the home's instances of furniture (the first by id), and things by their classes.
 
         Raises:
             HearthError: UNKNOWN_OBJECT: the home lacks furniture.
@@ -281,7 +281,7 @@ _PAIR = re.compile(r"\s*(\w+\s*\([^()]*\))\s*(?::\s*(\d{1,3}))?\s*(?:and\b|;|,|$
 
 
 def _squeezed(text: str) -> str:
-    """A predicate's text in one spelling."""
+    """Return a predicate's text in one spelling."""
     words = [_OTHER_NAMES.get(word, word) for word in re.findall(r"[\w:]+", text.lower())]
     return " ".join(["on", *words[1:]] if words[:1] == ["sit"] else words)
 

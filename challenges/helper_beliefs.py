@@ -1,4 +1,4 @@
-"""What a helper believes of the goal in each tick of an episode: the episode is done again, and the helper watches."""
+"""A helper's beliefs about the goal in each tick of an episode: the episode is replayed, and the helper watches."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from hearth.schemas.rng import derive
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """What a helper believes before a tick.
+    """A helper's beliefs before a tick.
 
     Attributes:
         wanted: (P) the probability, by its exact posterior, that the goal has each predicate.
@@ -36,7 +36,7 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class Beliefs:
-    """What a helper believed in an episode.
+    """A helper's beliefs in an episode.
 
     Attributes:
         predicates: (P) in the words of the grammar.

@@ -1,4 +1,4 @@
-"""Training of what helpers have learnt, and the checkpoints that come of it."""
+"""Training of the learned parts of helpers, and the resulting checkpoints."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
 
 PROPOSALS = {"proposals": "train", "proposals-small": "train-small"}
-"""The split that goal proposals are learnt from, by what is learnt."""
+"""The split that goal proposals are learned from, by subject of training."""
 
 GOALS = {"goals": "things", "goals-moments": "moments"}
-"""The shape of the network that infers goals, by what is learnt."""
+"""The shape of the network that infers goals, by subject of training."""
 
 WHAT = (*GOALS, "subgoals", "actions", *PROPOSALS)
-"""What may be learnt."""
+"""The subjects of training."""
 
 PASSES = 12
 """Over the demonstrations, where goals are learnt."""
@@ -43,7 +43,7 @@ def train(
 
     Args:
         name: of the challenge.
-        what: one of `WHAT`.
+        what: the subject, one of `WHAT`.
         out: the checkpoint's folder.
         known: gives the knowledge.
         seed: of all that is drawn.

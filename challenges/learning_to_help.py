@@ -1,8 +1,8 @@
 """Training of Hybrid and HRL: the planner's choices are imitated, then A2C goes on from there (thesis B.3.3 to B.3.5).
 
-The thesis begins with episodes in which the agent is alone; imitating the planner takes their place. It trains with
-RMSprop and 126,000 episodes, here it is AdamW and what two cores give. The weights of imitation stay where practice
-earns no more on the tasks for validation.
+The thesis begins with episodes in which the agent is alone; here imitating the planner takes their place. The thesis
+trains with RMSprop and 126,000 episodes; this training uses AdamW and as many episodes as two cores can play. The
+weights of imitation stay if practice earns no more on the tasks for validation.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from hearth.storage.files import value_digest
 from hearth.storage.parallel import Seen, spread, unseen
 
 DISCOUNT = 0.98
-"""Of a tick."""
+"""Discount of a tick."""
 
 VALIDATION = 30
 """Tasks of training that are for validation only."""
@@ -46,7 +46,7 @@ VALIDATION = 30
 
 @dataclass(frozen=True)
 class Lesson:
-    """A task that the planner is to do beside the human-like agent, its choices noted."""
+    """A task that the planner does next to the human-like agent, with its choices recorded."""
 
     task: Task
     words: Words
@@ -55,7 +55,7 @@ class Lesson:
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is practised.
+    """The amount of practice.
 
     Attributes:
         imitation: passes over the planner's choices.
@@ -73,11 +73,11 @@ class Effort:
 
 
 EFFORTS = {"subgoals": Effort(), "actions": Effort(imitation=9, epochs=2, updates=5)}
-"""What two cores give in some minutes."""
+"""Amounts of training that two cores manage in some minutes."""
 
 
 def lesson(given: Lesson) -> tuple[list[Trace], list[Trace]]:
-    """What the planner chose in an episode: subgoals, and actions for each of them."""
+    """Return the planner's choices in an episode: subgoals, and actions for each of them."""
     main = HumanLike()
     shown = ShownChoices(given.words, main)
     done = beside(given.task, main, shown, given.known, 0)
@@ -89,7 +89,7 @@ def lesson(given: Lesson) -> tuple[list[Trace], list[Trace]]:
 
 
 def beside(task: Task, main: HumanLike, helper: Any, known: Known, seed: int) -> Played:
-    """An episode in which a helper is told the true goal."""
+    """Play an episode in which a helper knows the true goal."""
     which, knowledge = challenge(task.challenge), known()
     start = start_of(task, knowledge, None)
     goal = task.goal_in(start.home)
@@ -106,14 +106,14 @@ def beside(task: Task, main: HumanLike, helper: Any, known: Known, seed: int) ->
 
 
 def high_rewards(done: Played) -> list[float]:
-    """Of each tick: 2 for a predicate, whoever brings it about, -0.1 for the tick (B.3.3)."""
+    """Return the reward of each tick: 2 for a predicate, by any agent, -0.1 for the tick (B.3.3)."""
     worlds = [done.env.ticks[0].before, *(tick.world for tick in done.env.ticks)] if done.env.ticks else []
     pairs = list(zip(done.progress, worlds, strict=False))
     return [HIERARCHICAL.of(before, after, 1) for before, after in pairwise(pairs)]
 
 
 def traced(choices: Sequence[Choice], rewards: Sequence[float]) -> Trace:
-    """Choices with what came of them."""
+    """Return choices with their returns."""
     from hearth.models.helping.actor_critic import discounted
 
     returns = discounted(rewards, [each.tick for each in choices], DISCOUNT)
@@ -131,7 +131,7 @@ def learn(
     seen: Seen = unseen,
     trained: Seen = unseen,
 ) -> TrainedPolicy:
-    """A policy trained on the challenge's tasks of training.
+    """Return a policy trained on the challenge's tasks of training.
 
     Args:
         name: of the challenge.
@@ -178,7 +178,7 @@ def learn(
 
 
 Rollout = Callable[[Task, int], tuple[list[Trace], float]]
-"""(task, seed) -> what was chosen in an episode, and all its rewards."""
+"""(task, seed) -> the choices in an episode, and all its rewards."""
 
 
 def _aims_of(task: Task, known: Known) -> Any:
@@ -256,12 +256,12 @@ def _batches(traces: Sequence[Trace], size: int) -> Iterator[Batch]:
 
 
 def _score(rollout: Rollout, tasks: Sequence[Task]) -> float:
-    """The mean of all rewards of an episode."""
+    """Return the mean of all rewards of an episode."""
     return mean(rollout(task, 0)[1] for task in tasks)
 
 
 def _helping(policy: TrainedPolicy, known: Known, task: Task, seed: int) -> tuple[list[Trace], float]:
-    """An episode of Hybrid beside the human-like agent."""
+    """Play an episode of Hybrid next to the human-like agent."""
     helper = Hybrid(policy)
     done = beside(task, HumanLike(), helper, known, seed)
     rewards = high_rewards(done)
@@ -269,7 +269,7 @@ def _helping(policy: TrainedPolicy, known: Known, task: Task, seed: int) -> tupl
 
 
 def _practising(policy: TrainedPolicy, known: Known, task: Task, seed: int) -> tuple[list[Trace], float]:
-    """An episode in which one is alone, and one predicate of a goal is wanted (B.3.4)."""
+    """Play an episode of an agent alone, with one predicate of a goal (B.3.4)."""
     agent = Practice(policy)
     _, rewards = practised(task, agent, known, seed)
     return ([traced(agent.actions, rewards)] if agent.actions else []), sum(rewards)

@@ -23,19 +23,19 @@ if TYPE_CHECKING:
     from hearth.models.proposals.goal_proposals import TrainedGoalProposals
 
 RATE = 0.0009
-"""Of learning (table C.3)."""
+"""Rate of learning (table C.3)."""
 
 
 @dataclass(frozen=True)
 class Wish:
-    """An episode to be played: a task, and what gives the knowledge."""
+    """An episode to be played: a task, and the source of the knowledge."""
 
     task: Task
     known: Known
 
 
 def episode(wish: Wish) -> Episode:
-    """Somebody doing a task alone, as the network sees it; errors as of `Task.start`."""
+    """Play an agent alone at a task, and return it as the network sees it; errors as of `Task.start`."""
     which, knowledge = challenge(wish.task.challenge), wish.known()
     start = wish.task.start(knowledge, 1)
     goal = wish.task.goal_in(start.home)
@@ -67,7 +67,7 @@ def learn(
     seen: Seen = unseen,
     trained: Seen = unseen,
 ) -> TrainedGoalProposals:
-    """The network trained on a split of a challenge.
+    """Return the network trained on a split of a challenge.
 
     Args:
         name: of the challenge.
@@ -86,5 +86,5 @@ def learn(
 
 
 def episodes(tasks: Sequence[Task], known: Known, workers: int = 1, seen: Seen = unseen) -> list[Episode]:
-    """The episodes of tasks, in their order, for any number of workers."""
+    """Return the episodes of tasks, in their order, for any number of workers."""
     return [each for each in spread(episode, [Wish(task, known) for task in tasks], workers, seen) if each.states]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def watched(wish: Wish) -> Watched:
-    """A demonstration as its states show it, with its goal."""
+    """Return a demonstration as its states show it, with its goal."""
     task = wish.task
     ticks = demonstrate(wish).ticks(wish.known())
     seen = sightings(ticks, tuple(bound(task, ticks[0].before.home))) if ticks else ()
@@ -35,12 +35,12 @@ def watched(wish: Wish) -> Watched:
 def examples(
     tasks: Sequence[Task], known: Known, rate: float = 1.0, workers: int = 1, seen: Seen = unseen
 ) -> list[Watched]:
-    """The demonstrations of tasks, in their order, for any number of workers."""
+    """Return the demonstrations of tasks, in their order, for any number of workers."""
     return list(spread(watched, [Wish(task, rate, known) for task in tasks], workers, seen))
 
 
 def goals_of_tests(name: str) -> frozenset[Counts]:
-    """The goals of all tasks that are for testing."""
+    """Return the goals of all tasks that are for testing."""
     which = challenge(name)
     testing = [split for split, found in which.splits.items() if found.homes == which.test]
     return frozenset(which.grammar.counts(task.goal) for split in testing for task in suite(name, split).tasks)

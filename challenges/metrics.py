@@ -1,4 +1,4 @@
-"""How good a helper is: of one episode, and of many with standard errors over tasks (thesis 6.5.1)."""
+"""Scores of a helper: for one episode, and for many with standard errors over tasks (thesis 6.5.1)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hearth.challenges.challenge_definition import Challenge
 from hearth.challenges.failure_analysis import NAMES, Columns
 
 PER_TICK = 0.004
-"""What each tick costs of the reward."""
+"""Price of a tick, in units of the reward."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Outcome:
     columns: Columns
 
     def as_json(self) -> dict[str, Any]:
-        """As result files have it."""
+        """Return the outcome as result files have it."""
         return {
             "success": self.success,
             "ticks": self.ticks,
@@ -50,7 +50,7 @@ METRICS = frozenset({"success", "ticks", "length", "reward", *NAMES})
 
 
 def outcome(which: Challenge, success: bool, ticks: int, columns: Columns) -> Outcome:
-    """The metrics of an episode that was played."""
+    """Return the metrics of an episode that was played."""
     length = ticks if success else which.ticks
     return Outcome(success, ticks, length, round(success - PER_TICK * length, 6), columns)
 
@@ -69,7 +69,7 @@ class Mean:
 
 
 def mean(values: Sequence[float]) -> Mean:
-    """The mean of the tasks' values and its standard error."""
+    """Return the mean of the tasks' values and its standard error."""
     value = math.fsum(values) / len(values)
     if len(values) < 2:
         return Mean(value, None)
@@ -85,7 +85,7 @@ class Episodes(Sequence[Mapping[str, float]]):
         self._count = 0
 
     def append(self, metrics: Mapping[str, float]) -> None:
-        """Add an episode; what earlier ones lack, or it lacks, is nan."""
+        """Add an episode; metrics that it or earlier episodes lack are nan."""
         for name in metrics.keys() - self._columns.keys():
             self._columns[name] = array("d", [math.nan] * self._count)
         for name, values in self._columns.items():

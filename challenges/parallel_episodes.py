@@ -91,7 +91,7 @@ def _alone(job: Job) -> Record:
 
 
 def _ended(job: Job) -> Record:
-    """The record of an episode whose process ends."""
+    """Return the record of an episode whose process ends."""
     which, knowledge = challenge(job.task.challenge), job.known()
     end = {"agent": 1, "code": str(Code.AGENT_FAILED), "message": "its process ended"}
     goal = None if job.helper_goal is None else which.grammar.written(job.helper_goal)

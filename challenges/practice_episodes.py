@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hearth.models.helping.policies import TrainedPolicy
 
 CLOSE, DONE = 0.005, 1.0
-"""For being close to what is wanted or to where it goes, and for taking or putting it: tenths of the thesis's."""
+"""Rewards for being close to a wanted thing or its target, and for taking or putting it: tenths of the thesis's."""
 
 LIMIT = 100
 """Ticks after which practising ends."""
@@ -41,7 +41,7 @@ class Practice(Learned):
 
 
 def practised(task: Task, agent: Practice, known: Known, seed: int) -> tuple[Played, list[float]]:
-    """An episode alone, in which one predicate of a task's goal is wanted once; the rewards of its ticks."""
+    """Return an episode alone, in which one predicate of a task's goal is wanted once; the rewards of its ticks."""
     which, knowledge = challenge(task.challenge), known()
     start = start_of(task, knowledge, 1)
     things = [(each, 1) for each, _ in task.goal_in(start.home) if not _of_characters(each.subject)]
@@ -64,7 +64,7 @@ def _of_characters(term: Name | None) -> bool:
 
 
 def low_rewards(done: Played, number: int, aims: Aims, part: int, choices: Sequence[Choice]) -> list[float]:
-    """The rewards of an episode's ticks for what one agent chose for one part of a goal."""
+    """Return the rewards of an episode's ticks for one agent's choices for one part of a goal."""
     wanted = next(each for each in aims.wanted if each.part == part)
     things, places = wanted.counted, wanted.candidates.targets
     chosen = {each.tick for each in choices}

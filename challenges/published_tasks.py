@@ -25,7 +25,7 @@ DEMONSTRATIONS = "demonstrations"
 
 
 def tasks(name: str, split: str, seed: int = PUBLISHED, limit: int | None = None) -> tuple[Task, ...]:
-    """The tasks of a split; goal sets come in turn, and so do the goals of a set where all are equally probable.
+    """Return the tasks of a split; goal sets come in turn, and so do the goals of a set where all are equally probable.
 
     Args:
         name: of the challenge.
@@ -53,7 +53,7 @@ def tasks(name: str, split: str, seed: int = PUBLISHED, limit: int | None = None
 
 
 def split_of(which: Challenge, split: str) -> Split:
-    """A split by name.
+    """Return a split by name.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is none of that name.
@@ -67,7 +67,7 @@ def split_of(which: Challenge, split: str) -> Split:
 
 
 def _order(which: Challenge, split: Split, sets: Sequence[str], chooser: Random) -> list[Goal]:
-    """The goals of a set in the order of their turns; none where goals are drawn by their probability."""
+    """Return the goals of a set in the order of their turns; none where goals are drawn by their probability."""
     if split.goals == "all":
         return []
     held_out = _held_out(which.name, sets[0])
@@ -85,5 +85,5 @@ def _held_out(name: str, goal_set: str) -> frozenset[Goal]:
 
 
 def held_out(name: str) -> frozenset[Goal]:
-    """The goals of single sets that are for testing only."""
+    """Return the goals of single sets that are for testing only."""
     return frozenset(goal for goal_set in challenge(name).grammar.sets for goal in _held_out(name, goal_set))

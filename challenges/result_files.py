@@ -1,4 +1,4 @@
-"""Result files: JSON lines. The first is what was run, each other an episode with all that was done in it."""
+"""Result files: JSON lines. The first describes the run, each other is an episode with all its actions."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ MOST_SEEDS = 1_000
 
 @dataclass(frozen=True)
 class Header:
-    """What was run.
+    """The description of a run.
 
     Attributes:
         suite: the tasks.
-        lineup: who took part; names only.
+        lineup: the agents that took part; names only.
         seeds: episodes of each task, numbered from 0.
         version: of Hearth.
         episodes: task, seed and kind of those that there are; None where there are all. People do not do all.
-        code: digest of the file of a helper of one's own; "" for ours.
+        code: digest of the file of a user's own helper; "" for ours.
     """
 
     suite: Suite
@@ -47,7 +47,7 @@ class Header:
 
     @property
     def helped(self) -> tuple[bool, ...]:
-        """The kinds of episodes: without a helper, then with one, if there is one."""
+        """Return the kinds of episodes: without a helper, then with one, if there is one."""
         return (False,) if self.lineup.helper == NOBODY else (False, True)
 
     @property
@@ -56,7 +56,7 @@ class Header:
         return list(self.each_key())
 
     def each_key(self) -> Iterator[tuple[str, int, bool]]:
-        """The same one by one: a short file of a stranger may say that it has millions."""
+        """Yield the same keys one by one: a short file of a stranger may say that it has millions."""
         if self.episodes is not None:
             yield from self.episodes
             return
@@ -70,7 +70,7 @@ class Header:
         return len(self.suite.tasks) * self.seeds * len(self.helped)
 
     def as_json(self) -> dict[str, Any]:
-        """As the first line has it."""
+        """Return the header as the first line has it."""
         agents = {name: value for name, value in asdict(self.lineup).items() if name != "seconds"}
         return {
             "format": FORMAT,
@@ -83,8 +83,9 @@ class Header:
 
 
 class FileRecords(Collection[Record]):
-    """The episodes of a file, read anew each time that somebody goes through them: of many thousands not all fit in
-    memory. A file that has become another meanwhile raises the errors of `read`.
+    """The episodes of a file, read anew in each iteration: of many thousands not all fit in memory.
+
+    A file that was replaced meanwhile raises the errors of `read`.
     """
 
     def __init__(self, header: Header, path: Path) -> None:
@@ -103,10 +104,10 @@ class FileRecords(Collection[Record]):
 
 @dataclass(frozen=True)
 class Results:
-    """What came of a run.
+    """The results of a run.
 
     Attributes:
-        header: what was run.
+        header: the description of the run.
         records: its episodes.
     """
 
@@ -114,12 +115,12 @@ class Results:
     records: Collection[Record]
 
     def outcomes(self, helped: bool) -> Outcomes:
-        """The metrics of the episodes of one kind, by task."""
+        """Return the metrics of the episodes of one kind, by task."""
         return by_task((each.task, each.metrics) for each in self.records if each.helped == helped)
 
 
 def line(header: Header, record: Record) -> bytes:
-    """An episode as a line, with a digest of itself and of what was run."""
+    """Return an episode as a line, with a digest of itself and of its run's description."""
     import orjson
 
     data = episode_data(record)
@@ -127,14 +128,14 @@ def line(header: Header, record: Record) -> bytes:
 
 
 def first_line(header: Header) -> bytes:
-    """The first line."""
+    """Return the first line."""
     import orjson
 
     return orjson.dumps(header.as_json()) + b"\n"
 
 
 def episode_data(record: Record) -> dict[str, Any]:
-    """An episode as JSON."""
+    """Return an episode as JSON."""
     return {
         "task": record.task,
         "seed": record.seed,
@@ -155,7 +156,7 @@ def _digest(header: Header, episode: Mapping[str, Any]) -> str:
 
 
 def read(path: Path) -> Results:
-    """The results of a file; whether they are true, `verification` finds out.
+    """Return the results of a file; whether they are true, `verification` finds out.
 
     Raises:
         HearthError: MISSING_FILE, FILE_TOO_LARGE; BAD_JSON with the line; every fault of the tasks.
@@ -169,7 +170,7 @@ def read(path: Path) -> Results:
 
 
 def read_header(data: bytes, file: str) -> Header:
-    """The first line; errors as of `read`."""
+    """Return the first line; errors as of `read`."""
     given = _mapping(data, file, 1)
     agents, seeds = given.get("agents"), given.get("seeds")
     if given.get("format") != FORMAT or not isinstance(agents, Mapping):
@@ -187,7 +188,7 @@ def read_header(data: bytes, file: str) -> Header:
 
 
 def _some_episodes(given: Any, suite: Suite, seeds: int, file: str) -> tuple[tuple[str, int, bool], ...] | None:
-    """The episodes that a file names because it does not have all; None where it has."""
+    """Return the episodes that a file names because it does not have all; None where it has."""
     if given is None:
         return None
     tasks = {task.id for task in suite.tasks}
@@ -201,7 +202,10 @@ def _some_episodes(given: Any, suite: Suite, seeds: int, file: str) -> tuple[tup
 
 
 def read_records(header: Header, lines: Iterable[bytes], file: str) -> Iterator[Record]:
-    """The episodes of the other lines; errors as of `read`, and DAMAGED_FILE where a line is not as it was written."""
+    """Yield the episodes of the other lines.
+
+    Errors are those of `read`, and DAMAGED_FILE where a line is not as it was written.
+    """
     for number, each in enumerate(lines, 2):
         given = dict(_mapping(each, file, number))
         written = given.pop("digest", None)
@@ -239,7 +243,7 @@ _FIELDS: dict[str, tuple[type, ...]] = {
 
 
 def episode_of(given: Mapping[str, Any]) -> Record | None:
-    """An episode of JSON; None where it is not one."""
+    """Return an episode of JSON; None where it is not one."""
     if given.keys() != _FIELDS.keys() or not all(isinstance(given[name], kinds) for name, kinds in _FIELDS.items()):
         return None
     actions = given["actions"]

@@ -1,4 +1,4 @@
-"""Whether tasks can be done: somebody who sees everything does each of them alone."""
+"""The test that tasks can be done: an agent that sees everything does each of them alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hearth.storage.parallel import Seen, spread, unseen
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """What came of a task.
+    """The result of a task.
 
     Attributes:
         task: its id.
@@ -30,11 +30,11 @@ class Solved:
         """Return why the task is none; "" where it can be done."""
         if not self.ticks:
             return f"{self.task}: its goal is reached at the start"
-        return "" if self.success else f"{self.task}: not done in {self.ticks} ticks by who sees everything"
+        return "" if self.success else f"{self.task}: not done in {self.ticks} ticks by an agent that sees everything"
 
 
 def solved(tasks: Sequence[Task], known: Known, workers: int = 1, seen: Seen = unseen) -> Iterator[Solved]:
-    """The oracle's episodes, in the order of the tasks.
+    """Yield the oracle's episodes, in the order of the tasks.
 
     Args:
         tasks: which.

@@ -48,7 +48,7 @@ class Site(NamedTuple):
 
 
 def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowledge, agents: int | None = None) -> World:
-    """A world in which nothing of a goal is reached, all of it can be, and its agents stand in different rooms.
+    """Return a world in which nothing of a goal is reached, all of it can be, and its agents stand in different rooms.
 
     Of each class there are as many things as are wanted, up to one more than any goal wants. For each thing first the
     relation and the class of its place are drawn, then the place: where such things belong, or, if in this home they
@@ -59,7 +59,7 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
         goal: of its grammar.
         home: name of one of our homes.
         seed: all the randomness there is.
-        knowledge: what the home is read with.
+        knowledge: the knowledge that the home is read with.
         agents: the first of the challenge's characters only; the world is the same but for the others.
 
     Raises:
@@ -91,7 +91,7 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
 
 @lru_cache(maxsize=32)
 def site_of(name: str, home: str, knowledge: Knowledge) -> Site:
-    """A home of ours without the things that goals of a challenge are about; made once.
+    """Return a home of ours without the things that goals of a challenge are about; made once.
 
     Raises:
         HearthError: UNKNOWN_HOME.
@@ -146,7 +146,7 @@ def _characters(which: Challenge, home: Home, chooser: Random) -> tuple[list[Nod
 
 
 def _thing(base: Base, name: str, number: int) -> Node:
-    """A new node of the class that the knowledge knows by that name."""
+    """Return a new node of the class that the knowledge knows by that name."""
     known = base.knowledge.object_class(name)
     called = known.name if known else name
     category, properties, states = base.kind(called)

@@ -21,7 +21,7 @@ from hearth.storage.input_files import read_lines
 from hearth.storage.parallel import Seen, unseen
 
 INFERRED = {"inferred": "actions", "inferred_states": "states"}
-"""How the demonstration is read, by what the helper is asked to do (see `agents.demonstration_goals`)."""
+"""The method that reads the demonstration, by the helper's kind of goal (see `agents.demonstration_goals`)."""
 
 
 def run(
@@ -37,12 +37,12 @@ def run(
 ) -> Results:
     """Play every task several times, without the helper and with it, and write all that was done.
 
-    What a stopped run had written is kept; the same call goes on from there. A helper of one's own whose file has
-    changed is another: all is played anew.
+    The episodes that a stopped run had written are kept; the same call continues from there. A user's own helper whose
+    file has changed is another helper: all is played anew.
 
     Args:
         suite: the tasks.
-        lineup: who takes part.
+        lineup: the agents that take part.
         seeds: episodes of each task.
         out: the file of results.
         known: gives the knowledge.
@@ -77,7 +77,7 @@ def run(
 def _kept(header: Header, partial: Path) -> int:
     """Return how many episodes of the same run are in a file that a stopped run left.
 
-    What is half written is cut off.
+    A half-written line is cut off.
     """
     if not partial.exists():
         return 0
@@ -113,7 +113,7 @@ def _jobs(header: Header, known: Known, workers: int) -> list[Job]:
 
 
 def helper_goal(kind: str, task: Task, seed: int, tasks: Sequence[Task]) -> Goal | None:
-    """What the helper is asked to do, if that need not be inferred; a random goal is that of another of the tasks."""
+    """Return the helper's goal, if it need not be inferred; a random goal is that of another of the tasks."""
     if kind == "true":
         return task.goal
     if kind == "none" or kind in INFERRED:
@@ -125,7 +125,7 @@ def helper_goal(kind: str, task: Task, seed: int, tasks: Sequence[Task]) -> Goal
 
 
 def _with(taken: Mapping[tuple[str, int], Record], jobs: Sequence[Job], over: Spread) -> Iterator[Record]:
-    """The episodes in the order of the jobs; those alone that are there already are not played again."""
+    """Yield the episodes in the order of the jobs; those alone that are there already are not played again."""
     found = [None if job.helped else taken.get((job.task.id, job.seed)) for job in jobs]
     rest = over([job for job, record in zip(jobs, found, strict=True) if record is None])
     return (record or next(rest) for record in found)

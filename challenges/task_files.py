@@ -60,12 +60,12 @@ class Suite:
 
 
 def suite(name: str, split: str, seed: int = published_tasks.PUBLISHED, limit: int | None = None) -> Suite:
-    """The tasks of a split (see `published_tasks.tasks`)."""
+    """Return the tasks of a split (see `published_tasks.tasks`)."""
     return Suite(name, split, seed, published_tasks.tasks(name, split, seed, limit))
 
 
 def task_data(task: Task) -> dict[str, Any]:
-    """A task as JSON."""
+    """Return a task as JSON."""
     return {
         "id": task.id,
         "home": task.home,
@@ -96,7 +96,7 @@ def write(path: Path, found: Suite) -> None:
 
 
 def read(path: Path) -> Suite:
-    """The tasks of a file.
+    """Return the tasks of a file.
 
     Raises:
         HearthError: MISSING_FILE, FILE_TOO_LARGE; BAD_JSON with the task at fault; DAMAGED_FILE where the tasks are not
@@ -112,7 +112,7 @@ def read(path: Path) -> Suite:
 
 
 def read_suite(data: Any, file: str) -> Suite:
-    """The tasks of a file's content; errors as of `read`."""
+    """Return the tasks of a file's content; errors as of `read`."""
     if not isinstance(data, Mapping) or data.get("format") != FORMAT:
         remedy = "`challenge tasks wah --split test-1 --out FILE` writes one"
         raise HearthError.of(Code.BAD_JSON, f"not a file of tasks ({FORMAT})", file=file, suggestion=remedy)
@@ -143,7 +143,7 @@ def _is_seed(value: Any) -> bool:
 
 
 def _task(which: Challenge, split: str, given: Any, place: str) -> Task:
-    """A task of a file, with every value checked."""
+    """Return a task of a file, with every value checked."""
     if not isinstance(given, Mapping):
         raise HearthError.of(Code.BAD_JSON, "not a task", file=place)
     homes = (*which.train, *which.test)

@@ -1,4 +1,4 @@
-"""Tasks: who is where, what one wants, and the home in which another may have seen it done."""
+"""Tasks: the places of the agents, the main agent's goal, and the home of a demonstration of it."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ class Task:
     seed: int
 
     def start(self, knowledge: Knowledge, agents: int | None = None) -> World:
-        """The world in which it starts, with the first of its characters or all; equal every time."""
+        """Return the world in which it starts, with the first of its characters or all; equal every time."""
         return start(challenge(self.challenge), self.goal, self.home, self.seed, knowledge, agents)
 
     def demonstration_start(self, knowledge: Knowledge) -> World:
-        """The world in which its demonstration starts: one character is there."""
+        """Return the world in which its demonstration starts: one character is there."""
         seed = derive(self.seed, "demonstration")
         return start(challenge(self.challenge), self.goal, self.demonstration_home, seed, knowledge, 1)
 
     def goal_in(self, home: Home) -> Goal:
-        """The goal with the instances of furniture of a home."""
+        """Return the goal with the instances of furniture of a home."""
         return challenge(self.challenge).grammar.in_home(self.goal, home)
 
 
@@ -78,7 +78,7 @@ def task(name: str = "wah", split: str = "train", number: int = 0, seed: int = 0
 
 
 def drawn(which: Challenge, split: str, task_id: str, goal: Goal, sets: tuple[str, ...], chooser: Random) -> Task:
-    """A task with a goal: its home is one of the split's, its demonstration's another of the homes of training.
+    """Return a task with a goal: its home is one of the split's, its demonstration's another of the homes of training.
 
     A split that the challenge does not name has the homes of training.
     """

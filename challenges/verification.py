@@ -1,4 +1,4 @@
-"""Whether results are true: every episode is done again, and every metric computed again."""
+"""The verification of results: every episode is replayed, and every metric computed again."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, spread, unseen
 
 MOST_AT_ONCE = 40
-"""Episodes of a task that one process does again before it says what it found."""
+"""Episodes of a task that one process replays before it reports its findings."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """Episodes of one task that are to be done again.
+    """Episodes of one task that are to be replayed.
 
     Attributes:
         task: theirs.
-        records: what was done.
+        records: the episodes.
         known: gives the knowledge.
         jobs: to be played anew, so that the agents' choices are compared, too; empty otherwise.
     """
@@ -37,7 +37,7 @@ class Check:
 
 
 def read_whole(path: Path) -> Results:
-    """The results of a file that has the episodes which its first line says, whatever was done in them.
+    """Return the results of a file that has the episodes which its first line says, whatever was done in them.
 
     Raises:
         HearthError: those of `result_files.read`; DAMAGED_FILE: it has others.
@@ -52,14 +52,14 @@ def read_whole(path: Path) -> Results:
 def verify(
     results: Results, file: str, known: Known, workers: int = 1, agents: bool = False, seen: Seen = unseen
 ) -> list[Diagnostic]:
-    """The episodes that are not as recorded; empty where all are.
+    """Return the episodes that are not as recorded; empty where all are.
 
     Args:
         results: as read; reading has compared each line with its digest.
         file: their name in faults.
         known: gives the knowledge.
         workers: processes.
-        agents: also let the agents play each episode anew, and compare what they do.
+        agents: also let the agents play each episode anew, and compare their actions.
         seen: called with the number of episodes done.
     """
     found = [Diagnostic(Code.REPLAY_DIFFERS, fault, file) for fault in _missing(results)]
@@ -85,7 +85,7 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
     tasks = {task.id: task for task in header.suite.tasks}
     grammar = challenge(header.suite.challenge).grammar
     if agents and ":" in header.lineup.helper:  # a file of results, perhaps a stranger's, names no code that is run
-        message = f"the helper `{header.lineup.helper[:60]}` is not one of ours, and is not run by what a file says"
+        message = f"the helper `{header.lineup.helper[:60]}` is not one of ours, and results name no code to run"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="verify without --agents")
     lineup = header.lineup.checked() if agents else header.lineup
     for name, group in groupby(results.records, lambda each: each.task):
@@ -98,7 +98,7 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
 
 
 def differences(check: Check) -> tuple[int, list[str]]:
-    """Return how many episodes of a task were done again, and what was different then."""
+    """Return how many episodes of a task were replayed, and the differences."""
     found = []
     # Those without a helper first, then those with one: their starts differ.
     for number, record in sorted(enumerate(check.records), key=lambda pair: pair[1].helped):

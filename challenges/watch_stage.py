@@ -44,7 +44,7 @@ def inferred(
     seen: Seen = unseen,
     model: str | None = None,
 ) -> Iterator[Goal]:
-    """The inferred goals of tasks, in their order.
+    """Yield the inferred goals of tasks, in their order.
 
     Args:
         tasks: whose demonstrations are watched.
@@ -68,7 +68,7 @@ def inferred(
 
 
 def infer(watched: Watched) -> Goal:
-    """The goal that is inferred from a demonstration, in the words of the grammar."""
+    """Return the goal that is inferred from a demonstration, in the words of the grammar."""
     task = watched.wish.task
     grammar = challenge(task.challenge).grammar
     ticks = demonstrate(watched.wish).ticks(watched.wish.known())
@@ -81,7 +81,7 @@ def infer(watched: Watched) -> Goal:
 
 
 def bound(task: Task, home: Home) -> dict[Literal[Name], Literal[Name]]:
-    """The predicates of the grammar, by those that name the home's furniture."""
+    """Return the predicates of the grammar, by those that name the home's furniture."""
     grammar = challenge(task.challenge).grammar
     every = Goal(tuple((each, 1) for each in grammar.predicates))
     return {here: each for (here, _), (each, _) in zip(grammar.in_home(every, home), every, strict=True)}

@@ -112,7 +112,7 @@ class WireAgent:
         return self.faults[-1]
 
     def _notify(self, message: dict[str, Any]) -> None:
-        """Send what needs no answer to whom may be gone, or not reading."""
+        """Send a message that needs no answer; its receiver may be gone, or not reading."""
         if self.channel.open:
             with contextlib.suppress(HearthError):
                 self.channel.send(orjson.dumps(message), time.monotonic() + min(self.within, NOTICE))
@@ -132,7 +132,7 @@ class WireAgent:
         return by_number(act, options) if isinstance(act, int) else by_words(act, view, legal, self.messages)
 
     def _answer(self, view: View, deadline: float) -> int | str | None:
-        """The answer to this tick; late ones to earlier ticks are passed over."""
+        """Return the answer to this tick; late ones to earlier ticks are passed over."""
         while True:
             tick, act = read_answer(self.channel.receive(deadline), view.agent)
             if tick > view.tick:
@@ -142,11 +142,11 @@ class WireAgent:
 
 
 def read_answer(line: bytes, agent: int) -> tuple[int, int | str | None]:
-    """The tick of an answer and what is to be done: a number, a text, or None to wait.
+    """Return the tick of an answer and its choice: a number, a text, or None to wait.
 
     Args:
         line: as it came.
-        agent: who is asked; an answer may name it.
+        agent: the agent that is asked; an answer may name it.
 
     Raises:
         HearthError: BAD_JSON; UNKNOWN_AGENT; BAD_ARGUMENT, of a field that is missing or of a wrong kind.

@@ -15,13 +15,14 @@ def augmented(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Print table 5.1 of the thesis beside a dataset's own figures, and the effects of augmenting.
+    """Print table 5.1 of the thesis next to a dataset's own figures, and the effects of augmenting.
 
-    Counts programs, steps, nodes and edges; lengths of programs before and after; conditions of their objects at the
-    start (figure 5-4, for cups and sauce pans); near-duplicates of one parent in one home (none are expected). With
-    --circumstances every augmented program and its original run again: the share of programs that do each step they
-    have kept as the original does it (sitting, lying, holding, with what was opened or switched on), and the number
-    that are never seated at what the original does in its seat.
+    The output counts programs, steps, nodes and edges. It has lengths of programs before and after, and conditions of
+    their objects at the start (figure 5-4, for cups and sauce pans). It counts near-duplicates of one parent in one
+    home (none are expected). With --circumstances every augmented program and its original run again. The output then
+    has the share of programs that do each step they have kept as the original does it: sitting, lying, holding, with
+    the same things opened or switched on. It also has the number of programs that are never seated for an activity that
+    the original does in its seat.
 
     \b
     Examples:
@@ -44,26 +45,26 @@ def augmented(
     if as_json:
         output.emit(found)
         return
-    print(f"Augmented by the strength `{found['strength']}`.\n")
+    output.line(f"Augmented by the strength `{found['strength']}`.\n")
     _print_table(found["table"])
     if circumstances:
         _print_circumstances(found["circumstances"])
-    print(f"\nNear-duplicates of a sibling in the same home: {found['near_duplicates']}")
-    print(f"Programs with an environment they run in: {_percent(found['executable_share'])}")
-    print(f"Bytes of an execution, with program, environment and repairs: {found['bytes_a_program']}")
+    output.line(f"\nNear-duplicates of a sibling in the same home: {found['near_duplicates']}")
+    output.line(f"Programs with an environment they run in: {_percent(found['executable_share'])}")
+    output.line(f"Bytes of an execution, with program, environment and repairs: {found['bytes_a_program']}")
     for file in found.get("files", ()):
-        print(f"Drawn: {file}")
+        output.line(f"Drawn: {file}")
     before, after = found["lengths"]["executable"], found["lengths"]["augmented"]
-    print("\nPrograms by length")
+    output.line("\nPrograms by length")
     output.table(("steps", "originals", "augmented"), [(name, before[name], after[name]) for name in before])
     for name, conditions in found["conditions"].items():
         if not conditions:
-            print(f"\nNo condition of the start names a {name.replace('_', ' ')}.")
+            output.line(f"\nNo condition of the start names a {name.replace('_', ' ')}.")
             continue
-        print(f"\nConditions of the start that name a {name.replace('_', ' ')}: before and after augmenting")
+        output.line(f"\nConditions of the start that name a {name.replace('_', ' ')}: before and after augmenting")
         for condition, shares in conditions.items():
             for label, share in shares.items():
-                print(f"  {condition if label == 'before' else '':12} {label:7} {_bar(share)} {_percent(share)}")
+                output.line(f"  {condition if label == 'before' else '':12} {label:7} {_bar(share)} {_percent(share)}")
 
 
 def _published(folder: Path) -> Path:
@@ -77,20 +78,20 @@ def _print_table(table: dict[str, Any]) -> None:
         for who, row in compared.items()
     ]
     output.table(("programs", "", "how many", "length", "nodes", "edges"), rows)
-    print("The thesis's 1,387 and 27,284 add up to 28,671; it states 32,761.")
+    output.line("The thesis's 1,387 and 27,284 add up to 28,671; it states 32,761.")
 
 
 def _print_circumstances(found: dict[str, Any]) -> None:
-    print("\nIn the circumstances of the original")
+    output.line("\nIn the circumstances of the original")
     for what in ("programs", "steps"):
         counts = found[what]
-        print(f"  {what:8} {counts['as_original']:,} of {counts['all']:,}, {_percent(counts['share'])}")
+        output.line(f"  {what:8} {counts['as_original']:,} of {counts['all']:,}, {_percent(counts['share'])}")
     output.table(
         ("done in a seat by the original", "programs", "never in a seat"),
         [(action, *counts.values()) for action, counts in found["seats"].items()],
     )
     for name in found["odd"]:
-        print(f"In others: {name}")
+        output.line(f"In others: {name}")
 
 
 def _bar(share: float) -> str:

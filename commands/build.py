@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping
 from inspect import Signature, signature
 from pathlib import Path
@@ -58,8 +57,8 @@ def build(
 
     Sources are recognised by content: the ActivityPrograms release (zip or folder), tables (CSV), program text, plans
     of language models, JSON or JSON Lines, sketches, scene graphs, a dataset; packed or not. A second build runs only
-    what changed, and a stopped build continues. The last table counts the records of each stage. Folders may be URLs
-    (s3://bucket/folder), with the extra `remote`.
+    the changed parts, and a stopped build continues. The last table counts the records of each stage. Folders may be
+    URLs (s3://bucket/folder), with the extra `remote`.
 
     \b
     Examples:
@@ -76,7 +75,7 @@ def build(
 
 
 def _tiered(context: typer.Context, tier: str = "") -> dict[str, Any]:
-    """The options of a command, with those that its tier and its strength set."""
+    """Return the options of a command, with those that its tier and its strength set."""
     from hearth.pipelines.engine.tiers import tiered
 
     sources_of = {name: context.get_parameter_source(name) for name in context.params}
@@ -195,7 +194,7 @@ def augment(
 
 
 def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
-    """The values of --homes: a folder, and names of homes."""
+    """Return the values of --homes: a folder, and names of homes."""
     texts = [text for text in given or () if text != _ALL]
     folder = next((Path(text) for text in texts if Path(text).is_dir()), None)
     return folder, [name for text in texts if not Path(text).is_dir() for name in text.split(",") if name]
@@ -255,7 +254,7 @@ _OTHERS = frozenset({"sources", "out", "only", "tier", "size", "log_json", "as_j
 
 
 def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of a build, from the options of a command."""
+    """Return the settings of a build, from the options of a command."""
     found = {_NAMES.get(name, name): value for name, value in chosen.items() if name not in _OTHERS}
     folders = {name: str(found[name]) for name in ("homes_folder", "kb_folder") if found.get(name) is not None}
     return {**found, **folders, **({"homes": tuple(found["homes"] or ())} if "homes" in found else {})}
@@ -271,19 +270,19 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
         )
         for name, counts in found.stages.items()
     ]
-    sys.stdout.write("\n")
+    output.line()
     for line in found.guesses:
-        print(output.shown(line))
+        output.line(output.shown(line))
     if fuzzy := found.fuzzy:
-        print(f"Read with words corrected or left out: {output.counted(fuzzy, 'step')}; `--strict` refuses them.")
+        output.line(f"Read with words corrected or left out: {output.counted(fuzzy, 'step')}; `--strict` refuses them.")
     for line in found.unread:
-        print(output.shown(f"Not read: {line}"))
+        output.line(output.shown(f"Not read: {line}"))
     head = ("records in", "passed", "rejected", "parts rejected", "rows out", "records are", "reasons")
     output.table(("stage", *head), rows)
     if whole and found.dataset:
-        print(f"\nThe dataset is in {found.dataset}. Try next:")
+        output.line(f"\nThe dataset is in {found.dataset}. Try next:")
         for line in _NEXT:
-            print(f"  {program_name()} {line.format(out=out)}")
+            output.line(f"  {program_name()} {line.format(out=out)}")
 
 
 _NEXT = (

@@ -1,4 +1,4 @@
-"""`challenge`: tasks in which agents help somebody, runs of agents on them, and how good they were."""
+"""`challenge`: tasks in which agents help a partner, runs of agents on them, and their scores."""
 
 from __future__ import annotations
 
@@ -181,10 +181,10 @@ def table(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them beside its text.
+    """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them next to its text.
 
-    What the folder has already is not run again. Intervals are of 95 %; t, p and effect compare lengths with those of
-    the main agent alone, task by task.
+    Results in the folder are kept. Intervals are of 95 %; t, p and effect compare lengths with those of the main agent
+    alone, task by task.
 
     \b
     Examples:
@@ -235,7 +235,7 @@ for _command in (
 
 
 def _print(results: Results, as_json: bool) -> None:
-    """The summary of a run; one object for machines."""
+    """Print the summary of a run; one object for machines."""
     from hearth.challenges.metrics import summary
 
     header = results.header
@@ -263,8 +263,8 @@ def _print(results: Results, as_json: bool) -> None:
         {name: figures[name] for name in ("challenge", "split", "main", "helper", "goal", "seeds", "episodes")}
     )
     measured = [name for name in figures if f"{name}_se" in figures]
-    print()
+    output.line()
     rows = [(name.replace("_", " "), figures[name], figures[f"{name}_se"]) for name in measured]
     output.table(("metric", "mean over tasks", "standard error"), rows)
     for code, number in ends.items():
-        print(f"{output.counted(number, 'episode')} ended with {code}")
+        output.line(f"{output.counted(number, 'episode')} ended with {code}")

@@ -30,14 +30,16 @@ def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bo
     else:
         output.report(faults)
         which = "the published tasks" if found.header.suite.published else "other tasks than the published ones"
-        print(f"{len(found.records):,} episodes of {which} done again: {len(faults)} differ")
+        output.line(f"{len(found.records):,} episodes of {which} replayed: {len(faults)} differ")
     output.status(len(faults), strict=True)
 
 
 def solvable(
     name: str, split: list[str] | None = None, *, limit: int | None = None, workers: int = 0, as_json: bool = False
 ) -> None:
-    """Let who sees everything do each published task alone; the status is 1 if one can't be done, or is done already.
+    """Let an agent that sees everything do each published task alone.
+
+    The status is 1 if a task can't be done, or is done already.
 
     \b
     Examples:
@@ -68,12 +70,12 @@ def solvable(
     else:
         output.figures(figures)
         for fault in faults:
-            print(fault)
+            output.line(fault)
     output.status(len(faults), strict=True)
 
 
 def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> None:
-    """Rank runs by speedup, each done again and its metrics computed again; the status is 1 if one is false.
+    """Rank runs by speedup, each replayed and its metrics computed again; the status is 1 if one is false.
 
     \b
     Example:

@@ -16,7 +16,7 @@ def export(
     limit: int | None = None,
     as_json: bool = False,
 ) -> None:
-    """Write what an agent saw, did and earned in each tick of a run, for Minari or LeRobot.
+    """Write an agent's observations, actions and rewards in each tick of a run, for Minari or LeRobot.
 
     \b
     Examples:

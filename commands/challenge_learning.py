@@ -1,4 +1,4 @@
-"""`challenge watch | learn | curves`: goals read from demonstrations, and the training of what helpers have learnt."""
+"""`challenge watch | learn | curves`: goals read from demonstrations, and training of the learned parts of helpers."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def learn(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Train what helpers have learnt, and write a checkpoint: goals, policies or proposals.
+    """Train a learned part of helpers, and write a checkpoint: goals, policies or proposals.
 
     `goals` infers goals from the states of demonstrations, `goals-moments` by the thesis's network. `subgoals` is
     Hybrid's policy and `actions` HRL's second: both imitate the planner on tasks of training, and go on by A2C.

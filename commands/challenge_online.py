@@ -1,4 +1,4 @@
-"""`challenge infer | people`: what helpers that are not given the goal believe, and whether they do harm."""
+"""`challenge infer | people`: the beliefs of helpers that are not given the goal, and the test that they do no harm."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def infer(results: Path, *, workers: int = 0, as_json: bool = False) -> None:
         return
     over = [(row["share"], row["f1"], row["f1_se"], row["log_loss"], row["log_loss_se"]) for row in found["over_time"]]
     output.table(("of the time alone", "F1", "±", "log loss", "±"), over)
-    print()
+    output.line()
     output.records(found["calibration"])
-    print(f"\ncalibration error {found['calibration_error']}, {output.counted(found['episodes'], 'episode')}")
+    output.line(f"\ncalibration error {found['calibration_error']}, {output.counted(found['episodes'], 'episode')}")
 
 
 def people(
@@ -71,7 +71,7 @@ def people(
 def draw_beliefs(
     out: Path, task: Task, record: Record, helper: str, actions: Sequence[tuple[int, int, str, str]]
 ) -> None:
-    """Draw what a helper believed (figure 7-4); errors as of `helper_beliefs.beliefs`."""
+    """Draw a helper's beliefs (figure 7-4); errors as of `helper_beliefs.beliefs`."""
     from hearth.analysis.goal_belief_drawing import drawn
     from hearth.challenges.helper_beliefs import beliefs
     from hearth.kb.loading.load import default
@@ -80,7 +80,7 @@ def draw_beliefs(
 
 
 def print_by_set(found: Sequence[dict[str, Any]]) -> None:
-    """A table of speedups by goal set (figures 7-6a, C-3)."""
+    """Print a table of speedups by goal set (figures 7-6a, C-3)."""
     there = [row for row in found if "by_set" in row]
     names = tuple(there[0]["by_set"])
     cells = [

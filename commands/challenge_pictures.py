@@ -1,4 +1,4 @@
-"""`challenge stats | show`: where tasks start, and what was done in an episode, printed and drawn."""
+"""`challenge stats | show`: the starts of tasks, and the actions of an episode, printed and drawn."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None
     for kind, places in found.everything.items():
         shown = ", ".join(f"{place} {number / places.total():.0%}" for place, number in places.most_common(6))
         mean = sum(number * tasks for number, tasks in found.numbers[kind].items()) / found.numbers[kind].total()
-        print(f"{kind:12} {mean:.2f} a task: {shown}")
+        output.line(f"{kind:12} {mean:.2f} a task: {shown}")
     rooms = ", ".join(f"{room} {number / found.agents.total():.0%}" for room, number in found.agents.most_common())
-    print(f"agents start in {rooms}")
+    output.line(f"agents start in {rooms}")
 
 
 def show(
@@ -51,11 +51,13 @@ def show(
     goal_beliefs: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6, and what
-    the helper believed of the goal as in figure 7-4.
+    """Show the agents' actions in an episode.
 
-    An episode with a helper is drawn beside that of the main agent alone. With --belief it is where the main agent
-    believes wanted things to be, as time goes by (figure B-3).
+    Draw their ways on the floor plan as in the thesis's figure 6-6, and the helper's beliefs about the goal as in
+    figure 7-4.
+
+    An episode with a helper is drawn next to that of the main agent alone. With --belief the drawing shows the places
+    where the main agent believes wanted things to be, over time (figure B-3).
 
     \b
     Examples:
@@ -88,7 +90,7 @@ def show(
     if as_json:
         output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})
         return
-    print(f"{task} in {one.home}: {one.goal}\n")
+    output.line(f"{task} in {one.home}: {one.goal}\n")
     output.records(rows)
     reached = "reached" if record.metrics["success"] else "not reached"
-    print(f"\n{reached} after {record.metrics['ticks']} ticks")
+    output.line(f"\n{reached} after {record.metrics['ticks']} ticks")

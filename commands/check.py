@@ -75,7 +75,7 @@ def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
 
 
 def _program_text(path: Path, name: str) -> str | None:
-    """The text of a file that is nothing but programs; None for any other form.
+    """Return the text of a file that is nothing but programs; None for any other form.
 
     Raises:
         HearthError: it can't be read.
@@ -142,7 +142,7 @@ def _check_programs(
 
 
 def _strictly(checked: Checked) -> Checked:
-    """The same with fuzzy matches among the faults."""
+    """Return the findings with fuzzy matches among the faults."""
     fuzzy = tuple(each for each in checked.warnings if each.code == Code.FUZZY_MATCH)
     others = tuple(each for each in checked.warnings if each.code != Code.FUZZY_MATCH)
     return replace(checked, faults=(*checked.faults, *fuzzy), warnings=others)
@@ -158,7 +158,7 @@ def _json(checked: Checked) -> dict[str, Any]:
 
 def _print(checked: list[Checked], faults: int, *, summary: bool) -> None:
     for each in checked:
-        sys.stdout.write(each.diff)
+        output.line(each.diff, end="")
     kinds = [(kind, [fault for each in checked for fault in in_order(getattr(each, f"{name}s"))])
              for kind, name in (("error", "fault"), ("warning", "warning"))]  # fmt: skip
     if summary:
@@ -171,4 +171,4 @@ def _print(checked: list[Checked], faults: int, *, summary: bool) -> None:
     result += f", {output.counted(warnings, 'warning')}" if warnings else ""
     read = "source" if any(Path(each.file).is_dir() for each in checked) else "file"
     counts = [output.counted(len(checked), read), output.counted(programs, "program"), output.counted(steps, "step")]
-    print(f"{', '.join(counts)}: {result}")
+    output.line(f"{', '.join(counts)}: {result}")

@@ -113,7 +113,7 @@ def stats(
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Print statistics of a corpus beside the thesis's: funnel, variety, diversity, averages, missing actions.
+    """Print statistics of a corpus next to the thesis's: funnel, variety, diversity, averages, missing actions.
 
     With --out: histograms of actions and objects, the funnel, the similarity matrix of activities and the
     co-occurrence of objects as PNG and SVG, and all numbers as Parquet.
@@ -134,7 +134,7 @@ def stats(
     else:
         _print_stats(found, alike)
         for file in files:
-            print(file)
+            output.line(file)
 
 
 def _stats_json(found: Corpus, alike: Similarities, files: list[Path]) -> dict[str, Any]:
@@ -228,12 +228,12 @@ def fuzz(seconds: float = 300, seed: int = 0, most: int | None = None, as_json: 
         _print("Mutated input by reader", columns, rows)
         _print("Reasons of refusals", ("code", "times"), [*report.codes.most_common()])
         for crash in report.crashes[:20]:
-            print(crash)
+            output.line(crash)
     output.status(sum(not one.adds_up or one.tracebacks for one in report.table()), strict=True)
 
 
 def _mutated_input() -> Any:
-    """The module of the tests that mutates input: what is installed does without it."""
+    """Return the module of the tests that mutates input; an installed package is without it."""
     tests = Path(__file__).resolve().parents[1] / "tests"
     if not tests.is_dir():
         raise HearthError.of(Code.MISSING_FILE, "mutated input belongs to the tests", suggestion="run it in a checkout")
@@ -268,7 +268,7 @@ def sheet(
 
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
-    """Some valid programs, the same for the same seed."""
+    """Return some valid programs, the same for the same seed."""
     from hearth.analysis import corpus_statistics as numbers
     from hearth.schemas.program import Program
     from hearth.schemas.rng import rng
@@ -287,7 +287,7 @@ def completeness(
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Estimate the completeness of programs by the steps that repairs insert, beside raters and the thesis's 64/28/8%.
+    """Estimate how complete programs are by the steps that repairs insert, next to raters and the thesis's 64/28/8%.
 
     \b
     Examples:
@@ -316,7 +316,7 @@ def completeness(
         return
     _print("Completeness of programs", ("", "programs", *completeness_ratings.SAID.values()), table)
     if agree is not None:
-        print(f"Estimate and median agree on {agree:.0%} of the programs that have both.")
+        output.line(f"Estimate and median agree on {agree:.0%} of the programs that have both.")
 
 
 def _shares(classes: dict[str, Any]) -> list[float]:
@@ -327,4 +327,4 @@ def _shares(classes: dict[str, Any]) -> list[float]:
 
 def _print(title: str, columns: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
     output.table(columns, rows, title)
-    print()
+    output.line()

@@ -38,7 +38,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
         figures["failures_by_code"] = ", ".join(f"{k} {n:,}" for k, n in figures["failures_by_code"].items()) or "none"
         output.figures(figures)
         for one in (*_impossible(found, homes), *_failures(found)):
-            print(f"{one['place']} in {one['home']}: {one['message']}")
+            output.line(f"{one['place']} in {one['home']}: {one['message']}")
     output.status(len(found.failed), strict=strict)
 
 
@@ -57,7 +57,7 @@ def _failures(found: Coverage) -> Iterator[dict[str, Any]]:
 
 
 def _row(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> dict[str, Any]:
-    """The reason why a program does not run, with the lines of the steps that contradict each other."""
+    """Return the reason why a program does not run, with the lines of the steps that contradict each other."""
     return {
         "program": script.program_id,
         "place": script.place,

@@ -53,14 +53,14 @@ class Finding:
 
 
 def python() -> Finding:
-    """The interpreter."""
+    """Check the interpreter."""
     fits = (3, 11) <= sys.version_info[:2] < (3, 15)
     found = f"{platform.python_version()} on {platform.system()} {platform.machine()}"
     return Finding("Python", OK if fits else BROKEN, found, "" if fits else "needs Python 3.11 to 3.14")
 
 
 def packages() -> Finding:
-    """The libraries that Hearth always needs, by its metadata, without importing them."""
+    """Check the libraries that Hearth always needs, by its metadata, without importing them."""
     installed = importlib.metadata.packages_distributions().get("hearth")
     if not installed:
         return Finding("libraries", BROKEN, "Hearth itself is not installed", "run `make setup`")
@@ -81,7 +81,7 @@ def _installed(name: str) -> bool:
 
 
 def folder() -> Finding:
-    """The folder whose code runs: in a copy of a checkout, `.venv` runs that of the original."""
+    """Check the folder whose code runs: in a copy of a checkout, `.venv` runs that of the original."""
     runs, called = Path(__file__).resolve().parents[1], Path(sys.argv[0]).absolute()
     at = called.parents[2] if called.parts[-3:-1] == (".venv", "bin") else called.parent
     if (at / "commands/doctor.py").is_file() and at.resolve() != runs:
@@ -90,7 +90,7 @@ def folder() -> Finding:
 
 
 def missing_libraries() -> list[str]:
-    """The Debian packages of open3d's libraries that are missing on this machine."""
+    """Return the Debian packages of open3d's libraries that are missing on this machine."""
     return [package for library, package in LIBRARIES.items() if not _loads(library)]
 
 
@@ -103,7 +103,7 @@ def _loads(library: str) -> bool:
 
 
 def rays() -> Finding:
-    """Ray casting, by open3d with Embree."""
+    """Check ray casting, by open3d with Embree."""
     cost = "no pictures; all else works"
     if lacking("pictures"):
         absent = ", ".join(lacking("pictures"))
@@ -135,7 +135,7 @@ def _cast_one_ray() -> str:
 
 
 def codecs() -> Finding:
-    """The video codecs that OpenCV can open."""
+    """Check the video codecs that OpenCV can open."""
     if "cv2" in lacking("pictures"):
         return Finding("video (OpenCV)", MISSING, "not installed", f"no pictures, no video; {remedy('pictures')}")
     import cv2
@@ -157,7 +157,7 @@ def _opens(codec: str, path: Path) -> bool:
 
 
 def browser() -> Finding:
-    """A browser that runs without a display."""
+    """Check for a browser that runs without a display."""
     place = next(filter(None, map(shutil.which, BROWSERS)), None)
     if place:
         return Finding("browser", OK, place)
@@ -165,7 +165,7 @@ def browser() -> Finding:
 
 
 def web() -> Finding:
-    """What pages of `serve` use: libraries, and the scripts that `make web` fetches."""
+    """Check the parts that pages of `serve` use: libraries, and the scripts that `make web` fetches."""
     if lacking("web"):
         return Finding("web", MISSING, f"without {', '.join(lacking('web'))}", f"no `serve`; {remedy('web')}")
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
@@ -177,7 +177,7 @@ def web() -> Finding:
 
 
 def fonts() -> Finding:
-    """Fonts of the system; figures have their own."""
+    """Check the fonts of the system; figures have their own."""
     folders = (Path("/usr/share/fonts"), Path("/usr/local/share/fonts"), Path.home() / ".local/share/fonts")
     count = sum(1 for folder in folders if folder.is_dir() for file in folder.rglob("*") if file.suffix in _FONTS)
     if count:
@@ -189,14 +189,14 @@ _FONTS = {".ttf", ".otf", ".ttc", ".pfb"}
 
 
 def disk() -> Finding:
-    """Free disk space in the working directory."""
+    """Check the free disk space in the working directory."""
     free = shutil.disk_usage(Path.cwd()).free
     cost = "" if free > ROOMY else f"a full build with pictures takes {ROOMY / 2**30:.0f} GB"
     return Finding("disk", OK if free > ROOMY else MISSING, f"{free / 2**30:.1f} GB free here", cost)
 
 
 def cores() -> Finding:
-    """The processors of this process, and the memory."""
+    """Check the processors of this process, and the memory."""
     count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
     cost = "" if count > 1 else "stages run one record after another"
@@ -204,7 +204,7 @@ def cores() -> Finding:
 
 
 def real_data() -> Finding:
-    """The sample of the original release, which some tests and benchmarks read."""
+    """Check for the sample of the original release, which some tests and benchmarks read."""
     root = Path(__file__).resolve().parent.parent
     folder = Path(os.environ.get("HEARTH_REAL_DATA") or root.parent / "shared/real")
     if folder.is_dir():
@@ -214,7 +214,7 @@ def real_data() -> Finding:
 
 
 def uv() -> Finding:
-    """The fast installer."""
+    """Check for the fast installer."""
     place = shutil.which("uv")
     return Finding("uv", OK, place) if place else Finding("uv", MISSING, "not found", "set-up takes some 30 s longer")
 
@@ -236,7 +236,7 @@ def doctor(libraries: bool = False, as_json: bool = False) -> None:
     """
     if libraries:
         wanted = [] if "open3d" in lacking("pictures") else missing_libraries()
-        output.emit(wanted) if as_json else print("\n".join(wanted), end="\n" if wanted else "")
+        output.emit(wanted) if as_json else output.line("\n".join(wanted), end="\n" if wanted else "")
         return
     findings = [check() for check in CHECKS]
     broken = sum(finding.state == BROKEN for finding in findings)

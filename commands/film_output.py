@@ -1,4 +1,4 @@
-"""What `model show` prints for a film: its steps with times, and the program that runs in a home."""
+"""The output of `model show` for a film: its steps with times, and the program that runs in a home."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MASKS = "masks"
 def show(
     model: str, film: Path, home: str, homes: Path | None, kb: Path | None, out: Path | None, masks: str = MASKS
 ) -> dict[str, Any]:
-    """What a film shows, as JSON, with the pages that were written into `out`.
+    """Return the contents of a film, as JSON, with the pages that were written into `out`.
 
     Args:
         model: a classifier of clips by masks.
@@ -93,10 +93,12 @@ def _beside(
 
 def printed(found: dict[str, Any]) -> None:
     """Print the steps with their times, and whether they run."""
-    print(f"{output.counted(found['clips'], 'clip')} of {output.shown(str(found['film']))}")
+    output.line(f"{output.counted(found['clips'], 'clip')} of {output.shown(str(found['film']))}")
     for row in found["steps"]:
-        print(f"  {row['time']:7.1f} s  {row['step']}")
+        output.line(f"  {row['time']:7.1f} s  {row['step']}")
     failure = found["failure"]
-    print(f"It runs in {found['home']}." if found["executable"] else f"Nothing runs: {failure and failure.message()}")
+    output.line(
+        f"It runs in {found['home']}." if found["executable"] else f"Nothing runs: {failure and failure.message()}"
+    )
     if found["pages"]:
-        print(f"Films: {', '.join(found['pages'])}")
+        output.line(f"Films: {', '.join(found['pages'])}")

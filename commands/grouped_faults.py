@@ -24,13 +24,13 @@ def in_order(faults: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def equal(fault: Diagnostic) -> Hashable:
-    """Return what equal faults share, the words at fault among it; lines of another language are one fault."""
+    """Return the common key of equal faults, with the words at fault; lines of another language are one fault."""
     words = "" if fault.suggestion == TRANSLATE else fault.source[max(0, fault.column - 1) :][: fault.length]
     return fault.code, fault.message, fault.suggestion, words
 
 
 def alike(fault: Diagnostic) -> Hashable:
-    """Return what faults of different nodes of a graph share: all but `cup (12)`."""
+    """Return the common key of faults of different nodes of a graph: all but `cup (12)`."""
     return fault.code, *(NODE.sub("", text) for text in (fault.message, fault.suggestion))
 
 
@@ -52,7 +52,7 @@ def report(
     for first, *others in groups(faults, key):
         output.report([first], stream, kind)
         if others:
-            print(f"    + {len(others):,} more: {_places(first, others)}", file=stream or sys.stderr)
+            output.line(f"    + {len(others):,} more: {_places(first, others)}", file=stream or sys.stderr)
 
 
 def _places(first: Diagnostic, others: list[Diagnostic]) -> str:

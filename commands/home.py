@@ -67,9 +67,9 @@ def show(home: str, out: Path | None = None, homes: Path | None = None, as_json:
         return
     for room in rooms:
         things = ", ".join(f"{name} {count}" if count > 1 else name for name, count in room["things"].items())
-        print(f"{room['room']} ({room['id']}): {things}")
+        output.line(f"{room['room']} ({room['id']}): {things}")
     figures = _figures(graph)
-    print(f"{figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; floor plan in {out}" if out else ""))
+    output.line(f"{figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; floor plan in {out}" if out else ""))
 
 
 @app.command()
@@ -77,7 +77,7 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
     """Report the faults of a home or of any scene graph; the status is 1 if there are any.
 
     Nodes without category, properties or states have those of their class in the knowledge, here and wherever a graph
-    is read. Named beside the faults: how many these are, and things that nothing can be done with.
+    is read. The output also names the number of these nodes, and the things that no action applies to.
 
     With --layout, a graph without geometry is laid out, and every relation that the layout can't show is named; these
     are not faults.
@@ -107,11 +107,13 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
             output.note(sentence)
         if made is not None:
             for fault in made.unmet:
-                print(f"{fault.message} ({fault.suggestion})")
+                output.line(f"{fault.message} ({fault.suggestion})")
             output.table(("of the graph", "there are", "shown by the layout"), [
                 (row["what"], row["all"], row["shown"]) for row in met(made)])  # fmt: skip
         codes = ", ".join(f"{code} {count}" for code, count in _codes(faults).items())
-        print(f"{home}: {output.counted(len(faults), 'fault')} of the graph itself" + (f": {codes}" if codes else ""))
+        output.line(
+            f"{home}: {output.counted(len(faults), 'fault')} of the graph itself" + (f": {codes}" if codes else "")
+        )
     output.status(len(faults), strict=True)
 
 
@@ -120,7 +122,7 @@ def _codes(faults: Sequence[Diagnostic]) -> dict[str, int]:
 
 
 def met(layout: GraphLayout) -> list[dict[str, Any]]:
-    """For nodes and for each relation, the number in the graph and the number that the layout shows."""
+    """Return for nodes and for each relation the number in the graph and the number that the layout shows."""
     edges = Counter(edge.relation for edge in layout.graph.edges)
     lost = Counter(
         "things" if fault.code == "NO_PLACE" else next(name for name in edges if f") {name} " in fault.message)
@@ -134,7 +136,7 @@ def met(layout: GraphLayout) -> list[dict[str, Any]]:
 def convert(home: str, out: Path, layout: bool = False, homes: Path | None = None, as_json: bool = False) -> None:
     """Write a home as a scene graph in the release's layout, or its node ids by name.
 
-    A file `x.ids.csv` beside a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
+    A file `x.ids.csv` next to a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
 
     \b
     Examples:
@@ -161,10 +163,10 @@ def export(
     homes: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Write what is in a home for other programs, as they draw it: Blender, three.js, MuJoCo.
+    """Write the drawn contents of a home for other programs: Blender, three.js, MuJoCo.
 
-    A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colours, in an
-    .mtl beside it, and no textures.
+    A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colors, in an
+    .mtl next to it, and no textures.
 
     \b
     Examples:
@@ -269,7 +271,7 @@ def stats(
     found: dict[str, Any] = {name: of_homes(graphs, known) for name, graphs in groups.items() if graphs}
     for figures in found.values():
         # Homes of different sizes are compared by edges a node.
-        figures["density beside theirs, %"] = beside(figures, found.get("theirs"))
+        figures["density, % of theirs"] = beside(figures, found.get("theirs"))
     if reference := groups.pop("against"):
         for name, graphs in groups.items():
             if graphs:
@@ -287,7 +289,7 @@ def stats(
 def ways(names: list[str] | None = None, homes: Path | None = None, workers: int = 0, as_json: bool = False) -> None:
     """Make the shortest ways to everything in homes beforehand, and store them; walks by metres then read them there.
 
-    All homes if none is named. The files are beside our homes, or in the folder that HEARTH_WAYS names. Each belongs
+    All homes if none is named. The files are next to our homes, or in the folder that HEARTH_WAYS names. Each belongs
     to a floor: a home that is changed makes its ways anew, stored or not.
 
     \b
@@ -315,7 +317,7 @@ def _homes_in(folder: Path | None) -> list[EnvironmentGraph]:
 
 
 def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
-    """The mean placement distance of each home to all others."""
+    """Return the mean placement distance of each home to all others."""
     from statistics import fmean
 
     from hearth.homes.home_statistics import placement_distance, places
@@ -360,7 +362,7 @@ def _figures(graph: EnvironmentGraph) -> dict[str, Any]:
 
 
 def _rooms(graph: EnvironmentGraph) -> list[dict[str, Any]]:
-    """Each room with what is INSIDE it, counted by class."""
+    """Return each room with the objects INSIDE it, counted by class."""
     nodes = {node.id: node for node in graph.nodes}
     inside: dict[int, Counter[str]] = {node.id: Counter() for node in graph.nodes if node.category == "Rooms"}
     for edge in graph.edges:

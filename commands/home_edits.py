@@ -29,7 +29,7 @@ def edited(
     knowledge: Knowledge,
     name: str = "",
 ) -> tuple[EnvironmentGraph, tuple[int, ...]]:
-    """A graph with things added, removed and moved and states set, and the ids of added things.
+    """Return a graph with things added, removed and moved and states set, and the ids of added things.
 
     In a home with geometry, added and moved things get a position with room on or in their place.
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def paths(sources: Sequence[Path] | None) -> list[str]:
-    """The paths of the sources, or of the embedded corpus if there are none."""
+    """Return the paths of the sources, or of the embedded corpus if there are none."""
     from hearth.pipelines.build import corpus
 
     return [str(path) for path in sources or corpus()]
@@ -66,7 +66,8 @@ class Given(NamedTuple):
     def at_home(
         self, name: str, graph: Path | None, homes: Path | None, known: Knowledge
     ) -> tuple[Program, Home, bool]:
-        """The program, where it takes place, and whether that is the graph that came with it, to which it is bound.
+        """Return the program, where it takes place, and whether that is the graph that came with it, to which it is
+        bound.
 
         Raises:
             HearthError: UNKNOWN_HOME, or a fault of a graph.
@@ -85,7 +86,7 @@ class Given(NamedTuple):
 
 
 def _of_home(program: Program, home: Home, file: str) -> Program:
-    """The program with the nodes of the home that it names; says which, and which the home lacks.
+    """Return the program with the nodes of the home that it names; says which, and which the home lacks.
 
     Raises:
         HearthError: UNBOUND: a node that it names is a thing of another class.
@@ -110,7 +111,7 @@ def _of_home(program: Program, home: Home, file: str) -> Program:
 
 
 def _some(names: Iterable[str], count: int) -> str:
-    """The first names of a list, and how many more there are."""
+    """Return the first names of a list, and how many more there are."""
     from itertools import islice
 
     rest = count - MOST_NAMED
@@ -124,14 +125,14 @@ DEFAULT_HOME = "maple"
 
 
 def read_program(file: Path, known: Knowledge) -> Program:
-    """The first program of an input; see `read_given`."""
+    """Return the first program of an input; see `read_given`."""
     return read_given(file, known).program
 
 
 def read_given(
     file: Path, known: Knowledge, number: int = 1, strict: bool = False, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
 ) -> Given:
-    """A program of an input of any form that `build` reads; a faulty step is left out, with a warning on stderr.
+    """Return a program of an input of any form that `build` reads; a faulty step is left out, with a warning on stderr.
 
     Args:
         file: a file or folder; `-` is standard input.
@@ -193,7 +194,7 @@ def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "
 def read_programs(
     path: Path, known: Knowledge, name: str, columns: str = "", fuzzy: Fuzzy = Fuzzy.TYPOS
 ) -> Iterator[Given | Reject]:
-    """The programs of a file or folder that is called `name` in diagnostics, and rejects for what is none.
+    """Yield the programs of a file or folder that is called `name` in diagnostics, and rejects for the rest.
 
     Raises:
         HearthError: nothing in it can be read.
@@ -218,7 +219,7 @@ def read_programs(
 
 
 def name_of(file: Path) -> str:
-    """What a file is called in diagnostics."""
+    """Return the name of a file in diagnostics."""
     return "standard input" if str(file) == "-" else str(file)
 
 
@@ -274,10 +275,12 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
 
 
 def read_rules(name: str, home: Home) -> Rules:
-    """The rules of that name (see `simulation.rules.CHOICES`); of `auto` those that fit the home, said if not ours.
+    """Return the rules of that name (see `simulation.rules.CHOICES`).
 
-    A graph of VirtualHome 2.x says of no two things that they are CLOSE: its simulator knows what is near by what is ON
-    and INSIDE what, and so do the rules `evolving_graph`.
+    `auto` takes the rules that fit the home, and says so if they are not ours.
+
+    A graph of VirtualHome 2.x has no CLOSE edges between things: its simulator infers closeness from ON and INSIDE, and
+    so do the rules `evolving_graph`.
     """
     from hearth.commands import output
     from hearth.simulation.rules import CHOICES, EVOLVING_GRAPH
@@ -304,7 +307,7 @@ def note_filled(nodes: Sequence[str]) -> None:
 
 
 def read_goals(goals: Sequence[str], home: Home) -> Goal:
-    """All that some goals ask for; `@FILE` is a goal in a file, as text or as JSON.
+    """Return all that some goals ask for; `@FILE` is a goal in a file, as text or as JSON.
 
     Raises:
         HearthError: the first fault, with its place.
@@ -330,7 +333,7 @@ def _goal_text(file: str) -> Any:
 
 
 def _goal(text: Any, file: str) -> Any:
-    """Text as it is; what begins with a brace as JSON."""
+    """Return text as it is; a text that begins with a brace as JSON."""
     from hearth.pipelines.readers.document import parsed
     from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.storage.rejects import Reject

@@ -163,7 +163,7 @@ def score(
 
 @app.command("bands")
 def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: bool = False) -> None:
-    """Figure 4-9 by automatic scores: what the programs of a file of predictions do, by band of LCS.
+    """Draw figure 4-9 by automatic scores: the results of a file's predicted programs, by band of LCS.
 
     No person is asked: whether a program runs, how much of the goal it reaches and F1 stand for the ratings of films.
     `study figure 4-9` is the figure with people.
@@ -190,7 +190,7 @@ def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: b
     rows.append(["rank correlation", None, *(found.correlations[name] for name in JUDGES)])
     output.table(["LCS", "programs", *JUDGES], rows)
     for file in files:
-        print(f"Drawn: {file}")
+        output.line(f"Drawn: {file}")
 
 
 @app.command("examples")
@@ -204,7 +204,7 @@ def examples(
     sketches: str = "annotated",
     as_json: bool = False,
 ) -> None:
-    """Write a page of predictions beside what people wrote: text, sketch, programs, scores, and pictures of the run.
+    """Write a page of predictions next to people's programs: text, sketch, programs, scores, and pictures of the run.
 
     They are taken at equal steps of LCS from the best to the worst, each of another activity.
 
@@ -232,7 +232,7 @@ def examples(
 
 @app.command()
 def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool = False) -> None:
-    """Draw figure 4-4 (SVG: what actions are taken for) or 4-7 (HTML: films, what was done, and what is read).
+    """Draw figure 4-4 (SVG: actions and their predictions) or 4-7 (HTML: films, true and predicted programs).
 
     \b
     Examples:
@@ -274,7 +274,7 @@ def show(
 ) -> None:
     """Write a program for a text or a sketch and run it in a home: the words, the sketch, the program, each step shown.
 
-    The sketch is what a model of texts writes, or the file of --sketch for a model of sketches. Its objects are bound
+    The sketch is the output of a model of texts, or the file of --sketch for a model of sketches. Its objects are bound
     to the home's, steps that it lacks are inserted as in `repair`, and those that cannot run there are left out. With
     two homes the programs stand side by side, common steps marked and coloured. The status is 1 if nothing is left.
     A model of films reads a film in place of the text, arrays of a dataset of clips or a video, whose masks are
@@ -308,5 +308,5 @@ def show(
     else:
         model_output.printed(shown)
         for name, made in films.items():
-            print(f"Film in {name}: {', '.join(made['pages'])}")
+            output.line(f"Film in {name}: {', '.join(made['pages'])}")
     output.status(sum(each.failure is not None for each in shown.values()), strict=True)

@@ -1,4 +1,4 @@
-"""What `model show` prints: a text or a sketch, the programs that models write for homes, alone or side by side."""
+"""The output of `model show`: a text or a sketch, and programs that models write for homes, alone or side by side."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hearth.simulation.engine import Execution
 
 WIDTH = 46
-"""Of a program beside another."""
+"""Width of a program next to another, characters."""
 
 
 def shown(
@@ -28,7 +28,7 @@ def shown(
     kb: Path | None,
     beam: int,
 ) -> dict[str, Shown]:
-    """The programs by home.
+    """Return the programs by home.
 
     Raises:
         HearthError: a model of sketches without a sketch, or one of texts with one; errors of `restore`.
@@ -64,7 +64,7 @@ def shown(
 
 
 def _seen(name: str, trained: Any, pictures: Path, beam: int) -> Steps:
-    """The sketch of pictures from above."""
+    """Return the sketch of pictures from above."""
     from hearth.models.demonstrations.demo_model import TrainedDemoModel
     from hearth.models.demonstrations.demonstration_data import read_pictures
     from hearth.schemas.diagnostics import HearthError
@@ -105,7 +105,7 @@ def _writer(name: str) -> Any:
 
 
 def document(one: Shown) -> dict[str, Any]:
-    """A program with all that led to it."""
+    """Return a program with all that led to it."""
     from hearth.schemas.syntax import print_step
 
     execution, left_out, _ = one.completion
@@ -124,18 +124,18 @@ def printed(found: Mapping[str, Shown]) -> None:
     from hearth.schemas.syntax import print_step
 
     first = next(iter(found.values()))
-    print(f"Words: {output.shown(' '.join(first.words)) or 'none'}")
-    print("Sketch:", *(f"  {print_step(step)}" for step in first.sketch), sep="\n")
+    output.line(f"Words: {output.shown(' '.join(first.words)) or 'none'}")
+    output.line("Sketch:", *(f"  {print_step(step)}" for step in first.sketch), sep="\n")
     for home, one in found.items():
         for step, failure in one.completion.left_out:
-            print(f"  left out in {home}: {print_step(step)}: {failure.message()}")
+            output.line(f"  left out in {home}: {print_step(step)}: {failure.message()}")
     if len(found) == 2:
         _print_beside(found)
     for home, one in found.items():
         if len(found) != 2:
-            print(f"Program in {home}:", *(f"  {line}" for line in document(one)["program"]), sep="\n")
+            output.line(f"Program in {home}:", *(f"  {line}" for line in document(one)["program"]), sep="\n")
         runs = document(one)["executable"]
-        print("It runs." if runs else f"Nothing runs: {one.failure and one.failure.message()}")
+        output.line("It runs." if runs else f"Nothing runs: {one.failure and one.failure.message()}")
 
 
 def _print_beside(found: Mapping[str, Shown]) -> None:
@@ -146,10 +146,10 @@ def _print_beside(found: Mapping[str, Shown]) -> None:
 
     (one, left), (other, right) = found.items()
     console = Console(width=2 * WIDTH + 4, highlight=False)
-    console.print(f"  {one:<{WIDTH}}  {other}", soft_wrap=True)
+    console.print(Text(output.shown(f"  {one:<{WIDTH}}  {other}")), soft_wrap=True)
     for line in side_by_side(*(each.completion.execution.program.steps for each in (left, right))):
         text = f"{'=' if line.common else ' '} {_cell(line.left)}  {_cell(line.right)}".rstrip()
-        console.print(Text(text, style="green" if line.common else ""), soft_wrap=True)
+        console.print(Text(output.shown(text), style="green" if line.common else ""), soft_wrap=True)
 
 
 def _cell(step: Step | None) -> str:
@@ -159,13 +159,13 @@ def _cell(step: Step | None) -> str:
 
 
 def filmed(found: Mapping[str, Shown], out: Path, homes: Path | None, kb: Path | None) -> dict[str, dict[str, Any]]:
-    """Films of the programs, a folder for each home in `out`; what was made, by home."""
+    """Film the programs, a folder for each home in `out`, and return the files, by home."""
     runs = {home: one.completion.execution for home, one in found.items() if one.failure is None}
     return {home: film_of(execution, home, out, homes, kb) for home, execution in runs.items()}
 
 
 def film_of(execution: Execution, home: str, out: Path, homes: Path | None, kb: Path | None) -> dict[str, Any]:
-    """The film of a program in a home, in a folder of the home's name in `out`; what was made."""
+    """Film a program in a home, in a folder of the home's name in `out`, and return the files."""
     from hearth.commands.inputs import read_knowledge
     from hearth.commands.render import Shooting, videos
     from hearth.homes import library

@@ -1,4 +1,4 @@
-"""`model table | tables`: the tables of chapters 4 and 5, the thesis's figures beside ours beside yardsticks."""
+"""`model table | tables`: the tables of chapters 4 and 5, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -28,8 +28,10 @@ def table(
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
-    4.2, 4.3, 4.3b and 4.6 of clips; 5.5 and A.4 of demonstrations.
+    """Print a table of the thesis next to ours.
+
+    The tables are 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4; 4.2, 4.3, 4.3b and 4.6 of
+    clips; 5.5 and A.4 of demonstrations.
 
     Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
     Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
@@ -110,7 +112,7 @@ def _print_films(number: str, rows: Sequence[Any]) -> None:
 
 
 def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketches: str, as_json: bool) -> None:
-    """Sketches from demonstrations beside those from descriptions (A.4)."""
+    """Print sketches from demonstrations next to those from descriptions (A.4)."""
     from hearth.models.demonstrations.demonstration_comparison import compared
 
     found = compared(dataset, split, models, beam, sketches)
@@ -120,9 +122,9 @@ def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketch
     for title, rows in (("Descriptions of", found.by_words), ("Activity", found.by_activity)):
         shown = [[row.group, row.programs, *(f"{value:.3f}" for value in row.lcs), row.easier] for row in rows]
         output.table([title, "programs", *found.models, "easier from pictures"], shown)
-        print()
-    print(f"Easier from pictures: {found.easier} of {found.programs}; their descriptions have {found.words_easier:.1f} "
-          f"words on average, the others {found.words_others:.1f}.")  # fmt: skip
+        output.line()
+    words = f"{found.words_easier:.1f} words on average, the others {found.words_others:.1f}"
+    output.line(f"Easier from pictures: {found.easier} of {found.programs}; their descriptions have {words}.")
 
 
 def tables(
@@ -139,9 +141,9 @@ def tables(
 ) -> None:
     """Tables 4.2 to 4.6 and 5.2 to 5.4 whole: all their models are trained, each with several seeds, and compared.
 
-    What is trained already is kept, so that the same command goes on after a stop; with the usual budget it takes a
-    night. Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for
-    paraphrases, that are held out of training. Tables of films need a dataset of clips, and are left out without one.
+    Trained models are kept, so that the same command continues after a stop; with the usual budget it takes a night.
+    Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for paraphrases, that
+    are held out of training. Tables of films need a dataset of clips, and are left out without one.
 
     \b
     Examples:
@@ -167,7 +169,7 @@ def tables(
         output.emit({"models": len(missing), "tables": found})
         return
     for number, (name, rows) in enumerate(found.items()):
-        print("\n" * bool(number) + f"Table {name}")
+        output.line("\n" * bool(number) + f"Table {name}")
         _print_films(name, rows) if name in FILMS else _print(rows, _columns(name.partition("-")[0]))
 
 
@@ -187,7 +189,7 @@ def _print(rows: Sequence[Row], columns: Mapping[str, str]) -> None:
 
 
 def _score(value: Any) -> str:
-    """A mean with its interval, or a number of the thesis."""
+    """Return a mean with its interval, or a number of the thesis."""
     if value is None:
         return ""
     return f"{value:.3f}" if isinstance(value, float) else f"{value.mean:.3f} ({value.low:.3f}-{value.high:.3f})"

@@ -41,12 +41,12 @@ def described(command: Callable[..., Any]) -> None:
 
 
 def _parameter(*, flags: list[str] | None = None, processes: bool = False, **fields: Any) -> Any:
-    """An option with these flags, or an argument if there are none."""
+    """Return an option with these flags, or an argument if there are none."""
     if processes:
         fields["callback"] = _processes
     return typer.Option(*flags, **fields) if flags else typer.Argument(**fields)
 
 
 def _processes(count: int) -> int:
-    """The number of processes: 0 means one for each core."""
+    """Return the number of processes: 0 means one for each core."""
     return count or os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""The name under which the command line was called: help and hints show what the same reader can type."""
+"""The name under which the command line was called: help and hints show the same name to the reader."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CALL = re.compile(rf"^(?P<margin>\s*){INSTALLED}(?= )", re.MULTILINE)
 
 
 def program_name() -> str:
-    """Return `python cli.py` in a checkout, `hearth` once installed."""
+    """Return the name that the reader can type: the program `cli.py` in a checkout, `hearth` once installed."""
     return OF_CHECKOUT if Path(sys.argv[0]).name == "cli.py" else INSTALLED
 
 

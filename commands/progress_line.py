@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterator[T]:
-    """The same items; each is reported to `seen`."""
+    """Yield the same items; each is reported to `seen`."""
     for number, item in enumerate(items, 1):
         seen(number, total)
         yield item
@@ -20,7 +20,7 @@ def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterato
 
 @contextmanager
 def bar(what: str) -> Iterator[Seen]:
-    """A bar on the error stream, removed at the end; nothing if the stream is not a terminal.
+    """Yield a bar on the error stream, removed at the end; nothing if the stream is not a terminal.
 
     Args:
         what: the items, in a word or two.

@@ -26,8 +26,8 @@ def replay(
     Prints the number of executed programs and of end graphs reproduced exactly, in every state and relation, and the
     edges of each mismatch. The release is read in place, one program at a time.
 
-    Episodes are done again and compared tick by tick, with the state of the home, the poses and the failures as they
-    were recorded; the status is 1 if one differs.
+    Episodes are replayed and compared tick by tick, with the recorded state of the home, poses and failures; the status
+    is 1 if one differs.
 
     \b
     Examples:
@@ -49,7 +49,7 @@ def replay(
     from hearth.simulation.rules import DEFAULT, REPLAY
 
     known = default()
-    gc.freeze()  # What is loaded by now stays, and of a program nothing is in circles: looking through it takes time
+    gc.freeze()  # Objects loaded by now stay, and a program's objects form no circles: looking through them takes time
     gc.set_threshold(20_000)  # and finds nothing.
     found = islice(run_all(release, known, DEFAULT if default_rules else REPLAY), limit)
     with bar("programs run") as seen:
@@ -113,14 +113,14 @@ def _json(one: Replayed) -> dict[str, Any]:
 
 
 def _explain(one: Replayed) -> None:
-    print(f"\n{one.program_id} in {one.home}:")
+    output.line(f"\n{one.program_id} in {one.home}:")
     for fault in one.faults:
-        print(output.explain(fault))
+        output.line(output.explain(fault))
     if one.failure is not None:
-        print(f"  {one.failure.message()}")
+        output.line(f"  {one.failure.message()}")
     for sign, edges in (("missing", one.difference.added), ("surplus", one.difference.removed)):
         for edge in edges:
-            print(f"  {sign}: {edge.source} {edge.relation} {edge.target}")
+            output.line(f"  {sign}: {edge.source} {edge.relation} {edge.target}")
     for sign, states in (("missing", one.difference.set_states), ("surplus", one.difference.cleared_states)):
         for node_id, name in states:
-            print(f"  {sign}: {node_id} {name}")
+            output.line(f"  {sign}: {node_id} {name}")

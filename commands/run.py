@@ -39,14 +39,14 @@ def run(
     """Run a program in a home as it is, and print the changes of each step.
 
     Its objects are bound to nodes of the home so that as many steps as possible run. A step that fails ends the run:
-    the output says why and what would fix it. With --sample the home is changed and filled until the program
-    runs, and what was added is printed. The status is 1 if the program did not run as given, or if a goal is not
-    reached: what holds at the end, what was done (`WATCH(television)`), in which order (`then`), or alternatives.
+    the output says why and names a fix. With --sample the home is changed and filled until the program
+    runs, and the additions are printed. The status is 1 if the program did not run as given, or if a goal is not
+    reached: a literal at the end, an action (`WATCH(television)`), an order (`then`), or alternatives.
 
-    Actions are read by --rules: ours (default), those of the release of 2018 (replay), or those of VirtualHome 2.x
-    (evolving_graph: what is in an opened thing that one stands at is within reach, a room only walked into is not), or
-    action set 3 (consequences: food is used up, what is heated or washed becomes hot or clean in time). By
-    `auto` a graph in which no two things are CLOSE is read by the last, any other home by ours.
+    Actions are read by --rules: ours (default), those of the release of 2018 (replay), those of VirtualHome 2.x
+    (evolving_graph), or action set 3 (consequences: food is used up, and heat and water work in time). By
+    evolving_graph the contents of an opened thing are within reach of a character next to it, and a room only walked
+    into is not. `auto` chooses it for a graph in which no two things are CLOSE, and ours for any other home.
 
     \b
     Examples:
@@ -67,7 +67,7 @@ def run(
     else:
         show(outcome, explain)
         if progress:
-            print("Goal: reached." if progress.satisfied else f"Goal: not reached; unmet: {progress.unmet()}.")
+            output.line("Goal: reached." if progress.satisfied else f"Goal: not reached; unmet: {progress.unmet()}.")
     failure = outcome.trial.execution.failure
     not_reached = progress is not None and not progress.satisfied
     output.status(failure is not None or not_reached or bool(given.faults), strict=True)

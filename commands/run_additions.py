@@ -52,7 +52,7 @@ class Additions(NamedTuple):
 
 
 def additions(before: EnvironmentGraph, after: EnvironmentGraph) -> Additions:
-    """Return what `after` has more than `before`, and otherwise."""
+    """Return the additions of `after` to `before`, and the other changes."""
     from hearth.schemas.change import encode
     from hearth.schemas.vocabulary import OPPOSITE
 
@@ -84,7 +84,7 @@ def _relations(change: Change, nodes: dict[int, Node], new: set[int]) -> Iterato
 
 
 def _place(new: int, change: Change, nodes: dict[int, Node]) -> str:
-    """Return where an added object is: in whose hand, on or in what, else in which room."""
+    """Return the place of an added object: the hand that holds it, the thing it is on or in, or else its room."""
     held = (e for e in change.added if e.target == new and e.relation in HANDS)
     placed = [e for e in change.added if e.source == new and e.relation in ("ON", "INSIDE")]
     thing = (e for e in placed if nodes[e.target].category != ROOM_CATEGORY)

@@ -25,7 +25,7 @@ class Drawn(NamedTuple):
 
 
 def draw(program: Program | None, goals: Sequence[str], home: Home, seed: int, nodes: int | None) -> Drawn:
-    """An environment for a program, for a goal, or for neither.
+    """Return an environment for a program, for a goal, or for neither.
 
     Raises:
         HearthError: both are given, a goal can't be read, or the home has none.

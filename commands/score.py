@@ -71,8 +71,8 @@ def lcs(
         table.append([name, *(found[place] for found in means.values()), ""])
     output.table(["id", *(name.replace("_", " ") for name in means), ""], table)
     noted = ", ".join(f"{counts[name]} {words}" for name, words in NOTES.items())
-    print(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
-    print("\n".join(signatures))
+    output.line(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
+    output.line("\n".join(signatures))
     score_output.end(rejects)
 
 
@@ -86,7 +86,7 @@ def _note(pair: Pair) -> str:
 
 
 def _unread(pair: Pair) -> int:
-    """The number of predicted lines that are not steps."""
+    """Return the number of predicted lines that are not steps."""
     return sum(isinstance(line, str) for line in pair.predicted or ())
 
 
@@ -107,7 +107,7 @@ def program(
     by: str | None = None,
     as_json: bool = False,
 ) -> None:
-    """All scores of predictions, or of any programs: without references all that needs none.
+    """Print all scores of predictions, or of any programs: without references, all scores that need none.
 
     FILE has the rows of `score lcs`, or programs in any form that `check` reads. With a reference a row has LCS and
     final-graph F1. Without one it has parsability and, in an environment, executability, first failures, and `goal` if
@@ -163,7 +163,7 @@ def dataset(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """All scores against a dataset, whose programs are the references, in its environments.
+    """Print all scores against a dataset, whose programs are the references, in its environments.
 
     Each row of FILE is {"id": EXECUTION, "predicted": PROGRAM}, or {"program_id": PROGRAM, "home": HOME, "predicted":
     PROGRAM}; steps may be natural language. Executions without a row are missing predictions and score 0, unless
@@ -199,7 +199,7 @@ def dataset(
 
 @app.command("baselines")
 def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_json: bool = False) -> None:
-    """All scores of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
+    """Print all scores of simple baselines on a dataset's split, next to the thesis's tables 4.4, 4.5 and 5.2.
 
     The thesis's rows have the source `thesis`: they are its figures, of its own data.
     Needs scikit-learn.
@@ -217,9 +217,11 @@ def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_js
         output.emit({"split": split, "thesis_note": THESIS_NOTE, "here": found, "thesis": THESIS})
         return
     output.table([name.replace("_", " ") for name in Result._fields], [*found, *THESIS])
-    print(f"\n{THESIS_NOTE}")
+    output.line(f"\n{THESIS_NOTE}")
     if not found:
-        print(f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities")
+        output.line(
+            f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities"
+        )
 
 
 @app.command("graphs")
@@ -254,4 +256,4 @@ def graphs(
         return
     rows = [["states", *found.states], ["relations", *found.relations], ["both", *found.both]]
     output.table(["", "precision", "recall", "f1"], rows)
-    print(f"\n{signature}{'' if found.exact else '; a lower bound'}")
+    output.line(f"\n{signature}{'' if found.exact else '; a lower bound'}")

@@ -69,7 +69,7 @@ def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults, fuz
 
 
 def _lines(given: inputs.Given) -> tuple[Line, ...]:
-    """The lines of a program in order: its steps, and those that are refused with their codes."""
+    """Return the lines of a program in order: its steps, and those that are refused with their codes."""
     return in_order(given.program.steps, given.program.lines, given.faults)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from ipaddress import ip_address
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -20,20 +21,23 @@ def serve(
     study: Path | None = None,
     films: Path | None = None,
     public: str = "",
+    proxy: str = "",
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
     """Serve the rooms for people, and the researcher's desk, on 127.0.0.1.
 
     Everything is kept in DIR, in an embedded database or, with --store, in a PostgreSQL that servers of many machines
-    share. What people made and others accepted is what `build DIR` reads. Prints the address and the link to the desk,
-    whose token is also in DIR/.server/desk-token. Ctrl-C stops it; what was accepted is kept, also if it is killed.
+    share. `build DIR` reads the contributions that other people accepted. Prints the address and the link to the desk,
+    whose token is also in DIR/.server/desk-token. Ctrl-C stops it; accepted contributions are kept, also if it is
+    killed.
 
     \b
     Examples:
       hearth serve
       hearth serve --study people-alone
       hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
+      hearth serve --public https://homes.example.org --proxy 127.0.0.1
     """
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
@@ -45,6 +49,7 @@ def serve(
     from hearth.web.store import Store, default_url
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
+    proxy = _proxy(proxy, public)
     if study is not None:
         check_helpers(named(str(study)))
     where = listening(port)
@@ -57,11 +62,11 @@ def serve(
     lines = f"Hearth answers at {address}\nThe researcher's desk: {desk}"
     output.say(lines, {"address": address, "desk": desk, "out": str(out), "missing": missing()}, as_json)
     sys.stdout.flush()
-    run(app, where)
+    run(app, where, proxy)
 
 
 def _hosts(public: str) -> tuple[str, ...]:
-    """The name in a public address.
+    """Return the name in a public address.
 
     Raises:
         HearthError: BAD_ARGUMENT.
@@ -72,3 +77,21 @@ def _hosts(public: str) -> tuple[str, ...]:
     if not name or not public.startswith("https://"):
         raise HearthError.of(Code.BAD_ARGUMENT, f"`{public[:100]}` is not an address", suggestion="https://NAME")
     return (name,)
+
+
+def _proxy(given: str, public: str) -> str:
+    """Return the address of the proxy, as sockets have it.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is not an IP address; or people come by a proxy of which none is given, so that
+            limits by address would count all of them as one.
+    """
+    if not given and not public:
+        return ""
+    try:
+        return str(ip_address(given))
+    except ValueError:
+        remedy = "--proxy 127.0.0.1 for a proxy on this machine"
+        message = f"`{given[:60]}` is not the IP address of a proxy" if given else "people who come by --public share"
+        message += "" if given else " the address of the proxy, which --proxy has to name"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy) from None

@@ -90,8 +90,8 @@ def simulate(
 ) -> None:
     """Let agents take part in people's places, by the code that people's trials go through, until all is done.
 
-    The other study that it is about, such as people's lengths alone, is simulated first. What a stopped simulation had
-    written is kept; the same command goes on from there.
+    The other study that it is about, such as people's lengths alone, is simulated first. The events of a stopped
+    simulation are kept; the same command continues from there.
 
     \b
     Examples:
@@ -155,7 +155,7 @@ def prepare(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Make what a study with people needs: the agent's episodes in its tasks, and the films that are judged.
+    """Make the files that a study with people needs: the agent's episodes in its tasks, and the films to judge.
 
     Films that are there already are kept.
 
@@ -222,8 +222,8 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
         output.emit({**for_machines(found), "out": None if out is None else str(out)})
         return
     marked = "simulated: agents in people's places" if found.simulated else "people"
-    print(f"{found.study.title} ({marked}): {found.people} finished, {found.left} left before the end")
-    print("\n".join(["", *failures(found)]))
+    output.line(f"{found.study.title} ({marked}): {found.people} finished, {found.left} left before the end")
+    output.line("\n".join(["", *failures(found)]))
     who_in_words = names_of(found)
     rows = [
         [group, who_in_words[who], metric, each.count, each.mean, each.error]
@@ -231,11 +231,11 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
         if (each := found.figure(who, group, metric)) is not None
     ]
     output.table(("of", "who", "figure", "tasks", "mean", "standard error"), rows)
-    print()
+    output.line()
     columns = ("of", "one", "other", "pairs", "difference", "t", "p", "d", "K2, p", "Wilcoxon p", "thesis")
     output.table(columns, [test_row(each) for each in found.comparisons])
     for name, (rho, p) in found.correlations.items():
-        print(f"\nSpearman's correlation of normalised LCS and {name}: {rho:.2f}, p = {p:.2g}")
+        output.line(f"\nSpearman's correlation of normalised LCS and {name}: {rho:.2f}, p = {p:.2g}")
 
 
 @app.command()
@@ -284,7 +284,7 @@ def forget(source: Path, person: str, *, store: str = "", study: str = "", as_js
 
 
 def _opened(source: Path, store: str, study: str) -> Collected:
-    """The study of a folder that was simulated into, or that the server keeps its store in."""
+    """Return the study of a folder that was simulated into, or that the server keeps its store in."""
     from hearth.kb.loading.load import default
     from hearth.studies.study_folder import EVENTS, opened
 
@@ -299,7 +299,7 @@ def _opened(source: Path, store: str, study: str) -> Collected:
 
 
 def _alone(collected: Collected, source: Path, store: str) -> Collected | None:
-    """The study whose lengths are those without a helper, from where the other one is."""
+    """Return the study with the lengths without a helper, from the place of the other study."""
     from hearth.studies.study_folder import EVENTS, beside
 
     if (source / EVENTS).is_file() and not store:

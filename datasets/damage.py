@@ -1,4 +1,4 @@
-"""What reading a damaged dataset raises, as ours."""
+"""Errors of Hearth in place of those that reading a damaged dataset raises."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -12,7 +12,7 @@ from hearth.schemas.failures import Code
 
 @contextmanager
 def reading(place: Path | str) -> Iterator[None]:
-    """Name the dataset where its tables cannot be read, or hold what no build writes.
+    """Name the dataset where its tables cannot be read, or hold values that no build writes.
 
     Raises:
         HearthError: DAMAGED_FILE, in place of whatever DuckDB, Arrow or our own reading of the values raised.
@@ -27,10 +27,10 @@ def reading(place: Path | str) -> Iterator[None]:
 
 @contextmanager
 def using(place: Path | str) -> Iterator[None]:
-    """The same where something is made of rows: faults of the machine, as a full disk, stay what they are.
+    """Name the dataset where a use of its rows fails; faults of the machine, such as a full disk, stay as they are.
 
     Raises:
-        HearthError: DAMAGED_FILE, in place of what our own use of values raised that no build writes.
+        HearthError: DAMAGED_FILE, in place of errors that our own code raises for values that no build writes.
     """
     try:
         yield
@@ -41,7 +41,7 @@ def using(place: Path | str) -> Iterator[None]:
 
 
 def unreadable(error: Exception, place: Path | str) -> HearthError:
-    """What is said of a dataset whose tables cannot be read."""
+    """Return the error for a dataset whose tables cannot be read."""
     said = str(error).split("\n", 1)[0]
     message = f"its tables cannot be read: {type(error).__name__} {said}"
     remedy = "`verify` names the files that are damaged; fetch or publish the dataset again"
@@ -59,17 +59,33 @@ def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) 
     """Return the error of a question that DuckDB did not answer: it, or a table of the folder, is at fault.
 
     Args:
-        error: what DuckDB raised.
+        error: DuckDB's error.
         folder: of the dataset.
         names: of all columns, tables and views, which may have been meant by an unknown one.
     """
     message = str(error).split("\n\n", 1)[0]
+    if isinstance(error, MemoryError) or type(error).__name__ == "OutOfMemoryException":
+        return too_big(message)
     if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
         return unreadable(error, folder)
     unbound = type(error).__name__ in ("BinderException", "CatalogException")
     if unbound and (found := _UNKNOWN.search(message.split("\n", 1)[0].rstrip("!"))):
         return _unknown(found["column"] or found["name"], (found["kind"] or "column").split()[-1].lower(), names)
     return HearthError.of(Code.SYNTAX, message)
+
+
+def too_slow(seconds: float | None) -> HearthError:
+    """Return the error of a question that was not answered in time."""
+    remedy = "ask for less, or give more time with --within (0: no limit)"
+    return HearthError.of(Code.TIMED_OUT, f"the question took longer than {seconds:g} s", suggestion=remedy)
+
+
+def too_big(message: str) -> HearthError:
+    """Return the error of a question whose answer needs more memory or disk than a question may take."""
+    said = message.partition("\n")[0]
+    remedy = "ask for less: fewer columns, a LIMIT, or a WHERE"
+    return HearthError.of(Code.FILE_TOO_LARGE, f"the question needs more memory than it may take: {said}".rstrip(": "),
+                          suggestion=remedy)  # fmt: skip
 
 
 def _unknown(name: str, kind: str, names: Iterable[str]) -> HearthError:

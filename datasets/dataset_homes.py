@@ -1,4 +1,4 @@
-"""The user's own homes of a dataset: recorded in its manifest; their files are stored beside the tables."""
+"""The user's own homes of a dataset: recorded in its manifest; their files are stored next to the tables."""
 
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ def copy_homes(homes: str | None, folder: Path) -> None:
 
 
 def homes_used(homes: str | None, folder: Path) -> dict[str, Any]:
-    """The manifest's field: the digest of the user's homes, and the path of their copy, if any."""
+    """Return the manifest's field: the digest of the user's homes, and the path of their copy, if any."""
     over = {"sha256": digest(Path(homes))} if homes else None
     if over and (folder / FOLDER).exists():
         over["path"] = FOLDER
@@ -33,5 +33,5 @@ def homes_used(homes: str | None, folder: Path) -> dict[str, Any]:
 
 
 def own_homes(folder: Path, manifest: dict[str, Any]) -> Path | None:
-    """The folder of the user's homes that a dataset carries, None if it has none; errors as of `carried`."""
+    """Return the folder of the user's homes that a dataset carries, None if it has none; errors as of `carried`."""
     return carried(folder, manifest.get(FIELD), FIELD, digest)

@@ -1,4 +1,4 @@
-"""The knowledge of a dataset: recorded in its manifest; the user's overlay is stored beside the tables."""
+"""The knowledge of a dataset: recorded in its manifest; the user's overlay is stored next to the tables."""
 
 import shutil
 from collections.abc import Callable, Iterable
@@ -26,7 +26,7 @@ def copy_overlay(overlay: str | None, folder: Path) -> None:
 
 
 def made_with(overlay: str | None, folder: Path) -> dict[str, Any]:
-    """The manifest's field: the digests of a stage's knowledge, and the path of the overlay's copy, if any."""
+    """Return the manifest's field: the digests of a stage's knowledge, and the path of the overlay's copy, if any."""
     over = {"sha256": digest(Path(overlay))} if overlay else None
     if over and (folder / FOLDER).exists():
         over["path"] = FOLDER
@@ -43,7 +43,7 @@ def copy_files(files: Iterable[Path], folder: Path) -> None:
 
 
 def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
-    """The knowledge that a dataset was made with: ours, extended by the dataset's overlay.
+    """Return the knowledge that a dataset was made with: ours, extended by the dataset's overlay.
 
     Raises:
         HearthError: BAD_JSON, for a malformed manifest field; MISSING_FILE or DAMAGED_FILE, if the overlay's files
@@ -53,7 +53,9 @@ def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
 
 
 def carried(folder: Path, recorded: Any, what: str, digest_of: Callable[[Path], str]) -> Path | None:
-    """The folder of the user's files that a dataset was made with and carries; None where it was made with ours alone.
+    """Return the folder of the user's files that a dataset was made with and carries.
+
+    The result is None where it was made with ours alone.
 
     Args:
         folder: of the dataset.
@@ -91,7 +93,7 @@ def carried(folder: Path, recorded: Any, what: str, digest_of: Callable[[Path], 
 
 
 def other_base(manifest: dict[str, Any]) -> str:
-    """A sentence if a dataset's base knowledge differs from this version's; else ""."""
+    """Return a sentence if a dataset's base knowledge differs from this version's; else ""."""
     recorded = manifest.get(FIELD)
     base = recorded.get("base") if isinstance(recorded, dict) else None
     if not base or base == digest():

@@ -20,8 +20,11 @@ SHARE = 128
 """Executions that iteration reads together."""
 
 _INHERITED: list[Any] = []
-"""Datasets of the process that this one was forked from. To close their connections would wait for threads of DuckDB
-that the fork left behind, so they stay to the end; what the fork had dropped, but not collected, stays, too."""
+"""Datasets of the process that this one was forked from.
+
+To close their connections would wait for threads of DuckDB that the fork left behind, so they stay to the end. Datasets
+that the fork had dropped, but not collected, stay, too.
+"""
 
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=gc.freeze)
@@ -75,12 +78,12 @@ class ExecutionGraphs(Sequence[GraphPair]):
         return len(self.ids)
 
     def __getitem__(self, place: Any) -> Any:
-        """The execution at a place, or those of a slice."""
+        """Return the execution at a place, or those of a slice."""
         found = self.ids[place]
         return self._read(found) if isinstance(place, slice) else self._read([found])[0]
 
     def __getitems__(self, places: Sequence[int]) -> list[GraphPair]:
-        """The executions at several places, read together; `DataLoader` asks for its batches this way."""
+        """Return the executions at several places, read together; `DataLoader` asks for its batches this way."""
         return self._read([self.ids[place] for place in places])
 
     def __iter__(self) -> Iterator[GraphPair]:
@@ -89,7 +92,10 @@ class ExecutionGraphs(Sequence[GraphPair]):
             yield from self[first : first + SHARE]
 
     def collate(self, pairs: Sequence[GraphPair]) -> tuple[Tensors, Tensors]:
-        """The start graphs and the final graphs of a batch as arrays, each with the programs; for `collate_fn`."""
+        """Return the start graphs and the final graphs of a batch as arrays, each with the programs.
+
+        The method fits `collate_fn`.
+        """
         before = (GraphSample(pair.program, pair.start, pair.bound) for pair in pairs)
         after = (GraphSample(pair.program, pair.final, pair.bound) for pair in pairs)
         return to_tensors(before, self._dataset.vocabulary_ids), to_tensors(after, self._dataset.vocabulary_ids)

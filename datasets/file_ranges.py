@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import glob
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hearth.datasets.format.catalog import quoted
 from hearth.datasets.steady import version
 from hearth.schemas.tables import KEYS
+from hearth.storage.databases import limited, open_database, pattern_of, quoted, without_patterns
 
 _LAST = "\U0010ffff"
 """No id is greater."""
@@ -21,7 +20,7 @@ _FOOTERS = """
     )
     FROM parquet_metadata($paths) WHERE path_in_schema = $key GROUP BY file_name
 """
-"""Of each file with the column: its least and greatest value, and whether all its row groups say theirs."""
+"""The ranges of each file with the column: its least and greatest value, and whether all row groups state theirs."""
 
 
 class Range(NamedTuple):
@@ -33,7 +32,7 @@ class Range(NamedTuple):
 
 
 def reading_between(folder: Path, table: str, low: str, high: str) -> str:
-    """What a query reads instead of a table when it asks for a range of ids: the files that may have some.
+    """Return the expression that replaces a table in a query for a range of ids: the files that may have some.
 
     Args:
         folder: of the dataset; of the present format, or one whose table has its own files.
@@ -42,24 +41,24 @@ def reading_between(folder: Path, table: str, low: str, high: str) -> str:
         high: greatest id.
     """
     (key,) = KEYS[table]
-    ranges = _ranges(str(folder.resolve()), table, key, version(folder))
+    ranges = _ranges(without_patterns(folder), table, key, version(folder))
     found = [each.path for each in ranges if each.low <= high and low <= each.high]
-    names = ", ".join(quoted(glob.escape(path)) for path in found)
+    names = ", ".join(quoted(pattern_of(path)) for path in found)
     return f"read_parquet([{names}])" if found else table
 
 
 @lru_cache(maxsize=16)
 def _ranges(folder: str, table: str, key: str, _: tuple[int, int] | None) -> tuple[Range, ...]:
-    """The ranges of all files, where one may have all ids if its footer does not say which; read again after a build.
+    """Return the ranges of all files; a file whose footer has no range may have all ids.
 
-    DuckDB reads the footers, as pyarrow ends the process where one has damaged statistics of sizes.
+    The ranges are read again after a build.
+
+    DuckDB reads the footers, because pyarrow ends the process where one has damaged statistics of sizes.
     """
-    import duckdb
-
     paths = sorted(str(path) for path in Path(folder, table).glob("*.parquet"))
     if not paths:
         return ()
-    with duckdb.connect() as connection:
-        found = connection.execute(_FOOTERS, {"paths": [glob.escape(path) for path in paths], "key": key}).fetchall()
+    with limited(open_database(), f"{Path(folder).resolve()}/") as connection:
+        found = connection.execute(_FOOTERS, {"paths": [pattern_of(path) for path in paths], "key": key}).fetchall()
     ranges = {path: Range(low, high, path) for path, low, high, whole in found if whole}
     return tuple(ranges.get(path, Range("", _LAST, path)) for path in paths)

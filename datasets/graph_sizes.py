@@ -1,4 +1,4 @@
-"""How many programs a dataset has, how long they are, and the size of the graphs in which they run (table 5.1)."""
+"""The number and length of a dataset's programs, and the size of the graphs in which they run (table 5.1)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class GraphSizes(NamedTuple):
 
 
 def graph_sizes(dataset: Dataset, kind: str) -> GraphSizes:
-    """The numbers of one of `KINDS`; a graph is a home's, and what its environment adds and takes away."""
+    """Return the numbers of one of `KINDS`; a graph is a home's, with the changes of its environment."""
     query = f"""
         SELECT count(DISTINCT p.program_id), avg(len(p.steps)),
                avg(h.nodes + len(v.added_nodes) - len(v.removed_nodes)),

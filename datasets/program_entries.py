@@ -45,7 +45,7 @@ class Entry:
 
     @property
     def program(self) -> Program:
-        """The program, unbound."""
+        """Return the program, unbound."""
         from hearth.datasets.format.codecs import program_of
 
         with reading(self.row.get("place") or self.row["program_id"]):
@@ -53,12 +53,12 @@ class Entry:
 
     @property
     def title(self) -> str:
-        """The activity as written."""
+        """Return the activity as written."""
         return self.row["title"]
 
     @property
     def description(self) -> str:
-        """The description as written."""
+        """Return the description as written."""
         return self.row["description"]
 
 
@@ -82,7 +82,7 @@ class Run:
 
     @property
     def home(self) -> str:
-        """The name of the home that its environment was made from."""
+        """Return the name of the home that its environment was made from."""
         return self.row["home"]
 
     @property
@@ -92,18 +92,18 @@ class Run:
 
     @property
     def conditions(self) -> list[ConditionRow]:
-        """The preconditions of its start, under the names of this version."""
+        """Return the preconditions of its start, under the names of this version."""
         stored = self.row["environment"]["conditions"]
         return [{**row, "name": RENAMED.get(row["name"], row["name"])} for row in stored]
 
     def bindings(self) -> dict[tuple[str, int], int]:
-        """(class, instance) of each object in the program -> its node id."""
+        """Return the node id of each object in the program, by (class, instance)."""
         from hearth.datasets.format.codecs import bindings_of
 
         return bindings_of(self.row["bindings"])
 
     def graph(self, tick: int = 0) -> EnvironmentGraph:
-        """The graph after `tick` ticks; nodes by id, edges sorted.
+        """Return the graph after `tick` ticks; nodes by id, edges sorted.
 
         Raises:
             IndexError: the run has fewer ticks.
@@ -124,20 +124,20 @@ class Run:
 
     @property
     def start(self) -> EnvironmentGraph:
-        """The graph before the first tick."""
+        """Return the graph before the first tick."""
         return self.graph(0)
 
     @property
     def final(self) -> EnvironmentGraph:
-        """The graph after the last executed tick."""
+        """Return the graph after the last executed tick."""
         return self.graph(len(self.row["ticks"]))
 
     def release_json(self, tick: int = 0) -> dict[str, Any]:
-        """The graph as the release writes it."""
+        """Return the graph as the release writes it."""
         return to_release(self.graph(tick))
 
     def networkx(self, tick: int = 0) -> networkx.MultiDiGraph:
-        """The graph for networkx: a node has its class and states, an edge's key is its relation."""
+        """Return the graph for networkx: a node has its class and states, an edge's key is its relation."""
         import networkx
 
         found: networkx.MultiDiGraph = networkx.MultiDiGraph()

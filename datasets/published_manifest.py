@@ -12,14 +12,14 @@ from hearth.storage.manifest import FORMAT, NAME
 
 
 def published_manifest(folder: Path, asked: str) -> dict[str, Any]:
-    """The manifest of a folder.
+    """Return the manifest of a folder.
 
     Args:
         folder: of the dataset.
-        asked: the place that somebody named, for messages.
+        asked: the place that the user named, for messages.
 
     Raises:
-        HearthError: MISSING_FILE: there is no dataset; BAD_JSON: it lacks what every reader asks it for;
+        HearthError: MISSING_FILE: there is no dataset; BAD_JSON: it lacks a part that every reader needs;
             UNSUPPORTED_FILE: a newer version wrote it.
     """
     content = read_json(folder / NAME)

@@ -10,9 +10,9 @@ from hearth.storage.parquet_rows import row_batches
 
 
 def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
-    """The steps of every program of a dataset folder (or of its programs table), one batch in memory at a time.
+    """Yield the steps of every program of a dataset folder (or of its programs table), one batch in memory at a time.
 
-    Augmented programs are left out: they repeat what their parents say.
+    Augmented programs are left out: they repeat the texts of their parents.
 
     Raises:
         HearthError: MISSING_FILE: no programs table is there. BAD_TABLE: it has no steps, or is damaged.
@@ -23,7 +23,7 @@ def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
 
 
 def _programs_in(path: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
-    """The steps of the programs in a file, but of augmented ones."""
+    """Yield the steps of the programs in a file, but of augmented ones."""
     import pyarrow
     import pyarrow.compute as pc
     import pyarrow.parquet as pq
@@ -45,7 +45,7 @@ def _programs_in(path: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
 
 
 def _step(step: Any) -> tuple[str, tuple[str, ...]]:
-    """The names of a step's action and objects.
+    """Return the names of a step's action and objects.
 
     Raises:
         TypeError, LookupError: it is none.

@@ -1,4 +1,4 @@
-"""Which SQL only reads: judged by the kind of statement, that of an EXPLAIN by what it explains, and by its clauses."""
+"""The test for SQL that only reads: by kind of statement, that of an EXPLAIN by the explained one, and by clauses."""
 
 from typing import Any
 
@@ -32,7 +32,7 @@ def _statement(connection: Any, query: str) -> tuple[str, str]:
 
 
 def _explained(connection: Any, text: str) -> tuple[str, str]:
-    """What an EXPLAIN explains: the longest end of it that is a statement; ANALYZE and options begin none."""
+    """Return the statement in an EXPLAIN: the longest end that is a statement; ANALYZE and options begin none."""
     import duckdb
 
     data = text.encode()  # where tokens begin is counted in bytes

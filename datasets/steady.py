@@ -16,7 +16,7 @@ TRIES = 10
 
 
 def version(folder: Path) -> tuple[int, int] | None:
-    """A value that differs once a build has replaced a dataset; None while its manifest cannot be seen."""
+    """Return a value that differs once a build has replaced a dataset; None while its manifest cannot be seen."""
     try:
         found = (folder / NAME).stat()
     except OSError:
@@ -25,7 +25,7 @@ def version(folder: Path) -> tuple[int, int] | None:
 
 
 def steady(folder: Path, ask: Callable[[], Answer]) -> Answer:
-    """The answer to a question, asked again if a build has replaced the dataset meanwhile.
+    """Return the answer to a question, asked again if a build has replaced the dataset meanwhile.
 
     Raises:
         HearthError: as `ask` raises it for a dataset that stayed as it was.

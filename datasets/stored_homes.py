@@ -21,7 +21,7 @@ class StoredHome(NamedTuple):
 
     @classmethod
     def read(cls, rows: Callable[[str, str], list[Any]], name: str) -> StoredHome:
-        """A home by its name; `rows` answers a query in SQL about `$id`.
+        """Return a home by its name; `rows` answers a query in SQL about `$id`.
 
         Raises:
             KeyError: the name is unknown.

@@ -12,6 +12,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_homes import own_homes
 from hearth.datasets.dataset_knowledge import other_base
 from hearth.datasets.format.catalog import earlier
+from hearth.datasets.format.image_tables import other_images
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify_folder import AGAIN, manifest_faults, other_files, unknown
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -64,8 +65,8 @@ class Verdict:
 def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     """Check a dataset from its folder alone; the result is the same for any number of workers.
 
-    Files are checked first: if one is missing, differs from the manifest or has other columns, the other checks, which
-    depend on it, are skipped.
+    Files are checked first: if a file is missing, differs from the manifest or has other columns, the other checks,
+    which depend on it, are skipped.
 
     Args:
         path: of the dataset.
@@ -91,7 +92,7 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
         return Verdict(files, 0, 0, faults, note, odd)
     rows = sum(_count(dataset, table) for table in TABLES if (dataset.folder / table).is_dir())
     wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset), *_sketches(dataset)]
-    wrong = wrong or list(manifest_faults(dataset))
+    wrong = wrong or [*_images(dataset), *manifest_faults(dataset)]
     if wrong:
         return Verdict(files, rows, 0, tuple(wrong), note, odd)
     return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)), note, odd)
@@ -192,12 +193,18 @@ def _sketches(dataset: Dataset) -> Iterator[Diagnostic]:
     )
 
 
+def _images(dataset: Dataset) -> Iterator[Diagnostic]:
+    """Check that pictures as values are those of the files."""
+    for path, message in other_images(dataset.folder, dataset.manifest["files"]):
+        yield Diagnostic(Code.BAD_TABLE, message, str(path), suggestion=AGAIN)
+
+
 def _count(dataset: Dataset, table: str) -> int:
     return int(dataset.rows(f"SELECT count(*) FROM {table}")[1][0][0])
 
 
 def _listed(dataset: Dataset, code: Code, table: str, query: str, message: str) -> Iterator[Diagnostic]:
-    """A fault of the table for each value that a query finds."""
+    """Yield a fault of the table for each value that a query finds."""
     values = [value for (value,) in dataset.rows(query)[1]]
     for value in values[:SHOWN]:
         yield Diagnostic(code, message.format(value=value), str(dataset.folder / table), found=str(value))
@@ -246,7 +253,7 @@ class StoredHomes:
         self.home = cache(self._home)
 
     def _home(self, name: str) -> Home:
-        """The home of that name.
+        """Return the home of that name.
 
         Raises:
             KeyError: the name is unknown.
@@ -323,6 +330,6 @@ def _replay(job: tuple[str, list[str]]) -> Wrong:
 
 @lru_cache(maxsize=1)
 def opened(folder: str) -> tuple[Dataset, StoredHomes]:
-    """A dataset and its homes, cached per process."""
+    """Return a dataset and its homes, cached per process."""
     dataset = Dataset.open(folder, remembers=False)
     return dataset, StoredHomes(dataset)

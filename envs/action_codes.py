@@ -3,7 +3,7 @@
 - `Triples`: (action, first object, second object). The masks give the legal objects of each action, so that a policy
   can choose first the action, then its objects; all of these are legal, but for an object named twice.
 - `Listed`: the number of a legal instruction in the order of `Legal`, with the list itself in the observation. Every
-  number below the list's length can be done; what a number means differs from tick to tick.
+  number below the list's length is possible; the meaning of a number differs from tick to tick.
 - `Fixed`: the number of an instruction in a list that never changes; for small worlds (see `fixed_list`).
 
 Number 0 is to wait, in all three. Objects are numbered by their slots in the arrays (see `node_slots.Slots`).
@@ -38,31 +38,31 @@ Number = Any
 
 
 def played(knowledge: Knowledge) -> tuple[str, ...]:
-    """The actions that agents of a challenge may try, by name."""
+    """Return the actions that agents of a challenge may try, by name."""
     return tuple(sorted(knowledge.group("played")))
 
 
 class ActionCode(Protocol):
-    """How instructions are numbered."""
+    """A numbering of instructions."""
 
     def space(self) -> Space[Any]:
-        """All numbers."""
+        """Return all numbers."""
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of what `masks` returns."""
+        """Return the spaces of the arrays that `masks` returns."""
 
     def masks(self, legal: Legal, slots: Slots) -> dict[str, NDArray[Any]]:
-        """Which numbers can be done now; arrays that nobody else holds."""
+        """Return the numbers that are possible now, as new arrays."""
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | Failure | None:
-        """The instruction of a number; None to wait; a failure, where no instruction has it now.
+        """Return the instruction of a number; None to wait; a failure, where no instruction has it now.
 
         Raises:
             HearthError: BAD_ARGUMENT, where it is not in the space.
         """
 
     def number(self, step: Step | None, legal: Legal, slots: Slots) -> Number:
-        """The number of an instruction.
+        """Return the number of an instruction.
 
         Raises:
             HearthError: BAD_ARGUMENT, where it has none.
@@ -90,7 +90,7 @@ class Triples:
         return MultiDiscrete([1 + len(self.names), self.nodes, self.nodes])
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of the two masks."""
+        """Return the spaces of the two masks."""
         from gymnasium.spaces import MultiBinary
 
         count = 1 + len(self.names)
@@ -100,7 +100,7 @@ class Triples:
         }
 
     def masks(self, legal: Legal, slots: Slots) -> dict[str, NDArray[Any]]:
-        """The two masks."""
+        """Return the two masks."""
         actions = np.zeros(1 + len(self.names), np.int8)
         objects = np.zeros((1 + len(self.names), MOST_OBJECTS, self.nodes), np.int8)
         actions[WAIT] = 1
@@ -118,7 +118,7 @@ class Triples:
         return {"legal_actions": actions, "legal_objects": objects}
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | None:
-        """The instruction of three numbers; one about an empty slot is about no node, and fails."""
+        """Return the instruction of three numbers; one about an empty slot is about no node, and fails."""
         action, *objects = _triple(number, (1 + len(self.names), self.nodes, self.nodes))
         if action == WAIT:
             return None
@@ -144,7 +144,7 @@ class Listed:
 
     Attributes:
         names: the actions; their numbers in `candidates`, from 1.
-        size: length of the padded list. What is legal beyond it has no number.
+        size: length of the padded list. Legal instructions beyond it have no number.
 
     With the mask, `action_mask`, int8 (size), comes `candidates`, int16 (size, 3): each as a triple of `Triples`.
     """
@@ -159,7 +159,7 @@ class Listed:
         return Discrete(self.size)
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of mask and candidates."""
+        """Return the spaces of mask and candidates."""
         from gymnasium.spaces import Box, MultiBinary
 
         shape = (self.size, 1 + MOST_OBJECTS)
@@ -184,7 +184,7 @@ class Listed:
         return {"action_mask": mask, "candidates": candidates}
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | Failure | None:
-        """The instruction at that place of the list."""
+        """Return the instruction at that place of the list."""
         (place,) = _triple(number, (self.size,))
         if place == WAIT:
             return None
@@ -195,7 +195,7 @@ class Listed:
         return found
 
     def number(self, step: Step | None, legal: Legal, slots: Slots) -> int:
-        """Its place in the list."""
+        """Return the instruction's place in the list."""
         if step is None:
             return WAIT
         for place, other in enumerate(islice(slots.instructions(legal), self.size - 1), 1):
@@ -221,19 +221,19 @@ class Fixed:
         return Discrete(1 + len(self.steps))
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of the mask."""
+        """Return the space of the mask."""
         from gymnasium.spaces import MultiBinary
 
         return {"action_mask": MultiBinary(1 + len(self.steps))}
 
     def masks(self, legal: Legal, slots: Slots) -> dict[str, NDArray[Any]]:
-        """The mask."""
+        """Return the mask."""
         mask = np.ones(1 + len(self.steps), np.int8)
         mask[1:] = [_legal(step, legal) for step in self.steps]
         return {"action_mask": mask}
 
     def read(self, number: Number, legal: Legal, slots: Slots) -> Step | None:
-        """The instruction at that place of the list."""
+        """Return the instruction at that place of the list."""
         (place,) = _triple(number, (1 + len(self.steps),))
         if place == WAIT:
             return None
@@ -241,7 +241,7 @@ class Fixed:
         return Step(step.action, step.objects, legal.agent)
 
     def number(self, step: Step | None, legal: Legal, slots: Slots) -> int:
-        """Its place in the list."""
+        """Return the instruction's place in the list."""
         if step is None:
             return WAIT
         for place, other in enumerate(self.steps, 1):
@@ -251,13 +251,14 @@ class Fixed:
 
 
 def fixed_list(names: Iterable[str], slots: Slots, places: Mapping[str, Sequence[int]] | None = None) -> Fixed:
-    """Every instruction of some actions about nodes in slots that the knowledge allows; of two objects, the first is
-    something that can be grabbed.
+    """Return every instruction of some actions about nodes in slots that the knowledge allows.
+
+    Of two objects, the first is something that can be grabbed.
 
     Args:
         names: the actions.
         slots: the nodes; some ten of them, because two of them make a hundred pairs.
-        places: action -> ids of what its last object may be; any node in a slot where it is not named.
+        places: action -> ids of the nodes that its last object may be; any node in a slot where it is not named.
     """
     home = slots.home
     grabbable = home.able("Grab", 0)
@@ -278,7 +279,7 @@ def fixed_list(names: Iterable[str], slots: Slots, places: Mapping[str, Sequence
 
 
 def str_step(step: Step | None) -> str:
-    """An instruction as text, without its agent; `wait` for none."""
+    """Return an instruction as text, without its agent; `wait` for none."""
     return "wait" if step is None else print_step(Step(step.action, step.objects))
 
 
@@ -293,7 +294,7 @@ def _legal(step: Step, legal: Legal) -> bool:
 
 
 def _triple(number: Number, most: tuple[int, ...]) -> list[int]:
-    """The numbers, each below its bound."""
+    """Return the numbers, each below its bound."""
     try:
         found = np.asarray(number)
         good = found.size == len(most) and np.issubdtype(found.dtype, np.integer)

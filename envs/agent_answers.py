@@ -1,7 +1,7 @@
-"""Answers of agents that are no Python objects: the number or the text of an instruction, read against what is legal.
+"""Answers of agents that are no Python objects: number or text of an instruction, read against the legal ones.
 
-Nothing is tried that is not among the legal instructions. What refuses an answer is decided by what the agent sees, so
-that answers ask nothing about the rest of the home.
+Only legal instructions are tried. The agent's observation alone decides why an answer is refused, so that answers
+reveal nothing about the rest of the home.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from hearth.simulation.observation.views import View
 from hearth.simulation.world.bits import indices
 
 WAIT = "wait"
-"""The answer of who does nothing in this tick."""
+"""The answer of an agent that does nothing in this tick."""
 
 SAYING = f"{TELL} ON(plate, 55) 2"
 """An example of a message, for remedies and prompts."""
@@ -40,7 +40,7 @@ _NAMED = re.compile(r"([a-z][a-z_ ]*?)\s*([0-9]{1,9})?", re.ASCII | re.IGNORECAS
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Why an agent did nothing in a tick that was its own.
+    """The reason for an agent's failure to act in its own tick.
 
     Attributes:
         tick: which, from 0.
@@ -51,7 +51,7 @@ class Fault:
     fault: Diagnostic
 
     def as_json(self) -> dict[str, Any]:
-        """As agents and files get it."""
+        """Return the fault as agents and files get it."""
         code, message = str(self.fault.code), self.fault.message
         return {"tick": self.tick, "code": code, "message": message, "remedy": self.fault.suggestion}
 
@@ -65,7 +65,7 @@ def keep_nothing(row: Mapping[str, Any]) -> None:
 
 
 def row(view: View, answer: int | str | None, choice: Choice, fault: Fault | None) -> dict[str, Any]:
-    """A tick of a transcript: what was answered, what that did or said, and why it meant nothing."""
+    """Return a tick of a transcript: the answer, its action or message, and the reason if it had none."""
     return {
         "tick": view.tick,
         "agent": view.agent,
@@ -77,7 +77,7 @@ def row(view: View, answer: int | str | None, choice: Choice, fault: Fault | Non
 
 
 def by_number(number: int, options: Sequence[Step]) -> Step:
-    """The legal instruction of that number, from 0.
+    """Return the legal instruction of that number, from 0.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is none of that number.
@@ -89,7 +89,7 @@ def by_number(number: int, options: Sequence[Step]) -> Step:
 
 
 def by_words(text: str, view: View, legal: Legal, messages: bool) -> Choice:
-    """What a text says, where agents may say something; otherwise the instruction that it means (see `by_text`).
+    """Return the message of a text, where agents may talk; otherwise the instruction that it means (see `by_text`).
 
     Raises:
         HearthError: SYNTAX: it begins as a message and is none; and the faults of `by_text`.
@@ -104,7 +104,7 @@ def by_words(text: str, view: View, legal: Legal, messages: bool) -> Choice:
 
 
 def by_text(text: str, view: View, legal: Legal) -> Step | None:
-    """The legal instruction that a text means; None for `wait`.
+    """Return the legal instruction that a text means; None for `wait`.
 
     It may be written as in programs, `[Grab] <cup> (1.41)`, where `(2)` is the second of its class that is seen; or
     plainly, `Grab cup 41`, `PutBack cup 41, table 55`, where a number may be left out if one alone is seen.
@@ -161,7 +161,7 @@ def _checked(step: Step, view: View, line: str) -> Program:
 
 
 def _bound(ref: ObjectRef, view: View) -> ObjectRef:
-    """The seen node that is meant: by its id, by its number among the seen of its class, or as the only one."""
+    """Return the seen node that is meant: by its id, by its number among the seen of its class, or as the only one."""
     home = view.world.home
     seen = [home.ids[i] for i in indices(seen_instances(ref.name, home, view.mask))]
     if ref.node is not None:
@@ -182,7 +182,7 @@ def _bound(ref: ObjectRef, view: View) -> ObjectRef:
 
 
 def _need_legal(step: Step, view: View, legal: Legal) -> None:
-    """Refuse what is not legal, and say why it is not in the world as far as the agent sees it."""
+    """Refuse an illegal instruction, and say why it is impossible in the world as far as the agent sees it."""
     if step in legal:
         return
     result = act(as_seen(view.world, view.mask), step)

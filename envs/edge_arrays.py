@@ -21,17 +21,17 @@ _OUTWARD = {ON: "ON", INSIDE: "INSIDE", CLOSE: "CLOSE", FACING: "FACING"}
 """The relation of each kind of row of `Moved` that begins at its node."""
 
 _REMOVED = np.array([Moved._fields.index(n.lower()) if n.lower() in Moved._fields else -1 for n in RELATIONS])
-"""By relation id, which field of `Moved` has the nodes removed from it; -1 of BETWEEN and the hands."""
+"""By relation id, the field of `Moved` with the nodes removed from the relation; -1 of BETWEEN and the hands."""
 
 
 def bits(mask: int, count: int) -> NDArray[np.bool_]:
-    """A set of the first `count` nodes as bool (count)."""
+    """Return a set of the first `count` nodes as bool (count)."""
     packed = np.frombuffer((mask & (1 << count) - 1).to_bytes(count + 7 >> 3, "little"), np.uint8)
     return np.unpackbits(packed, count=count, bitorder="little").astype(bool)
 
 
 def start_edges(home: Home, relations: Iterable[str]) -> Edges:
-    """The edges between things at the start, for `seen_edges`."""
+    """Return the edges between things at the start, for `seen_edges`."""
     found = []
     for name in relations:
         rows: Sequence[int] = home.tables[name][0] if name in home.tables else home.between if name == "BETWEEN" else ()
@@ -40,7 +40,7 @@ def start_edges(home: Home, relations: Iterable[str]) -> Edges:
 
 
 def seen_edges(world: World, mask: int, relations: frozenset[str], start: Edges) -> Edges:
-    """The edges among some nodes, sorted.
+    """Return the edges among some nodes, sorted.
 
     Args:
         world: now.

@@ -48,7 +48,7 @@ class _Row(NamedTuple):
 
 
 def _rows(goal: Goal) -> list[_Row]:
-    """The rows of a goal, those of a part after the row of its word."""
+    """Return the rows of a goal, those of a part after the row of its word."""
     found: list[_Row] = []
 
     def add(one: Goal, part: int, branch: int, variables: dict[str, int]) -> None:
@@ -77,7 +77,7 @@ def check(goal: Goal, most: int) -> None:
 
 
 def goal_array(view: View, slots: Slots, progress: Progress | None, most: int) -> NDArray[np.int16]:
-    """The rows of the goal that an agent is told, padded with zeros; zeros alone where it is told none.
+    """Return the rows of an agent's known goal, padded with zeros; zeros alone where it knows no goal.
 
     Raises:
         HearthError: BAD_ARGUMENT (see `check`).
@@ -94,7 +94,7 @@ def goal_array(view: View, slots: Slots, progress: Progress | None, most: int) -
 
 
 def _named(row: _Row, slots: Slots) -> tuple[int, ...]:
-    """The first seven columns."""
+    """Return the first seven columns."""
     if isinstance(row.of, Joined):
         return (JOIN, JOINS.index(row.of.join) + 1, 0, 0, 0, 0, 0)
     literal, known = row.of, slots.home.knowledge
@@ -108,7 +108,7 @@ def _named(row: _Row, slots: Slots) -> tuple[int, ...]:
 
 
 def _term(term: Name, row: _Row, slots: Slots) -> Iterator[int]:
-    """(class, slot + 1) of a term of a goal."""
+    """Yield (class, slot + 1) of a term of a goal."""
     home = slots.home
     if isinstance(term, int):
         i = home.index[term]
@@ -123,6 +123,6 @@ def _term(term: Name, row: _Row, slots: Slots) -> Iterator[int]:
 
 
 def class_number(name: str, knowledge: Knowledge) -> int:
-    """The number of a class: 2 + its published id; 1 where the knowledge has none of that name."""
+    """Return the number of a class: 2 + its published id; 1 where the knowledge has none of that name."""
     known = knowledge.object_class(name)
     return UNKNOWN_CLASS if known is None else 2 + known.id

@@ -1,4 +1,4 @@
-"""Episodes as an `Env` of Gymnasium: one agent learns, the others are agents of ours or anybody's."""
+"""Episodes as an `Env` of Gymnasium: one agent learns, the others are agents of ours or of a user."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class HomeEnv(Env[Arrays, Number]):
         return self._now()
 
     def step(self, action: Number) -> tuple[Arrays, float, bool, bool, dict[str, Any]]:
-        """One tick: the learner's action, and what its partners choose.
+        """Run one tick: the learner's action, and its partners' choices.
 
         Raises:
             HearthError: OUT_OF_ORDER before the first `reset`; BAD_ARGUMENT, where the action is not in its space. The
@@ -113,9 +113,9 @@ class HomeEnv(Env[Arrays, Number]):
         return self.session.observe(self.learner), self.session.info(self.learner)
 
     def texts(self) -> list[str]:
-        """The learner's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
+        """Return the learner's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
         return self.session.texts(self.learner)
 
     def render(self) -> Any:
-        """A picture or text of now, by the render mode; None without one."""
+        """Return a picture or text of now, by the render mode; None without one."""
         return self._pictures.take(self.session)

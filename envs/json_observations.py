@@ -1,4 +1,4 @@
-"""What an agent sees as a JSON-able mapping. Every field is made of what it sees: nothing else changes a byte of it."""
+"""An agent's observation as a JSON-able mapping. Every field depends on the visible nodes alone."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class SeenLiteral:
     Attributes:
         literal: as the goal has it.
         wanted: how often it must hold; of a negated one, of all that the agent sees.
-        seen: how often it holds among what the agent sees; None of a literal about what is done.
+        seen: how often it holds among the visible nodes; None of a literal about actions.
     """
 
     literal: Literal[Name]
@@ -35,7 +35,7 @@ class SeenLiteral:
 
 
 def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
-    """The counted literals of a goal and of its parts, with how many of each the agent sees fulfilled now."""
+    """Yield the counted literals of a goal and of its parts, with how many of each the agent sees fulfilled now."""
     world, home = as_seen(view.world, view.mask), view.world.home
     for literal, wanted in goal.literals():
         if acts(literal, home) or any(str(term).startswith("?") for term in literal.terms):
@@ -50,20 +50,26 @@ def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
 
 
 def _among(term: Name, home: Home, mask: int) -> int:
-    """The seen nodes that a term of a goal stands for; other names of a class count where it is not seen itself."""
+    """Return the seen nodes that a term of a goal stands for.
+
+    Other names of a class count where it is not seen itself.
+    """
     if isinstance(term, int) or term.partition(":")[0] == AGENT:
         return nodes(term, home) & mask
     return seen_instances(term, home, mask)
 
 
 def seen_instances(name: str, home: Home, mask: int) -> int:
-    """The seen nodes that a class name stands for (see `Home.instances`, which looks at all)."""
+    """Return the seen nodes that a class name stands for (see `Home.instances`, which looks at all)."""
     names = (name, *home.knowledge.same_class(name))
     return next((found for each in names if (found := home.by_class.get(each, 0) & mask)), 0)
 
 
 def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:
-    """What an agent sees: `tick`, `me`, `others`, `messages`, `goal` and `graph`, the last in the form of the release.
+    """Return an agent's observation: `tick`, `me`, `others`, `messages`, `goal` and `graph`.
+
+    The graph is in the form of the release. A box has the place of a thing at the start, so a thing that was carried
+    elsewhere has none.
 
     A box is where a thing stood at the start, so things that were carried elsewhere have none.
     """
@@ -78,7 +84,7 @@ def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:
 
 
 def goal_json(goal: Goal, view: View) -> dict[str, Any]:
-    """A goal as text, and its literals with `wanted` and `seen` (see `SeenLiteral`)."""
+    """Return a goal as text, and its literals with `wanted` and `seen` (see `SeenLiteral`)."""
     literals = [
         {"literal": str(each.literal), "wanted": each.wanted, "seen": each.seen} for each in seen_goal(goal, view)
     ]
@@ -110,20 +116,20 @@ def _pose(pose: Pose, view: View) -> dict[str, Any]:
 
 
 def last_json(last: LastAction, view: View) -> dict[str, Any]:
-    """The instruction that was tried last, and why it failed, or null."""
+    """Return the instruction that was tried last, and why it failed, or null."""
     failure = None if last.failure is None else seen_failure(last.failure, view)
     reason = None if failure is None else {"code": str(failure.code), "message": failure.message()}
     return {"instruction": instruction_text(last.instruction), "failure": reason}
 
 
 def seen_failure(failure: Failure, view: View) -> Failure:
-    """A failure that names what the agent sees alone: a closed door in another room is not named."""
+    """Return a failure that names visible nodes alone: a closed door in another room is not named."""
     pairs = [pair for pair in zip(failure.objects, failure.names, strict=False) if view.sees(pair[0])]
     objects, names = tuple(node for node, _ in pairs), tuple(name for _, name in pairs)
     return replace(failure, tick=max(0, view.tick - 1), objects=objects, names=names)
 
 
 def instruction_text(step: Step) -> str:
-    """An instruction as agents read and write it: `[Grab] <cup> (1.41)`, of whom is known."""
+    """Return an instruction as agents read and write it: `[Grab] <cup> (1.41)`, of whom is known."""
     refs = tuple(replace(ref, instance=1) for ref in step.objects)
     return print_step(replace(step, objects=refs, agent=0, joins=False))

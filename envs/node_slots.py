@@ -34,12 +34,12 @@ class Slots:
 
     @classmethod
     def of(cls, home: Home, size: int, things: Iterable[str | int] | None = None) -> Slots:
-        """The slots of a home.
+        """Return the slots of a home.
 
         Args:
             home: the home.
             size: number of slots.
-            things: what arrays are about: names of classes, and ids; everything where None, in the order of ids.
+            things: the nodes of arrays: names of classes, and ids; everything where None, in the order of ids.
 
         Raises:
             HearthError: BAD_ARGUMENT, where the home has more nodes than there are slots, or nothing of that name.
@@ -55,7 +55,7 @@ class Slots:
 
     @cached_property
     def mask(self) -> int:
-        """The nodes that have a slot."""
+        """Return the nodes that have a slot."""
         return mask_of(self.order)
 
     @cached_property
@@ -81,12 +81,12 @@ class Slots:
         return found
 
     def members(self, mask: int) -> list[int]:
-        """The slots of a set of nodes, in the order of their ids."""
+        """Return the slots of a set of nodes, in the order of their ids."""
         by_index = self._slots
         return [by_index[i] for i in indices(mask & self.mask)]
 
     def ordered(self, mask: int) -> list[int]:
-        """The indices of a set of nodes, in the order of their slots."""
+        """Return the indices of a set of nodes, in the order of their slots."""
         return [i for i in self.order if mask >> i & 1]
 
     @cached_property
@@ -95,20 +95,23 @@ class Slots:
         return found
 
     def slot(self, ref: ObjectRef) -> int | None:
-        """The slot of the node that a reference is bound to; None where it has none."""
+        """Return the slot of the node that a reference is bound to; None where it has none."""
         index = self.home.index.get(-1 if ref.node is None else ref.node)
         slot = -1 if index is None else self._slots[index]
         return None if slot < 0 else slot
 
     def reference(self, slot: int) -> ObjectRef:
-        """A reference to the node of a slot; to none, where the slot is empty."""
+        """Return a reference to the node of a slot; to none, where the slot is empty."""
         if not 0 <= slot < len(self.order):
             return ObjectRef("nothing", 0, None)
         i = self.order[slot]
         return ObjectRef(self.home.classes[i], 0, self.home.ids[i])
 
     def choices(self, masks: Sequence[int]) -> list[tuple[int, ...]]:
-        """The slots of the objects of each instruction of an action, by its masks in `Legal`; two objects differ."""
+        """Return the slots of the objects of each instruction of an action, by its masks in `Legal`.
+
+        Two objects differ.
+        """
         return [slots for slots in product(*map(self.members, masks)) if len(set(slots)) == len(slots)]
 
     def count(self, legal: Legal) -> int:
@@ -116,7 +119,10 @@ class Slots:
         return sum(len(self.choices(masks)) for masks in legal.masks.values())
 
     def instruction(self, legal: Legal, place: int) -> Step | None:
-        """The instruction at a place of `instructions`, from 0, without making those before it; None beyond its end."""
+        """Return the instruction at a place of `instructions`, from 0, without making those before it.
+
+        The result is None beyond the end.
+        """
         for action in sorted(legal.masks):
             choices = self.choices(legal.masks[action])
             if place < len(choices):
@@ -125,8 +131,9 @@ class Slots:
         return None
 
     def instructions(self, legal: Legal) -> Iterator[Step]:
-        """The legal instructions about nodes that have slots, in the order of `Legal`; none about one thing twice,
-        which programs may not be either.
+        """Yield the legal instructions about nodes that have slots, in the order of `Legal`.
+
+        No instruction names one thing twice, as no program may.
         """
         for action in sorted(legal.masks):
             for slots in self.choices(legal.masks[action]):

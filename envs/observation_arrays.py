@@ -1,6 +1,6 @@
-"""What an agent sees, as padded arrays; one row for each slot (see `node_slots`), zeros where nothing is seen.
+"""An agent's observation as padded arrays; one row for each slot (see `node_slots`), zeros where nothing is visible.
 
-Of a partial view only what it shows is in the arrays: scrambling the rest of the world changes no byte of them.
+Of a partial view only the visible part is in the arrays: scrambling the rest of the world changes no byte of them.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Sizes:
 
     Attributes:
         nodes: slots; the largest of our homes has 674 nodes.
-        edges: in the order of the ids of source, relation and target; what is seen beyond them is left out.
+        edges: in the order of the ids of source, relation and target; visible edges beyond them are left out.
         agents: characters; the first row is the agent itself, the others follow by number.
         literals: rows of a goal (see `goal_arrays`).
         legal: instructions of the padded list (`action_codes.Listed`).
@@ -68,7 +68,7 @@ class Sizes:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """What never changes in a home, by slot.
+    """The constant facts about a home, by slot.
 
     Attributes:
         slots: of the home.
@@ -101,7 +101,7 @@ class Encoder:
     relations: tuple[str, ...] = tuple(name for name in RELATIONS if name != "CLOSE")
 
     def spaces(self) -> dict[str, Space[Any]]:
-        """Of every array but the masks."""
+        """Return the spaces of every array but the masks."""
         from gymnasium.spaces import Box, MultiBinary
 
         sizes, kinds = self.sizes, len(_categories(self.knowledge))
@@ -124,7 +124,7 @@ class Encoder:
         }
 
     def rows(self, home: Home, things: Iterable[str | int] | None = None) -> Rows:
-        """What `arrays` needs of a home.
+        """Return the facts about a home that `arrays` needs.
 
         Args:
             home: the home.
@@ -146,12 +146,12 @@ class Encoder:
         return Rows(slots, classes, categories, places, start_edges(home, self.relations))
 
     def arrays(self, view: View, rows: Rows, progress: Progress | None = None, time: float = 0.0) -> Arrays:
-        """A view as arrays that nobody else holds.
+        """Return a view as arrays that nobody else holds.
 
         Args:
-            view: what an agent sees.
+            view: an agent's view.
             rows: of its home.
-            progress: of the goal that the agent is told; None where it is told none.
+            progress: of the goal that the agent knows; None where it knows none.
             time: the part of the episode that has passed.
 
         Raises:
@@ -209,7 +209,7 @@ class Encoder:
 
 
 def _places(view: View, rows: Rows) -> NDArray[np.float32]:
-    """Return where things are: with who holds them, where they have been put, or where the home has them."""
+    """Return the places of nodes: with their holders, at their targets, or as the home has them."""
     world = view.world
     here = ground_of(world.home)
     found = rows.places.copy()

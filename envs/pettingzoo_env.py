@@ -69,11 +69,11 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
         self._np_random = np.random.default_rng()
 
     def observation_space(self, agent: str) -> Dict:
-        """Of an agent's arrays; always the same object."""
+        """Return the space of an agent's arrays; always the same object."""
         return self._observation_spaces[agent]
 
     def action_space(self, agent: str) -> Space[Any]:
-        """Of an agent's actions; always the same object."""
+        """Return the space of an agent's actions; always the same object."""
         return self._action_spaces[agent]
 
     def reset(
@@ -126,11 +126,11 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
         return {name: self.session.info(self._numbers[name]) for name in self.agents}
 
     def texts(self, agent: str) -> list[str]:
-        """The legal instructions of an agent in words, in the order of the code `listed`: 0 is to wait."""
+        """Return the legal instructions of an agent in words, in the order of the code `listed`: 0 is to wait."""
         return self.session.texts(self._numbers[agent])
 
     def render(self) -> Any:
-        """A picture or text of now, by the render mode; None without one."""
+        """Return a picture or text of now, by the render mode; None without one."""
         return self._pictures.take(self.session)
 
     def close(self) -> None:
@@ -140,12 +140,12 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
 def parallel_env(
     begin: Opening, max_cycles: int = MOST_TICKS, render_mode: str | None = None, **settings: Any
 ) -> ParallelHome:
-    """The environment by PettingZoo's names: `settings` are fields of `Setting`."""
+    """Return the environment by PettingZoo's names: `settings` are fields of `Setting`."""
     return ParallelHome(replace(Setting(begin, **settings), limit=max_cycles), render_mode)
 
 
 def env(begin: Opening, max_cycles: int = MOST_TICKS, render_mode: str | None = None, **settings: Any) -> AECEnv:
-    """The same in turns: a tick is done when all agents have chosen."""
+    """Return the same environment in turns: a tick is done when all agents have chosen."""
     from pettingzoo.utils.conversions import parallel_to_aec
 
     return parallel_to_aec(parallel_env(begin, max_cycles, render_mode, **settings))

@@ -1,4 +1,4 @@
-"""What `render` shows of an episode: a floor plan with the agents on it, a camera's picture, lines of text."""
+"""The pictures and texts of `render`: a floor plan with the agents on it, a camera's picture, lines of text."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Pictures:
         self._start: World | None = None
 
     def take(self, session: Session) -> Picture | str | None:
-        """The picture or text of now; None without a mode.
+        """Return the picture or text of now; None without a mode.
 
         Raises:
             HearthError: NOT_RENDERED, where the home has no geometry; MISSING_FILE, where a library is not installed.
@@ -110,7 +110,7 @@ class Pictures:
 
 
 def _drawn(home: Home) -> tuple[Picture, Rect]:
-    """The floor plan without letters, and what it covers in metres."""
+    """Return the floor plan without letters, and its area in meters."""
     layout = measured(World.start(home).graph(), home.name, home.knowledge)
     area = floor_plan_drawing.bounds(layout)
     picture = np.full((round(area.depth * SCALE), round(area.width * SCALE), 3), 255, np.uint8)
@@ -137,7 +137,7 @@ def _colour(text: str) -> tuple[int, ...]:
 
 
 def lines(session: Session) -> str:
-    """The episode now as text: the tick, what each agent last tried, where it is and what it holds, and the goal."""
+    """Return the state as text: the tick, each agent's last attempt, place and things in hand, and the goal."""
     env = session.env
     goal = f"{session.progress.goal}  [{session.progress.fraction:.0%}]"
     found = [f"tick {len(env.ticks)} of {session.setting.limit}: {goal}"]

@@ -1,4 +1,4 @@
-"""What a tick is worth to a learner.
+"""The reward of a learner in a tick.
 
 Source: thesis 6.5.1 (1 for the goal, -0.004 a tick); B.3.3 (2 for a predicate, -0.1 a tick: a policy over subgoals).
 """
@@ -24,8 +24,8 @@ class Rewards:
     Attributes:
         success: when the goal is reached.
         tick: for every tick.
-        predicate: for every count of a literal that comes to hold, up to what is wanted; taken back where it ends.
-        approach: for every metre nearer to what is missing (see `metres_left`), and taken back for every metre away
+        predicate: for every count of a literal that comes to hold, up to the wanted count; taken back where it ends.
+        approach: for every meter nearer to a missing literal (see `metres_left`), and taken back for every meter away
             from it, so that going in circles is worth nothing.
     """
 
@@ -35,7 +35,7 @@ class Rewards:
     approach: float = 0.0
 
     def of(self, before: tuple[Progress, World], after: tuple[Progress, World], number: int) -> float:
-        """The reward of a tick for an agent, from what was before it and after it."""
+        """Return the reward of an agent for a tick, from the states before and after it."""
         (old, was), (new, now) = before, after
         found = self.tick + (self.success if new.satisfied and not old.satisfied else 0.0)
         if self.predicate:
@@ -46,7 +46,7 @@ class Rewards:
 
 
 HIERARCHICAL = Rewards(success=0.0, tick=-0.1, predicate=2.0)
-"""Of a policy over subgoals (B.3.3)."""
+"""Rewards of a policy over subgoals (B.3.3)."""
 
 
 def counted(progress: Progress) -> int:
@@ -56,9 +56,11 @@ def counted(progress: Progress) -> int:
 
 
 def metres_left(progress: Progress, world: World, number: int) -> float:
-    """About how far an agent is from what is missing of a goal: for each missing literal the way to the nearest thing
-    that would make it hold, and `IN_HAND` more for one that is to be brought somewhere and not in its hands; the least
-    for each literal, summed. 0 where nothing is missing or no way is known.
+    """Return about how far an agent is from the missing literals of a goal, in meters.
+
+    Each missing literal counts the way to the nearest thing that would make it hold. A thing that is to be brought to a
+    place and is not in the agent's hands counts `IN_HAND` more. The least value of each literal is summed. The sum is 0
+    if nothing is missing or no way is known.
     """
     return sum(_missing(watch, world, number) for watch in progress.watches if watch.count < watch.wanted)
 

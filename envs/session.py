@@ -76,19 +76,19 @@ MOST_SEED = 2**63 - 1
 
 @dataclass(frozen=True)
 class Setting:
-    """How episodes are played.
+    """Settings of episodes.
 
     Attributes:
-        opening: where they begin, and what is wanted.
-        actions: names of what may be tried; None: those of challenges (see `action_codes.played`).
+        opening: the start of an episode, and its goal.
+        actions: names of the actions that may be tried; None: those of challenges (see `action_codes.played`).
         code: how instructions are numbered (see `action_codes`): `triples`, `listed`, or an `ActionCode`.
-        partial: whether agents see only what is around them.
-        told: the agents that are told the goal; all of them where None.
+        partial: whether agents see only the area around them.
+        told: numbers of the agents that know the goal; all of them where None.
         limit: ticks after which an episode is cut off.
         rewards: of a tick.
         rules: of actions.
         sizes: of the arrays.
-        things: what the arrays and instructions are about (see `Slots.of`); everything where None.
+        things: the nodes of arrays and instructions (see `Slots.of`); all nodes where None.
     """
 
     opening: Opening
@@ -143,13 +143,13 @@ class Session:
         return code
 
     def observation_space(self) -> Dict:
-        """Of every agent's arrays."""
+        """Return the space of every agent's arrays."""
         from gymnasium.spaces import Dict
 
         return Dict({**self.encoder.spaces(), **self.code.spaces()})
 
     def action_space(self) -> Space[Any]:
-        """Of every agent's numbers."""
+        """Return the space of every agent's numbers."""
         return self.code.space()
 
     def begin(self, seed: int) -> None:
@@ -175,7 +175,7 @@ class Session:
 
     @property
     def rows(self) -> Rows:
-        """The slots of the home."""
+        """Return the slots of the home."""
         assert self._rows is not None
         return self._rows
 
@@ -190,13 +190,13 @@ class Session:
         return len(self.env.ticks) >= self.setting.limit and not self.succeeded
 
     def seen(self, agent: int) -> tuple[View, Legal]:
-        """What an agent sees and could do now."""
+        """Return an agent's observation and its legal actions."""
         if agent not in self._seen:
             self._seen[agent] = self.env.observe(agent), self.env.legal(agent, actions=self.names)
         return self._seen[agent]
 
     def observe(self, agent: int) -> Arrays:
-        """The same as arrays."""
+        """Return an agent's observation as arrays."""
         view, legal = self.seen(agent)
         told = self.setting.told is None or agent in self.setting.told
         time = len(self.env.ticks) / self.setting.limit
@@ -204,7 +204,7 @@ class Session:
         return {**arrays, **self.code.masks(legal, self.rows.slots)}
 
     def info(self, agent: int) -> dict[str, Any]:
-        """What is not for the agent's eyes.
+        """Return facts about an episode that the agent must not observe.
 
         Returns:
             `legal`, how many instructions it could do; `left_out`, how many of them have no number; `failure`, why its
@@ -221,12 +221,14 @@ class Session:
         }
 
     def texts(self, agent: int) -> list[str]:
-        """An agent's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
+        """Return an agent's legal instructions in words, in the order of the code `listed`: 0 is to wait."""
         _, legal = self.seen(agent)
         return ["wait", *map(str_step, self.rows.slots.instructions(legal))]
 
     def read(self, agent: int, number: Number) -> Step | Failure | None:
-        """The instruction of an agent's number; a failure, where it has none now or is about what the agent cannot see.
+        """Return the instruction of an agent's number.
+
+        A number without an instruction now, or about a node that the agent does not see, gives a failure.
 
         Raises:
             HearthError: UNKNOWN_AGENT; BAD_ARGUMENT, where it is not in the action space.
@@ -246,7 +248,7 @@ class Session:
         return found
 
     def step(self, numbers: Mapping[int, Number]) -> dict[int, float]:
-        """Let agents act; who has no number waits. Nothing is done where a number is refused.
+        """Let agents act; an agent without a number waits. If a number is refused, no agent acts.
 
         Returns:
             The reward of each agent.
@@ -257,7 +259,7 @@ class Session:
         return self.act({agent: self.read(agent, number) for agent, number in numbers.items()})
 
     def act(self, read: Mapping[int, Step | Failure | None]) -> dict[int, float]:
-        """The same with instructions instead of numbers."""
+        """Let agents act by instructions instead of numbers, and return the reward of each agent."""
         before = self.progress, self.env.world
         tick = self.env.step({agent: step for agent, step in read.items() if isinstance(step, Step)})
         self.progress = self.progress.then(tick.before, tick.world, done(tick))
@@ -269,5 +271,5 @@ class Session:
 
 
 def done(tick: Tick) -> list[Step]:
-    """The instructions of a tick that did not fail."""
+    """Return the instructions of a tick that did not fail."""
     return [step for number, step in tick.instructions.items() if number not in tick.failures]

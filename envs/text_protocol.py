@@ -1,6 +1,7 @@
 """Agents that read and write text: language models, and people at a terminal.
 
-Each tick they get what is seen as lines of English and the numbered legal actions, and answer by a number or by text.
+Each tick they get the observation as lines of English and the numbered legal actions, and answer by a number or by
+text.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class TextAgent:
         self._goal: Goal | None = None
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
-        """Begin an episode; the seed is for whoever answers."""
+        """Begin an episode; the seed is for the function that answers."""
         self.faults, self._goal = [], goal
 
     def act(self, observation: View, legal: Legal) -> Choice:
@@ -91,7 +92,7 @@ def _refused(fault: Fault) -> str:
 
 
 def understood(answer: str, view: View, legal: Legal, options: Sequence[Step], messages: bool = False) -> Choice:
-    """The instruction that the last line of an answer means, or what it says; None for `wait`.
+    """Return the instruction that the last line of an answer means, or its message; None for `wait`.
 
     Raises:
         HearthError: EMPTY, NOT_TEXT, and those of `by_number` and `by_words`.
@@ -106,7 +107,10 @@ def understood(answer: str, view: View, legal: Legal, options: Sequence[Step], m
 
 
 def description(view: View, goal: Goal | None = None) -> str:
-    """What an agent sees, as lines of English; numbers are node ids. States that are usual are left out (`USUAL`)."""
+    """Return an agent's observation as lines of English; numbers are node ids.
+
+    States that are usual are left out (`USUAL`).
+    """
     me = view.me
     lines = [f"Tick {view.tick}. You are agent {view.agent}, {_where(me, view)}{_place(me)}."]
     lines.append(f"You hold {_things(me.holding, view)}." + _worn(me, view))
@@ -153,7 +157,7 @@ def _goal(goal: Goal, view: View) -> Iterator[str]:
 
 
 def _seen(view: View) -> Iterator[str]:
-    """The rest: rooms, doors, and things by the place that they are on or in; walls and floors are left out."""
+    """Yield the rest: rooms, doors, and things by the place that they are on or in; walls and floors are left out."""
     home, world = view.world.home, view.world
     rooms = [_name(home.ids[i], view) for i in indices(home.rooms) if home.ids[i] != view.me.room]
     yield f"Other rooms: {', '.join(rooms) or 'none'}."
@@ -188,13 +192,13 @@ def _things(nodes: Sequence[int], view: View) -> str:
 
 
 def plain(step: Step) -> str:
-    """An instruction as texts have it: `PutBack cup 41, table 55`."""
+    """Return an instruction as texts have it: `PutBack cup 41, table 55`."""
     objects = ", ".join(f"{ref.name} {ref.node}" for ref in step.objects)
     return f"{step.action} {objects}".rstrip()
 
 
 def menu(options: Sequence[Step], view: View) -> str:
-    """The legal instructions by action, each with the number that answers it.
+    """Return the legal instructions by action, each with the number that answers it.
 
     At most `MOST_LISTED` of an action, rooms first, and none about walls and floors, are numbered; all can be written.
     """
@@ -213,7 +217,7 @@ _ROOM, _THING, _STRUCTURE = range(3)
 
 
 def _kind(step: Step, view: View) -> int:
-    """What an instruction is about: a room, a thing, or a wall or a floor."""
+    """Return the kind of an instruction's node: a room, a thing, or a wall or a floor."""
     home = view.world.home
     nodes = [home.index[ref.node] for ref in step.objects if ref.node is not None]
     if any(home.rooms >> i & 1 for i in nodes):

@@ -1,7 +1,7 @@
 """Episodes as a dataset of LeRobot, format 3.0: one Parquet file of frames, with tasks, episodes and statistics.
 
-A frame is a tick. `observation.state` is how the agent and the other one stand, what they hold, and the time;
-`observation.environment_state` is where everything is that the agent sees; `action` is a triple of numbers.
+A frame is a tick. `observation.state` has the poses of both agents, the things in their hands, and the time.
+`observation.environment_state` has the places of all visible nodes. `action` is a triple of numbers.
 """
 
 from __future__ import annotations
@@ -47,7 +47,9 @@ Columns = dict[str, NDArray[Any]]
 
 
 def lerobot(results: Results, out: Path, agent: int, knowledge: Knowledge, limit: int | None = None) -> int:
-    """Write what an agent saw, did and earned, as `LeRobotDataset(NAME, root=FOLDER)` reads it; the number of episodes.
+    """Write an agent's observations, actions and rewards, as `LeRobotDataset(NAME, root=FOLDER)` reads them.
+
+    Return the number of episodes.
 
     Args:
         results: of a run.
@@ -108,7 +110,7 @@ def _row(number: int, goal: str, begun: int, ticks: int) -> dict[str, Any]:
 
 
 def _write(path: Path, columns: Columns) -> None:
-    """The frames; vectors as lists of one length."""
+    """Write the frames; vectors are lists of one length."""
     path.parent.mkdir(parents=True, exist_ok=True)
     arrays = {}
     for name, values in columns.items():

@@ -14,7 +14,9 @@ from hearth.version import DISTRIBUTION, VERSION
 
 
 def minari(results: Results, out: Path, agent: int, knowledge: Knowledge, limit: int | None = None) -> int:
-    """Write what an agent saw, did and earned, as `minari.MinariDataset(FOLDER)` reads it; the number of episodes.
+    """Write an agent's observations, actions and rewards, as `minari.MinariDataset(FOLDER)` reads them.
+
+    Return the number of episodes.
 
     Args:
         results: of a run.

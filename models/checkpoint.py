@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 FORMAT = 1
-"""Of checkpoints; it changes when older ones can no longer be read."""
+"""Version of the format of checkpoints; it changes when older ones can no longer be read."""
 
 NAME = "model.json"
 WEIGHTS = "weights.safetensors"
@@ -29,7 +29,7 @@ LARGEST_WEIGHTS = 2_000_000_000
 """Bytes of weights that are read."""
 
 LICENCE = "MIT"
-"""Of checkpoints trained on our own corpora, which are ours; `trained.data_licence` has that of the data."""
+"""License of checkpoints trained on our own corpora, which are ours; `trained.data_licence` has that of the data."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Checkpoint:
         settings: of the model, as JSON.
         content: vocabularies and whatever else is not weights, as JSON.
         weights: arrays by name.
-        trained: what it was trained on and how: `dataset`, `digest`, `split`, `seed`, `epochs`, `minutes`, `curves`.
+        trained: its data and its training: `dataset`, `digest`, `split`, `seed`, `epochs`, `minutes`, `curves`.
     """
 
     model: str
@@ -80,11 +80,11 @@ def save(checkpoint: Checkpoint, folder: Path) -> None:
 
 
 def load(folder: Path) -> Checkpoint:
-    """The checkpoint of a folder.
+    """Return the checkpoint of a folder.
 
     Raises:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; UNSUPPORTED_FILE, if it is of another
-            format; DAMAGED_FILE, if a part of it differs from what was written.
+            format; DAMAGED_FILE, if a part of it differs from the part that was written.
     """
     remedy = "name the folder that `model train` gave with --out, or a name of `model list`"
     if not (folder / NAME).exists():
@@ -103,7 +103,8 @@ def load(folder: Path) -> Checkpoint:
     if not _facts_fit(document["trained"]):
         raise _damaged(folder / NAME, "minutes, seed or curves of its training are not numbers")
     try:
-        value_digest([parts["settings"], parts["trained"]])  # they are shown, and written with what is trained on
+        # Readers see both, and models that are trained from this one record them.
+        value_digest([parts["settings"], parts["trained"]])
         written = value_digest(parts["content"])
     except HearthError as error:
         raise _damaged(folder / NAME, error.diagnostics[0].message) from error
@@ -113,11 +114,11 @@ def load(folder: Path) -> Checkpoint:
 
 
 def identity(folder: Path) -> str:
-    """A digest of a folder's checkpoint, without how long its training took: that differs from run to run."""
+    """Return a digest of a folder's checkpoint, without how long its training took: that differs from run to run."""
     document = _document(folder / NAME)
     if not isinstance(document, dict):
         return file_digest(folder / NAME)
-    value_digest(document)  # refuses what stands too deep for the next line
+    value_digest(document)  # refuses values nested too deep for the next line
     return value_digest({**document, "trained": _without_minutes(document.get("trained"))})
 
 
@@ -128,7 +129,7 @@ def _without_minutes(trained: Any) -> Any:
 
 
 def _facts_fit(trained: Mapping[str, Any]) -> bool:
-    """Return whether what is computed with, or drawn, of how a model was trained is numbers."""
+    """Return whether the facts about a training that are computed with or drawn are numbers."""
     phases = [trained, trained.get("imitation", {})]
     return all(isinstance(phase, dict) and _phase_fits(phase) for phase in phases)
 
@@ -173,11 +174,13 @@ def _damaged(path: Path, message: str) -> HearthError:
 
 
 MISFITS = (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeError, AssertionError)
-"""What models and libraries raise when settings, content and weights do not fit each other."""
+"""Errors that models and libraries raise when settings, content and weights do not fit each other."""
 
 
 def misfit(folder: Path, error: Exception) -> HearthError:
-    """The error of a checkpoint whose settings, content and weights do not fit each other or this version's model."""
+    """Return the error of a checkpoint whose settings, content and weights do not fit each other or this version's
+    model.
+    """
     return _damaged(folder, f"it does not fit its model: {type(error).__name__}: {str(error)[:200]}")
 
 
@@ -200,7 +203,7 @@ def _libraries() -> dict[str, str]:
 
 
 def _card(checkpoint: Checkpoint) -> str:
-    """The card: YAML for machines, then what the model is, what it was trained on, and what it is not for."""
+    """Return the model card: YAML for machines, then the model, its training data and the uses it is unfit for."""
     trained = checkpoint.trained
     about = _ABOUT.get(checkpoint.model.partition("-")[0], _ABOUT[""])
     lists = ("curves", "losses", "imitation")
@@ -224,7 +227,7 @@ def _card(checkpoint: Checkpoint) -> str:
 
 
 class _About(NamedTuple):
-    """What a card says of a kind of model: a tag, a line, and what it is not for."""
+    """The text of a card for one kind of model: a tag, a line, and its limits."""
 
     tag: str
     what: str
@@ -261,7 +264,7 @@ _ABOUT = {
     ),
     "demo2sketch": _About(
         "video-classification",
-        "A model of Hearth that writes the sketch of what is done in pictures from above (thesis 5.4.3).",
+        "A model of Hearth that writes the sketch of a demonstration in pictures from above (thesis 5.4.3).",
         (_OF_FILMS,),
     ),
     "masks": _About(
@@ -275,4 +278,4 @@ _ABOUT = {
         (_NOT_REAL, "It knows the things and furniture of one challenge's goals, and helps with no others."),
     ),
 }
-"""By the first word of a model's name."""
+"""Texts of cards, by the first word of a model's name."""

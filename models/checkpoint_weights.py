@@ -13,7 +13,7 @@ Network = TypeVar("Network", bound=torch.nn.Module)
 
 
 def filled(make: Callable[[], Network], weights: Mapping[str, np.ndarray]) -> Network:
-    """The network that is made, with these weights, for prediction.
+    """Return the network that is made, with these weights, for prediction.
 
     It is first made without memory: settings that ask for a network larger than its weights cost nothing.
 
@@ -48,5 +48,5 @@ class _Uninitialised(TorchFunctionMode):
 
 
 def _shape(array: np.ndarray | torch.Tensor) -> tuple[int, ...]:
-    """Of an array; of a single number that of a list of one, which is how it is stored."""
+    """Return the shape of an array, and for a single number that of a list of one, which is how it is stored."""
     return tuple(array.shape) or (1,)

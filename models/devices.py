@@ -1,4 +1,4 @@
-"""Where networks are computed: on a GPU if there is one."""
+"""The devices that compute networks: a GPU if there is one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Batch = TypeVar("Batch")
 
 
 def device() -> Any:
-    """The torch device of this machine: its first GPU, else one thread of its processor.
+    """Return the torch device of this machine: its first GPU, else one thread of its processor.
 
     The networks are small: two threads wait for each other longer than they save, and sums by one thread are the same
     on any number of cores.
@@ -24,12 +24,12 @@ def device() -> Any:
 
 
 def place_of(network: Any) -> Any:
-    """The torch device that has a network's weights."""
+    """Return the torch device that has a network's weights."""
     return next(network.parameters()).device
 
 
 def moved(batch: Batch, place: Any) -> Batch:
-    """A batch on a torch device: a tensor, or a tuple, list or named tuple of what is moved alike."""
+    """Move a batch to a torch device: a tensor, or a tuple, list or named tuple of batches."""
     if not isinstance(batch, tuple | list):
         return batch.to(place)  # type: ignore[attr-defined,no-any-return]
     parts = [moved(part, place) for part in batch]

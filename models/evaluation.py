@@ -10,7 +10,7 @@ from hearth.scoring.evaluate import METRICS, Scored
 
 
 def means(found: Sequence[Scored], seed: int = 0) -> dict[str, Interval]:
-    """The means of all scores, with bootstrap intervals by activity.
+    """Return the means of all scores, with bootstrap intervals by activity.
 
     Args:
         found: scores with their activities.
@@ -23,7 +23,7 @@ def means(found: Sequence[Scored], seed: int = 0) -> dict[str, Interval]:
 def by_group(
     columns: Mapping[str, Sequence[float | None]], groups: Sequence[str], seed: int, resamples: int = RESAMPLES
 ) -> dict[str, Interval]:
-    """The means of some scores of the same rows, with percentile intervals where whole groups are drawn.
+    """Return the means of some scores of the same rows, with percentile intervals where whole groups are drawn.
 
     Args:
         columns: values by name, one a row; None where a row lacks the score. A column of only None is omitted.

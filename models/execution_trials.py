@@ -43,7 +43,7 @@ class Trial:
 
 
 def trials(dataset: Dataset, names: Sequence[str]) -> dict[str, Trial]:
-    """Some executions by id; unknown ones are left out."""
+    """Return some executions by id; unknown ones are left out."""
     homes, found = opened(str(dataset.folder))[1], {}
     for first in range(0, len(names), AT_ONCE):
         for case in stored_cases(dataset, names[first : first + AT_ONCE]):

@@ -33,7 +33,7 @@ def fit(
     how: Mapping[str, Any],
     seen: Seen = unseen,
 ) -> dict[str, Any]:
-    """Train a model and write its checkpoint; what the checkpoint records of the training.
+    """Train a model and write its checkpoint, and return the checkpoint's record of the training.
 
     Args:
         name: in the registry.
@@ -70,11 +70,11 @@ def fit(
 
 
 BOOLEANS = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
-"""How the value of a setting may be written that is true or false."""
+"""Spellings of a true or false setting."""
 
 
 def _changed(name: str, changed: Sequence[str]) -> dict[str, Any]:
-    """Settings as `NAME=VALUE`, the values of the types of their defaults."""
+    """Return settings as `NAME=VALUE`, the values of the types of their defaults."""
     defaults = settings_of(name)
     own = {each.name: getattr(defaults, each.name) for each in fields(defaults)}  # type: ignore[arg-type]
     kinds = {key: type(value) for key, value in own.items()}

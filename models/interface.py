@@ -1,4 +1,4 @@
-"""What models are asked, how they are trained, and what their settings share."""
+"""The requests to models, their training, and the common part of their settings."""
 
 from __future__ import annotations
 
@@ -23,13 +23,15 @@ MOST = {
     **dict.fromkeys(("d", "h", "hidden", "size", "vector", "width"), 10_000),
     **dict.fromkeys(("dropout", "joined", "light", "share", "unnamed"), 1),
 }
-"""The largest numbers of some settings: what is done in turn, sizes whose squares are in memory, and shares. A greater
-`sharpness` makes weights 0."""
+"""Largest values of some settings.
+
+Repetitions, sizes whose squares are in memory, and shares. A greater `sharpness` makes weights 0.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What a model is asked. It has no reference: a prediction cannot depend on one.
+    """A request to a model. It has no reference: a prediction cannot depend on one.
 
     Attributes:
         id: of the execution, or any name.
@@ -50,7 +52,7 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Training:
-    """How long and how a model is trained.
+    """The length and the method of a model's training.
 
     Attributes:
         seed: of all random choices.
@@ -82,17 +84,17 @@ POSITIVE = {
 
 
 def _choices(settings: type, name: str) -> tuple[str, ...]:
-    """The values that a setting can have; none where it can have any."""
+    """Return the values that a setting can have; none where it can have any."""
     hint = get_type_hints(settings).get(name)
     return get_args(hint) if get_origin(hint) is Literal else ()
 
 
 class Settings:
-    """What settings share: they are made from a checkpoint's, and written to it."""
+    """The common part of settings: they are read from a checkpoint and written to it."""
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:
-        """The settings with these values, which may be a stranger's; lists become tuples.
+        """Return the settings with these values, which may be a stranger's; lists become tuples.
 
         Raises:
             TypeError: a value is unknown or missing.
@@ -129,7 +131,7 @@ class Settings:
 
 
 def texts(values: Any) -> tuple[str, ...]:
-    """A list of a checkpoint that should be of different texts, and may be a stranger's.
+    """Return a list of a checkpoint that should be of different texts, and may be a stranger's.
 
     Raises:
         TypeError: it is not a list.

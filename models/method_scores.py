@@ -22,7 +22,7 @@ class Row(NamedTuple):
         method: its name.
         of: `thesis`, `yardstick` or `ours`.
         scores: by column.
-        seeds: how many trained models the scores are means of; 0 for what is not trained.
+        seeds: how many trained models the scores are means of; 0 for methods without training.
         minutes: of training, their mean.
     """
 
@@ -57,7 +57,7 @@ def scored_rows(
     columns: Mapping[str, str],
     seed: int,
 ) -> Iterator[Row]:
-    """The rows of some methods, in order.
+    """Yield the rows of some methods, in order.
 
     Args:
         dataset: with the executions.

@@ -70,7 +70,7 @@ MODELS: dict[str, Entry] = {
     "chooser-text": Entry(
         "sketches.plan_chooser:Chooser",
         "sketch",
-        "The same; it reads the description beside the sketch.",
+        "The same; it reads the description as well as the sketch.",
         "ours",
         {"text": True},
     ),
@@ -84,7 +84,7 @@ MODELS: dict[str, Entry] = {
     "clips-seen": Entry(
         "films.mask_clip_model:SeenModel",
         "film",
-        "Names it by what each class of the masks does beside the person; it points at the objects.",
+        "Names it by the behavior of each mask class near the person; it points at the objects.",
         "ours",
     ),
     "clips-context": Entry(
@@ -123,7 +123,7 @@ MODELS: dict[str, Entry] = {
     "demo2sketch": Entry(
         "demonstrations.demo_model:DemoModel",
         "film",
-        "Writes the sketch of pictures from above, by colours, masks and what is beside the person.",
+        "Writes the sketch of pictures from above, by colors, masks and the area around the person.",
         "thesis 5.4.3, A.1",
         output="sketch",
     ),
@@ -220,7 +220,7 @@ MODELS: dict[str, Entry] = {
 
 
 def settings_of(name: str, **changed: Any) -> Model:
-    """The settings of a model, its own or with some changed.
+    """Return the settings of a model, its own or with some changed.
 
     Raises:
         HearthError: UNKNOWN_ID, if there is no such model; BAD_ARGUMENT, if it writes no programs; MISSING_FILE, if the
@@ -255,12 +255,12 @@ def _class(entry: Entry) -> Any:
 
 
 def trained_names() -> list[str]:
-    """The names of the checkpoints that come with Hearth."""
+    """Return the names of the checkpoints that come with Hearth."""
     return sorted(path.parent.name for path in TRAINED.glob("*/model.json"))
 
 
 def restore(model: str | Path) -> tuple[str, Trained]:
-    """A trained model that writes programs, and its name: of a checkpoint's folder, or of one that comes
+    """Return a trained model that writes programs, and its name: of a checkpoint's folder, or of one that comes
     with Hearth.
 
     Raises:
@@ -274,7 +274,7 @@ def restore(model: str | Path) -> tuple[str, Trained]:
 
 
 def restore_any(model: str | Path) -> tuple[str, Any]:
-    """The same of any model.
+    """Return the name and the trained model of a checkpoint of any kind.
 
     Raises:
         HearthError: there is none, it is broken or of another version, or the extra is not installed.
@@ -299,7 +299,7 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
 
 
 def named(model: str | Path) -> str:
-    """The name in the registry of a model that can be restored; of a newer version's the one that it has there.
+    """Return the name in the registry of a model that can be restored; of a newer version's the one that it has there.
 
     Raises:
         HearthError: there is none, or it is broken.
@@ -308,7 +308,7 @@ def named(model: str | Path) -> str:
 
 
 def recorded(model: str | Path) -> Mapping[str, Any]:
-    """What the checkpoint of a model that can be restored records of its training; nothing of one without.
+    """Return the facts about its training that a model's checkpoint records; nothing if it has no checkpoint.
 
     Raises:
         HearthError: there is none, or it is broken.

@@ -32,11 +32,11 @@ class Planner(Settings):
         return cls()
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """The plan for each sketch in its world; no steps without a world."""
+        """Return the plan for each sketch in its world; no steps without a world."""
         return [planned_program(each.sketch, each.world, each.rules) if each.world else () for each in requests]
 
     def checkpoint(self) -> Checkpoint:
-        """A checkpoint without weights."""
+        """Return a checkpoint without weights."""
         from hearth.models.checkpoint import Checkpoint
 
         return Checkpoint("planner", {}, {}, {})

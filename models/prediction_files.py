@@ -43,7 +43,7 @@ def predict(
     sketches: str = ANNOTATED,
     seen: Seen = unseen,
 ) -> Iterator[tuple[str, Steps]]:
-    """The ids of executions with their predicted programs, in the dataset's order.
+    """Yield the ids of executions with their predicted programs, in the dataset's order.
 
     Args:
         trained: a trained model.
@@ -77,7 +77,7 @@ def constrained(
     sketches: str = ANNOTATED,
     seen: Seen = unseen,
 ) -> Iterator[tuple[str, Steps]]:
-    """As `predict`, decoded with the engine in the loop: each program parses, and runs in its environment.
+    """Predict with the engine in the loop: each program parses, and runs in its environment.
 
     Raises:
         HearthError: BAD_ARGUMENT, if the model can't be decoded so.
@@ -98,7 +98,7 @@ WRITTEN = 32
 
 
 def scorer_of(trained: Trained) -> Scorer:
-    """A model as decoding sees it.
+    """Return a model as decoding sees it.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it can't be decoded with the engine in the loop.
@@ -143,7 +143,7 @@ def predict_part(
         out: the file to write.
         split, part: of the dataset; `part` is a prefix.
         beam: as in `Trained.predict`.
-        repaired: bind and repair each program in its environment, and leave out what can't run there.
+        repaired: bind and repair each program in its environment, and leave out the steps that can't run there.
         is_constrained: decode with the engine in the loop; models of sketches always do.
         originals: leave out executions of augmented programs.
         sketches: `annotated` or `inferred`: which go before the others.

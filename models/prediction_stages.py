@@ -1,4 +1,4 @@
-"""From words or a sketch to a program that runs in a home, each stage by itself: words, sketch, program, execution."""
+"""The way from words or a sketch to a program that runs in a home: words, sketch, program, execution."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from hearth.simulation.world.world import World
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """What became of a text or a sketch.
+    """The results for one text or sketch.
 
     Attributes:
         words: those that the model was given.
         sketch: the steps that were written or given, without nodes.
-        completion: the program that runs, and what was left out of it.
+        completion: the program that runs, and the steps that were left out of it.
         failure: why nothing of it is left to run; None where something is.
     """
 
@@ -39,9 +39,9 @@ def show_text(trained: Trained, text: str, world: World, writer: Trained | None 
 
     Args:
         trained: a model of texts.
-        text: what is to be done.
+        text: the task to do.
         world: where the program runs.
-        writer: a model of sketches, which takes what the first wrote for a sketch; without one the planner does.
+        writer: a model of sketches, which reads the output of the first as a sketch; without one the planner does.
         beam: programs followed at once.
     """
     request = Request("text", "", text, (), world)
@@ -61,7 +61,7 @@ def show_sketch(writer: Trained | None, sketch: Steps, world: World, text: str =
         writer: a model of sketches; None for the planner.
         sketch: without nodes.
         world: where the program runs.
-        text: what the sketch is of, for models that read it.
+        text: the text of the sketch, for models that read it.
         beam: programs followed at once.
     """
     request = Request("sketch", "", text, sketch, world)

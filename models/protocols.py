@@ -1,4 +1,4 @@
-"""What every model is: settings that train on examples, and a trained model that answers requests."""
+"""The protocols of every model: settings that train on examples, and a trained model that answers requests."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ class Model(Protocol):
     """The settings of a model: a frozen dataclass."""
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> Trained:
-        """The model trained on the corpus's training part; its validation part decides when to stop."""
+        """Return the model trained on the corpus's training part; its validation part decides when to stop."""
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> Trained:
-        """The trained model of a checkpoint."""
+        """Return the trained model of a checkpoint."""
 
 
 class Trained(Protocol):
     """A trained model."""
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """A program for each request, in order; objects have numbers, and nodes if the model chooses them.
+        """Return a program for each request, in order; objects have numbers, and nodes if the model chooses them.
 
         Args:
             requests: any number; the answers do not depend on their order, or on one another.
@@ -37,7 +37,7 @@ class Trained(Protocol):
         """
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
 
 
 @runtime_checkable
@@ -45,7 +45,7 @@ class Decoded(Protocol):
     """A trained model that decoding with the engine in the loop can step through."""
 
     def scorer(self) -> Scorer:
-        """The model as a scorer of the parts of steps; its inputs are requests.
+        """Return the model as a scorer of the parts of steps; its inputs are requests.
 
         Raises:
             HearthError: BAD_ARGUMENT, if its settings do not allow it.

@@ -1,4 +1,4 @@
-"""Which models a table takes: by what they read and what they write."""
+"""The models that belong in a table, by their inputs and outputs."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ KINDS: Mapping[str, tuple[Kind, ...]] = MappingProxyType({
     "5.5": (("film", "sketch"), ("sketch", "program")),
     "A.4": (("film", "sketch"), ("text", "sketch")),
 })  # fmt: skip
-"""What the models of each table read and write."""
+"""The inputs and outputs of the models of each table."""
 
 BY_ROUNDS = "5.3"
-"""The table of graph models by their rounds of messages, beside the planner."""
+"""The table that compares graph models by their rounds of messages with the planner."""
 
 
 def fits(table: str, name: str, entry: Entry) -> bool:

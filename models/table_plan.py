@@ -21,19 +21,19 @@ from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 
 Data = Literal["people", "drawn", "clips"]
-"""Which dataset: of people's programs, of drawn ones (`corpus synthesize`), or of their films (`--tier clips`)."""
+"""The kind of dataset: people's programs, drawn ones (`corpus synthesize`), or their films (`--tier clips`)."""
 
 LSTM = ("mle", "mle-composed")
 CRITICS = ("pg-lcs", "pg-lcs-sim")
 
 CLASSIFIERS = ("clips-seen", "clips-context")
-"""Of clips by true masks."""
+"""Classifiers of clips by true masks."""
 
 PREDICTED = "clips-predicted"
 """The one that learns from predicted masks, too."""
 
 WRITERS = ("films-mle", "films-pg-lcs", "films-pg-lcs-sim")
-"""Of programs of films."""
+"""Writers of programs of films."""
 
 STARTS: Mapping[str, str] = MappingProxyType({
     **dict.fromkeys((*CRITICS, "consensus"), "mle-composed"),
@@ -44,7 +44,7 @@ STARTS: Mapping[str, str] = MappingProxyType({
 """Models that go on from another one of the same seed, or read its answers."""
 
 ONCE = ("masks",)
-"""Of these, those that are trained with one seed alone: films of all seeds' classifiers are the same."""
+"""Models that are trained with one seed alone: films of all seeds' classifiers are the same."""
 
 GRAPHS = ("unaries", "graph", "fcactgraph", "gruactgraph", "resactgraph")
 
@@ -78,20 +78,20 @@ class Needed(NamedTuple):
     """A setting that is not the usual one, as `model train --set` takes it."""
 
     def folder(self, out: Path) -> Path:
-        """Of its checkpoint; tables share them."""
+        """Return the folder of its checkpoint; tables share the checkpoints."""
         name = ".".join(part for part in (self.name, self.changed) if part)
         return inside(out / "models", f"{self.data}.{self.split}.{name}.{self.seed}")
 
     @property
     def before(self) -> Needed | None:
-        """The model that its training goes on from."""
+        """Return the model that its training goes on from."""
         if self.name not in STARTS:
             return None
         name = STARTS[self.name]
         return self._replace(name=name, changed="", seed=0 if name in ONCE else self.seed)
 
     def settings(self, out: Path) -> list[str]:
-        """Those that are not the usual ones, as `model train --set` takes them."""
+        """Return the settings that are not the usual ones, as `model train --set` takes them."""
         many = DRAWN_SETTINGS if self.data == "drawn" and self.name in LSTM else ()
         word = "masks" if self.name == PREDICTED else "start"
         start = [f"{word}={self.before.folder(out)}"] if self.before else []
@@ -103,14 +103,14 @@ class Needed(NamedTuple):
         return RATES.get(self.name, USUAL_RATE), EPOCHS.get(self.name, USUAL_EPOCHS)
 
     def recipe(self, out: Path, dataset: str, how: Mapping[str, Any]) -> str:
-        """A digest of what its weights depend on: dataset, settings, training, the model that it goes on from."""
+        """Return a digest of the inputs of its weights: dataset, settings, training, the model that it goes on from."""
         before = identity(self.before.folder(out)) if self.before else ""
         settings = repr(settings_of(self.name))
         return value_digest([dataset, self.name, settings, self.settings(out)[bool(before) :], dict(how), before])
 
     @property
     def chain(self) -> list[Needed]:
-        """The models that its training needs, one after another, and itself."""
+        """Return the models that its training needs, one after another, and itself."""
         return [*(self.before.chain if self.before else ()), self]
 
 
@@ -140,11 +140,11 @@ class Plan:
 
     @property
     def name(self) -> str:
-        """The table, and the split where it is not the usual one."""
+        """Return the table, and the split where it is not the usual one."""
         return self.table if self.split == "activities" else f"{self.table}-{self.split}"
 
     def needed(self, seeds: int) -> Iterator[Needed]:
-        """Its models, each after the one that it goes on from."""
+        """Yield its models, each after the one that it goes on from."""
         for name in self.once:
             yield Needed(self.data, self.split, name, 0)
         for name, changed in (*((name, "") for name in self.seeded), *self.varied):
@@ -168,11 +168,14 @@ PLANS: dict[str, Plan] = {plan.name: plan for plan in (
     Plan("4.3b", "clips", "activities", (), ("clips-rgb",)),
     Plan("4.6", "clips", "activities", (), ("clips-context", *WRITERS)),
 )}  # fmt: skip
-"""By name: `4.4-pairs`, `4.5`. A pair of tasks, or the paraphrases, of the test are not in training."""
+"""The parts of tables by name: `4.4-pairs`, `4.5`.
+
+A pair of tasks, or the paraphrases, of the test are not in training.
+"""
 
 
 def chosen(names: Sequence[str], without: Sequence[Data] = ()) -> list[Plan]:
-    """The plans of these tables, in the order of all. `4.4` stands for both of its splits.
+    """Return the plans of these tables, in the order of all. `4.4` stands for both of its splits.
 
     Args:
         names: of tables; every one if there is none.
@@ -191,7 +194,7 @@ def chosen(names: Sequence[str], without: Sequence[Data] = ()) -> list[Plan]:
 
 
 def training(plans: Sequence[Plan], seeds: int) -> list[Needed]:
-    """The models of some tables, each once, and each after the one that it goes on from."""
+    """Return the models of some tables, each once, and each after the one that it goes on from."""
     every = (each for plan in plans for each in plan.needed(seeds))
     return list(dict.fromkeys(one for each in every for one in each.chain))
 
@@ -222,7 +225,7 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
 
 
 def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen = unseen) -> list[Any]:
-    """The rows of a table, from its trained models.
+    """Return the rows of a table, from its trained models.
 
     Args:
         plan: the table.

@@ -59,12 +59,12 @@ class Example:
 
     @property
     def sketch(self) -> Steps:
-        """The steps that its sketch keeps; none without a sketch."""
+        """Return the steps that its sketch keeps; none without a sketch."""
         return tuple(step for step, keeps in zip(self.steps, self.keep, strict=False) if keeps)
 
     @property
     def request(self) -> Request:
-        """The example without its program: all that a model may see."""
+        """Return the example without its program: all that a model may see."""
         return Request(self.program_id, self.title, self.description, self.sketch)
 
 
@@ -73,13 +73,13 @@ class Corpus:
     """The examples that a model is trained on.
 
     Attributes:
-        dataset: where they come from; for what else a model needs.
+        dataset: the source of the examples, and of other inputs that a model needs.
         split: by which they were parted.
         train: to learn from.
         validation: to decide when to stop; their activities are not in `train`.
-        shared: what of `train` is in the split's test parts, too; see `shared`.
+        shared: the part of `train` that is in the split's test parts, too; see `shared`.
         instead: how many examples the split's own part `validation` has of other activities, where they were too few.
-        writes: what models learn to write from it.
+        writes: the output that models learn to write from it.
     """
 
     dataset: Dataset
@@ -91,7 +91,7 @@ class Corpus:
     writes: Literal["program", "sketch"] = "program"
 
     def checked(self, *, sketches: bool = False) -> tuple[Example, ...]:
-        """The examples for validation, of which there are some.
+        """Return the examples for validation, of which there are some.
 
         Args:
             sketches: some have a sketch, too.
@@ -106,7 +106,7 @@ class Corpus:
         return self.validation
 
     def of_sketches(self) -> Corpus:
-        """The same with sketches in the place of programs; programs without one are left out."""
+        """Return the corpus with sketches in the place of programs; programs without one are left out."""
         train, validation = (
             tuple(replace(each, steps=each.sketch, keep=()) for each in part if each.sketch)
             for part in (self.train, self.validation)
@@ -115,7 +115,7 @@ class Corpus:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What a checkpoint records of it."""
+        """Return the facts about this corpus that a checkpoint records."""
         counts = {"train": len(self.train), "validation": len(self.validation)}
         facts = {**facts_of(self.dataset), "split": self.split, **counts}
         if self.instead is not None:
@@ -124,7 +124,7 @@ class Corpus:
 
 
 def facts_of(dataset: Dataset) -> dict[str, Any]:
-    """What a checkpoint records of the dataset that it was trained on."""
+    """Return the facts about its training dataset that a checkpoint records."""
     version = dataset.manifest.get("version", "")
     return {"dataset": version, "digest": value_digest(dataset.manifest["files"])}
 
@@ -142,7 +142,7 @@ _PROGRAMS = """
 def examples(
     dataset: Dataset, split: str, part: str, *, originals: bool = False, sketches: str = ANNOTATED
 ) -> tuple[Example, ...]:
-    """The programs of a part with their texts, by id.
+    """Return the programs of a part with their texts, by id.
 
     Args:
         dataset: a published dataset.
@@ -177,7 +177,7 @@ def _example(row: Any) -> Example:
 
 
 def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 0, sketches: str = ANNOTATED) -> Corpus:
-    """The training and validation examples of a split.
+    """Return the training and validation examples of a split.
 
     Where the split has no part `validation`, one in ten activities of `train` is taken out for it. Of a split by
     activity or home, validation has no activities of `train`; where that leaves hardly any, those of `train` are taken
@@ -199,7 +199,7 @@ def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 
 
 
 def shared(train: Sequence[Example], test: Sequence[Example]) -> dict[str, int]:
-    """The numbers of titles, descriptions and step lists of test examples that training examples have, too.
+    """Return the numbers of titles, descriptions and step lists of test examples that training examples have, too.
 
     All are 0 in splits by activity. In splits by home the same program may be in several homes.
     """
@@ -210,7 +210,7 @@ def shared(train: Sequence[Example], test: Sequence[Example]) -> dict[str, int]:
 
 
 def of_new_titles(dataset: Dataset, trained_on: Dataset, split: str) -> set[str]:
-    """The ids of a dataset's executions whose titles no training program of another dataset has, ignoring case.
+    """Return the ids of a dataset's executions whose titles no training program of another dataset has, ignoring case.
 
     Args:
         dataset: with the executions.
@@ -237,7 +237,7 @@ _SEEN: dict[str, Callable[[Example], Any]] = {
 
 
 def carved(train: Iterable[Example], seed: int) -> tuple[tuple[Example, ...], tuple[Example, ...]]:
-    """Training examples parted by activity: what stays, and what is for validation.
+    """Split training examples by activity and return those to train on and those for validation.
 
     Of two activities or more, each of the two has at least one.
     """
@@ -253,7 +253,7 @@ def carved(train: Iterable[Example], seed: int) -> tuple[tuple[Example, ...], tu
 def requests(
     dataset: Dataset, names: Sequence[str], *, worlds: bool, sketches: str = ANNOTATED
 ) -> Iterator[list[Request]]:
-    """What is known of executions before they run, without their programs, in shares of at most 250.
+    """Yield the known inputs of executions, without their programs, in batches of at most 250.
 
     Args:
         dataset: a published dataset.

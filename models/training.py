@@ -1,8 +1,8 @@
 """The one training loop: seeds, a budget, early stopping, clipped gradients, curves, and resuming.
 
-It knows a module, batches, a loss and a validation score, and nothing of what they are about. Random numbers of an
-epoch are derived from the seed and its number: on the processor a run that was stopped and continued is the same as one
-that was not.
+The loop knows a module, batches, a loss and a validation score, and nothing about their meaning. Random numbers of an
+epoch are derived from the seed and its number. On the processor, a run that was stopped and continued is the same as an
+uninterrupted run.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ _OPTIMISER = "optimiser/"
 
 @dataclass(frozen=True, slots=True)
 class Task(Generic[B]):
-    """What is trained.
+    """A training task.
 
     Attributes:
         module: with the weights; those that need no gradient stay.
         batches: the batches of an epoch, in an order drawn from the generator.
         loss: the mean loss of a batch, a tensor of one number.
         validate: a score of the module as it is, the greater the better.
-        identity: what the task is made of, as JSON; a kept state of another task is not continued.
+        identity: the parts of the task, as JSON; a kept state of another task is not continued.
     """
 
     module: torch.nn.Module
@@ -71,14 +71,14 @@ class Epoch(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """A finished training: its epochs, the best one, whose weights the module now has, and what ended it."""
+    """A finished training: its epochs, the best one, whose weights the module now has, and the reason of its end."""
 
     epochs: tuple[Epoch, ...]
     best: int
     ended: str
 
     def record(self) -> dict[str, Any]:
-        """The outcome as a checkpoint's `trained` has it."""
+        """Return the outcome as a checkpoint's `trained` has it."""
         minutes = round(sum(epoch.seconds for epoch in self.epochs) / 60, 2)
         curves = {name: [getattr(epoch, name) for epoch in self.epochs] for name in ("loss", "score", "rate")}
         facts = {"epochs": len(self.epochs), "best_epoch": self.best, "ended": self.ended, "minutes": minutes}
@@ -86,7 +86,7 @@ class Outcome(NamedTuple):
 
 
 def weights_digest(module: torch.nn.Module) -> str:
-    """A digest of a module's weights."""
+    """Return a digest of a module's weights."""
     found = blake2b(digest_size=16)
     for name, values in sorted(module.state_dict().items()):
         found.update(name.encode())
@@ -101,7 +101,7 @@ def train(task: Task[B], how: Training, seen: Seen = unseen) -> Outcome:
     same weights; a GPU adds some gradients in another order each time.
 
     Args:
-        task: what is trained.
+        task: the task to train.
         how: how long and how.
         seen: reports progress: epochs done, and their greatest number.
 
@@ -150,14 +150,14 @@ def _epoch(task: Task[B], how: Training, optimiser: torch.optim.Optimizer, numbe
 
 
 def _finite(value: float, what: str) -> float:
-    """A number that is one: a score that is none would be neither better nor worse than any other."""
+    """Return a score, checked to be a number: another value would be neither better nor worse than any other."""
     if not math.isfinite(value):
         raise HearthError.of(Code.BAD_ARGUMENT, f"{what} is {value}", suggestion="train with a lower rate")
     return value
 
 
 def best_of(epochs: Sequence[Epoch]) -> int:
-    """The number of the first epoch with the best score; 0 before the first."""
+    """Return the number of the first epoch with the best score; 0 before the first."""
     return max(epochs, key=lambda epoch: (epoch.score, -epoch.number)).number if epochs else 0
 
 
@@ -174,7 +174,7 @@ def _ended(epochs: Sequence[Epoch], best: int, how: Training) -> str:
 
 
 def _rate(epochs: Sequence[Epoch], how: Training) -> float:
-    """The rate of the next epoch: halved after each `halve_after` epochs without a better score."""
+    """Return the rate of the next epoch: halved after each `halve_after` epochs without a better score."""
     halvings, waited, best = 0, 0, -math.inf
     for epoch in epochs:
         waited = 0 if epoch.score > best else waited + 1
@@ -201,7 +201,7 @@ class _State:
             self.module.load_state_dict(self.best)
 
     def keep(self, epochs: Sequence[Epoch]) -> None:
-        """One file, so that whoever is stopped has the weights of the epochs that it says, or those before."""
+        """Write one file, so that a stopped run has the weights of the epochs that it lists, or those before."""
         if self.folder is None:
             return
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -262,7 +262,7 @@ class _State:
 
 
 def _epochs(rows: Any) -> list[Epoch]:
-    """The epochs of a kept state; none if these are not epochs."""
+    """Return the epochs of a kept state; none if these are not epochs."""
     kinds = (int, float, float, float, float)
     if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == len(kinds) for row in rows):
         return []

@@ -1,4 +1,4 @@
-"""Whether a model is asked about programs that it was trained on: those of another split of the same dataset may be."""
+"""The check that a model is not asked about its training programs: another split of the dataset may contain them."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def refuse_seen_tests(model: str | Path, dataset: Dataset, split: str) -> None:
 
 
 def _phases(trained: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """What is recorded of a training, and of the one that it went on from."""
+    """Yield the record of a training, and of each training that it went on from."""
     while isinstance(trained, Mapping):
         yield trained
         trained = trained.get("first_phase")  # type: ignore[assignment]

@@ -39,14 +39,14 @@ from hearth.storage.manifest import read_manifest
 from hearth.storage.rejects import Reject
 
 ORIGINAL = "original"
-"""By which rows of originals in perturbed environments are counted; others are counted by their number of repairs."""
+"""Key of the counts of originals in perturbed environments; other rows are counted by their number of repairs."""
 
 _DONE = frozenset({Code.DUPLICATE, Code.UNPERTURBED})
-"""Why a program that runs and reaches its goal is refused."""
+"""Reasons to refuse a program that runs and reaches its goal."""
 
 
 class Context:
-    """What a record is processed with."""
+    """The resources for processing a record."""
 
     def __init__(self, settings: Settings, plan: Plan) -> None:
         self.homes = Homes(settings)
@@ -63,7 +63,7 @@ class Context:
         return [self.homes.home(name) for name in self.homes.names()[:ENVIRONMENTS]]
 
     def others(self, name: str) -> list[Home]:
-        """The homes besides its own in which a program's sketch has to suffice."""
+        """Return the homes besides its own in which a program's sketch has to suffice."""
         return [home for home in self._others if home.name != name]
 
     def options_for(self, record_id: str) -> Options:
@@ -78,7 +78,7 @@ def _pairs(each: float, seed: int, record_id: str) -> int:
 
 
 def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
-    """The executions that get environments, and the first one of each program, which gives its sketch."""
+    """Yield the executions that get environments, and the first one of each program, which gives its sketch."""
     each, last = _each(job.settings, job.plan), None
     for row in rows_of(job, partition):
         if row["program_id"] != last or _pairs(each, job.settings.seed, row["execution_id"]):
@@ -112,7 +112,7 @@ def process(record: CaseRow, context: Context) -> Iterator[Output]:
 def _sketched(
     record: CaseRow, program: Program, original: tuple[Preconditions, Execution], context: Context
 ) -> Iterator[Output]:
-    """The program's sketch, unless the record of another home gave it."""
+    """Yield the program's sketch, unless the record of another home gave it."""
     name = record["program_id"]
     if name != context.sketched:
         context.sketched = name
@@ -145,14 +145,14 @@ def _reject(record: CaseRow, pair: Pair, failure: Failure) -> Reject:
 
 
 def _conditions(record: CaseRow) -> Preconditions:
-    """The conditions of a row, without those that name objects which the program does not use."""
+    """Return the conditions of a row, without those that name objects which the program does not use."""
     keys = {(ref["name"], ref["instance"]) for step in record["steps"] for ref in step["objects"]} | {CHARACTER}
     found = conditions_of(record["conditions"])
     return found.without(*(condition for condition in found if not keys.issuperset(condition.objects)))
 
 
 def _cases(record: CaseRow, pair: Pair, context: Context) -> Iterator[Output]:
-    """The cases of the repaired program, if there is one, and of the original in the same environment.
+    """Yield the cases of the repaired program, if there is one, and of the original in the same environment.
 
     The original has the repairs if no program came of them. One that runs there and still was repaired, since it lost
     its goal, has nothing to add to the repaired program.
@@ -254,7 +254,7 @@ def _text(step: Step) -> str:
 
 
 def prepare(settings: Settings) -> Plan:
-    """The user's overlays, the homes left out, and the number of pairs for each execution."""
+    """Return the user's overlays, the homes left out, and the number of pairs for each execution."""
     plan = overlays(settings)
     if settings.homes:
         homes = Homes(settings)

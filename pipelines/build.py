@@ -40,11 +40,11 @@ _SHOWN = 20
 
 @dataclass(frozen=True, slots=True)
 class Funnel:
-    """What became of every record.
+    """The counts of records through the stages of a build.
 
     Attributes:
         stages: counts by stage, in order, of the stages that have run.
-        records: what a record of each of them is, and what was left out.
+        records: the meaning of a record of each of them, and a note of the records that were left out.
         fresh: stages that were not up to date.
         dataset: the folder of the published dataset; None before it is published.
         columns: the columns of each table that was read, by field.
@@ -157,7 +157,7 @@ def _note_lacking(progress: Progress) -> None:
 
 
 def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
-    """The counts in the manifests of a build."""
+    """Return the counts in the manifests of a build."""
     manifests = {name: read_manifest(settings.folder(name)) for name in STAGES}
     counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
     records = {name: record_of(name, manifest.content["plan"]) for name, manifest in manifests.items() if manifest}
@@ -169,7 +169,7 @@ def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
 
 
 def _unread(ingested: Manifest | None) -> Iterator[str]:
-    """The files that `ingest` refused whole, with the reason; at most `_SHOWN`, then their number."""
+    """Yield the files that `ingest` refused whole, with the reason; at most `_SHOWN`, then their number."""
     if ingested is None:
         return
     rows = pq.read_table(ingested.folder / REJECTS, columns=["record_id", "file", "message", "fault"]).to_pylist()

@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
@@ -13,11 +14,13 @@ from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.description_lookup import Described
 from hearth.pipelines.crowd.duplicate_records import Repeated
 from hearth.pipelines.engine.build_context import knowledge
+from hearth.pipelines.engine.salt_record import salt_changed
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import (
     crowd,
+    enclosed_json,
     ours,
     plans,
     published,
@@ -53,13 +56,14 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     DOCUMENT: ours.scan_document,
     spreadsheets.NAME: spreadsheets.scan,
     yaml_documents.NAME: yaml_documents.scan,
+    enclosed_json.NAME: enclosed_json.scan,
     published.NAME: published.scan,
     sketches.NAME: sketches.scan,
     scenes.NAME: scenes.scan,
 }
 """The function that finds the records of a file or folder, by reader."""
 
-_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME})
+_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME, enclosed_json.NAME})
 """Readers of records whose fields may have other names."""
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
@@ -88,7 +92,7 @@ def items(
     found_columns: dict[str, FieldColumns] | None = None,
     time_limit: float = SECONDS,
 ) -> Iterator[tuple[str, Item]]:
-    """Every record of the sources with its source's label; a copy of an earlier record is refused.
+    """Yield every record of the sources with its source's label; a copy of an earlier record is refused.
 
     Args:
         sources: files and folders.
@@ -120,7 +124,7 @@ def items(
 
 
 def _recognised(source: Source) -> Iterator[Recognised]:
-    """The entries of a source; an error in Hearth is refused as one record.
+    """Yield the entries of a source; an error in Hearth is refused as one record.
 
     Raises:
         HearthError: the source is missing, or nothing in it can be read.
@@ -134,12 +138,12 @@ def _recognised(source: Source) -> Iterator[Recognised]:
 
 
 def _scanned_in_time(times: ScanningTime, entry: Recognised, columns: Asked) -> Iterator[Item]:
-    """The records that a reader finds before the time of a packed file is over."""
+    """Yield the records that a reader finds before the time of a packed file is over."""
     return times.within(entry.path, entry.inside, _scanned(entry, columns))
 
 
 def _scanned(entry: Recognised, columns: Asked) -> Iterator[Item]:
-    """The records that a reader finds; if it breaks off, those before the break, then the break as a reject."""
+    """Yield the records that a reader finds; if it breaks off, those before the break, then the break as a reject."""
     found = False
     try:
         more = (columns,) if entry.reader in _NAMED else ()
@@ -177,7 +181,7 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 
 def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[tuple[str, Item]]:
-    """The first `limit` programs and at most as many other records; refused items do not count."""
+    """Yield the first `limit` programs and at most as many other records; refused items do not count."""
     counts = {True: 0, False: 0}
     for source, item in found:
         is_program = not (item.reader == crowd.NAME and item.value["stage"] == 1) and item.reader != sketches.NAME
@@ -209,7 +213,7 @@ def _digest(share: list[tuple[str, Item]]) -> str:
 
 
 def _storable(source: str, item: Item) -> Item:
-    """The item, or its refusal if it is not JSON in UTF-8 of at most some 250 levels."""
+    """Return the item, or its refusal if it is not JSON in UTF-8 of at most some 250 levels."""
     try:
         _digest([(source, item)])
     except (HearthError, TypeError) as error:
@@ -231,7 +235,7 @@ class Found(TypedDict):
 
 
 def records(job: Job, partition: Partition) -> Iterator[Found]:
-    """The items of a share, as records."""
+    """Yield the items of a share, as records."""
     for source, item in partition.payload:
         yield {"program_id": item.record_id, "source": source, "item": item}
 
@@ -254,7 +258,7 @@ def process(record: Found, context: Context) -> list[IngestedRow | Reject]:
 
 
 def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Reject]:
-    """The rows of an item, and a reject for each part of it that can't be read.
+    """Return the rows of an item, and a reject for each part of it that can't be read.
 
     Args:
         item: as found by `items`.
@@ -266,12 +270,14 @@ def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Rej
 
 
 def prepare(settings: Settings) -> dict[str, Any]:
-    """Identify the salt by a digest, without revealing it."""
-    return {"salt": value_digest(salt(settings))[:16]}
+    """Begin anew where the last build had another salt; the plan has nothing by which a salt could be guessed."""
+    if salt_changed(Path(settings.out), settings.salt):
+        shutil.rmtree(settings.folder("ingest"), ignore_errors=True)
+    return {}
 
 
 def guesses(columns: Mapping[str, FieldColumns]) -> list[str]:
-    """A sentence for each file whose columns or keys are not those of our own records."""
+    """Return a sentence for each file whose columns or keys are not those of our own records."""
     return [shown(place, found) for place, found in columns.items() if found and not getattr(found, "is_ours", False)]
 
 

@@ -44,14 +44,14 @@ FILMS = "films"
 
 
 class Context(NamedTuple):
-    """What a case is filmed with."""
+    """The resources for filming a case."""
 
     homes: Homes
     job: Job
     drawable: dict[str, DrawableHome]
 
     def home(self, name: str) -> DrawableHome:
-        """A home with geometry, derived from its relations if it has none; once a process."""
+        """Return a home with geometry, derived from its relations if it has none; once a process."""
         from hearth.rendering.scene.home_geometry import with_geometry
 
         if name not in self.drawable:
@@ -186,7 +186,7 @@ def _demonstrated(
 
 
 def _track(track: list[tuple[int, Camera]]) -> Iterator[TrackRow]:
-    """The pictures at which the tick or the camera changes."""
+    """Yield the pictures at which the tick or the camera changes."""
     before: tuple[int, Camera] | None = None
     for number, (tick, camera) in enumerate(track):
         if before != (tick, camera):
@@ -201,7 +201,7 @@ def _track(track: list[tuple[int, Camera]]) -> Iterator[TrackRow]:
 
 
 def _folder(execution_id: str) -> str:
-    """A folder name, unique to the execution, that any file system accepts."""
+    """Return a folder name, unique to the execution, that any file system accepts."""
     words = "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in execution_id)
     return f"{words.strip('._')[-80:]}-{value_digest(execution_id)[:8]}"
 
@@ -275,12 +275,12 @@ def _chosen(settings: Settings) -> Plan:
 
 
 def no_pictures(libraries: list[str]) -> str:
-    """The message of a build without these libraries."""
+    """Return the message of a build without these libraries."""
     return f"pictures are left out: {', '.join(libraries)} not installed"
 
 
 def _sampled(settings: Settings) -> Iterator[tuple[str, Any]]:
-    """Every case with its file, of the columns that the choice needs."""
+    """Yield every case with its file, of the columns that the choice needs."""
     folder = settings.folder("sample")
     for file in _sample_files(settings):
         for row in read_rows(folder / file, ["program_id", "execution_id", "home", "executable"]):
@@ -288,13 +288,13 @@ def _sampled(settings: Settings) -> Iterator[tuple[str, Any]]:
 
 
 def _sample_files(settings: Settings) -> list[str]:
-    """The files of cases in the folder of the stage `sample`."""
+    """Return the files of cases in the folder of the stage `sample`."""
     manifest = read_manifest(settings.folder("sample"))
     return [file for part in manifest.parts for file in part["files"]] if manifest else []
 
 
 def _steps(settings: Settings) -> dict[str, Hashable]:
-    """What distinguishes the steps of each program: actions and classes."""
+    """Return the keys that distinguish the steps of each program: actions and classes."""
     files = [settings.folder("sample") / file for file in _sample_files(settings)]
     return {each.program_id: each.steps for each in programs_of(files, settings.seed)}
 
@@ -304,7 +304,7 @@ SHARES = 64
 
 
 def partitions(job: Job) -> Iterator[Partition]:
-    """The chosen executions, a few at a time; one empty partition if there are none."""
+    """Yield the chosen executions, a few at a time; one empty partition if there are none."""
     manifest = read_manifest(job.settings.folder("sample"))
     known: dict[str, str] = job.plan["executions"]
     executions = list(known)
@@ -317,7 +317,7 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 
 def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
-    """The cases of a partition; the others, nearly all, are never converted to rows."""
+    """Yield the cases of a partition; the others, nearly all, are never converted to rows."""
     import pyarrow.compute as pc
 
     left = {execution: job.plan["executions"][execution] for execution in partition.payload}

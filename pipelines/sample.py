@@ -38,7 +38,7 @@ SHARED_BY = 32
 
 
 class Context(NamedTuple):
-    """What a record is processed with."""
+    """The resources for processing a record."""
 
     homes: Homes
     names: tuple[str, ...]
@@ -60,7 +60,7 @@ def process(record: ValidatedRow, context: Context) -> Iterator[CaseRow | Reject
 
 
 def _chosen(program_id: str, context: Context) -> tuple[str, ...]:
-    """All homes, or `each` of them drawn for the program, in the homes' order."""
+    """Return all homes, or `each` of them drawn for the program, in the homes' order."""
     if not 0 < context.each < len(context.names):
         return context.names
     drawn = rng(context.seed, "homes", program_id).sample(context.names, context.each)
@@ -68,7 +68,7 @@ def _chosen(program_id: str, context: Context) -> tuple[str, ...]:
 
 
 def _once(outputs: list[CaseRow | Reject]) -> Iterator[CaseRow | Reject]:
-    """The outputs; if all of them fail, each code and line is reported once."""
+    """Yield the outputs; if all of them fail, each code and line is reported once."""
     reported: set[tuple[str, int]] = set()
     fails = all(isinstance(output, Reject) for output in outputs)
     for output in outputs:
@@ -93,14 +93,14 @@ def _sampled(
 
 
 def failed(failure: Failure, program: Program, place: str, where: str = "") -> Reject:
-    """A reject for a program that does not run, at the line of the failing step."""
+    """Return a reject for a program that does not run, at the line of the failing step."""
     steps = [number for number, tick in enumerate(program.ticks()) for _ in tick]
     step = steps.index(failure.tick) if failure.tick in steps else 0
     return Reject.failed(failure, place, program.line(step), where)
 
 
 def _stored(record: ValidatedRow, grounding: GroundingRow, start: GraphRow, context: Context) -> CaseRow:
-    """A case in the environment stored with the program, run by the release's rules."""
+    """Return a case in the environment stored with the program, run by the release's rules."""
     name = grounding["home"]
     bound: ValidatedRow = {**record, "steps": grounding["steps"]}
     program = program_of(bound, bindings_of(grounding["bindings"]))
@@ -150,14 +150,14 @@ def _case(
 
 
 def prepare(settings: Settings) -> Plan:
-    """The homes to sample in, and the parts from which the other homes of stored start graphs are derived."""
+    """Return the homes to sample in, and the parts from which the other homes of stored start graphs are derived."""
     homes = Homes(settings)
     parts = {name: [digest for digest, _ in found] for name, found in _parts_by_home(settings, homes).items()}
     return {**overlays(settings), "homes": list(homes.names()), "derived": parts}
 
 
 def _parts_by_home(settings: Settings, homes: Homes) -> dict[str, list[tuple[str, Path]]]:
-    """For each home outside the catalog, the first parts (digest, path) with enough start graphs of it."""
+    """Return for each home outside the catalog the first parts (digest, path) with enough start graphs of it."""
     manifest = read_manifest(settings.folder("validate"))
     assert manifest is not None
     found: dict[str, list[tuple[str, Path]]] = {}

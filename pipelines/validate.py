@@ -35,7 +35,7 @@ Check = Callable[[str, int, str, Knowledge], tuple[Program, tuple[Diagnostic, ..
 
 
 class Reading(NamedTuple):
-    """What programs are checked against, and how far the steps of plans may be from sentences that are known."""
+    """The settings of a check: the knowledge, and the allowed distance of plans' steps from known sentences."""
 
     known: Knowledge
     fuzzy: Fuzzy = Fuzzy.TYPOS

@@ -115,7 +115,7 @@ MOST = 1_000
 
 
 def baselines(dataset: Dataset, split: str = "activities", seed: int = 0) -> list[Result]:
-    """Every baseline on a split: trained on `train`, tested on all test parts.
+    """Return every baseline on a split: trained on `train`, tested on all test parts.
 
     Baselines over descriptions use original programs, whose descriptions people wrote; those over sketches and starts
     use every execution. A baseline without train or test programs has no row.
@@ -143,7 +143,7 @@ _EXAMPLES = """
 
 
 def examples(dataset: Dataset, split: str, part: str, originals: bool, sketches: str = ANNOTATED) -> list[Example]:
-    """The examples of a part: each original program once, or each execution of a program with a sketch."""
+    """Return the examples of a part: each original program once, or each execution of a program with a sketch."""
     where = "p.parent_id IS NULL" if originals else "k.keep IS NOT NULL"
     query = _EXAMPLES.format(
         sketches=sketches_query(sketches), where=where, group="p.program_id" if originals else "s.execution_id"
@@ -163,7 +163,7 @@ def _example(case: StoredCaseRow, keep: Sequence[bool], home: Home) -> Example:
 
 
 def _start(environment: DifferenceRow, home: Home) -> frozenset[Literal[str]]:
-    """The difference of an environment from its home, as literals of classes."""
+    """Return the difference of an environment from its home, as literals of classes."""
     added = {node["id"]: node["class_name"] for node in environment["added_nodes"]}
 
     def name(node: int) -> str:
@@ -205,7 +205,10 @@ def random_retrieval(train: Sequence[Example], test: Sequence[Example], seed: in
 
 
 def nearest_description(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
-    """The program with the most similar description, by the cosine of TF-IDF weights; of equal ones the first."""
+    """Return the program with the most similar description, by the cosine of TF-IDF weights.
+
+    Of equal ones the first is taken.
+    """
     from sklearn.feature_extraction.text import TfidfVectorizer
 
     weights = TfidfVectorizer(token_pattern=WORD)
@@ -220,7 +223,7 @@ WORD = r"(?u)[^\W_]{2,}"
 
 
 def nearest_sketch(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
-    """The program with the most similar sketch by LCS; of equal ones, that with the most similar start (5.6.2).
+    """Return the program with the most similar sketch by LCS; of equal ones, that with the most similar start (5.6.2).
 
     The similarity of starts is the Jaccard index of their differences from the homes, as literals of classes: states,
     and ON and INSIDE edges; of equal ones the first.
@@ -239,12 +242,12 @@ def _shared(one: frozenset[Literal[str]], other: frozenset[Literal[str]]) -> flo
 
 
 def empty(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
-    """The program without steps."""
+    """Return the program without steps."""
     return ()
 
 
 def random_legal(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
-    """Steps that the engine does not refuse, as many as a random training program has."""
+    """Return steps that the engine does not refuse, as many as a random training program has."""
     steps: list[Step] = []
     for _ in range(len(random.choice(train).steps)):
         could = legal(world, rules=rules)
@@ -259,13 +262,13 @@ def random_legal(train: Sequence[Example], example: Example, world: World, rules
 
 
 def sketch_alone(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
-    """The sketch, its objects bound to the nearest nodes of their classes."""
+    """Return the sketch, its objects bound to the nearest nodes of their classes."""
     program = Program(steps=example.sketch)
     return nearest(program, world).apply(program).steps
 
 
 def planner(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
-    """The sketch so bound, and repaired: what planning without learning achieves."""
+    """Return the sketch so bound, and repaired: the result of planning without learning."""
     return planned_program(example.sketch, world, rules)
 
 

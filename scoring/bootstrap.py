@@ -26,7 +26,7 @@ class Interval(NamedTuple):
 def intervals(
     columns: Mapping[str, Sequence[float | None]], seed: int, *, resamples: int = RESAMPLES, level: float = LEVEL
 ) -> dict[str, Interval]:
-    """The means of several scores of the same rows, with percentile bootstrap intervals.
+    """Return the means of several scores of the same rows, with percentile bootstrap intervals.
 
     Rows are drawn with replacement, the same for every column. Equal input gives equal output on every machine.
 

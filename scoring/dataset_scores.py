@@ -16,7 +16,7 @@ from hearth.kb.language.fuzzy import Fuzzy
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
-from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, scored
+from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, note_goal, scored
 from hearth.scoring.line_reader import LineReader
 from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.prediction_rows import Named
@@ -30,7 +30,7 @@ PART = 250
 """References in memory at a time, the unit of a worker's work."""
 
 _ID = "execution_id::VARCHAR AS execution_id"
-"""As text: a stranger's table may have ids of another type, which no reference has."""
+"""The id as text: a stranger's table may have ids of another type, which no reference has."""
 
 Job = tuple[str, list[Pair], Options]
 """A dataset's folder, pairs without their references, and how to score them."""
@@ -83,7 +83,10 @@ def score_dataset(
         message = "no prediction is of an execution that is asked for"
         suggestion = f"ids are those of the part's executions, as `{wanted[0]}`"
         raise HearthError.of(Code.EMPTY, message, file=str(file), suggestion=suggestion)
-    return _in_shares(dataset, pairs, options, workers, seen)
+    found = _in_shares(dataset, pairs, options, workers, seen)
+    for each in found:
+        note_goal(each, rejects)
+    return found
 
 
 def score_given(
@@ -94,7 +97,7 @@ def score_given(
 
 
 def _read(dataset: Dataset, file: Path, rejects: FirstFaults | None = None, fuzzy: Fuzzy = Fuzzy.TYPOS) -> list[Pair]:
-    """A pair for each execution of a dataset; `line` is 0 where the file lacks it."""
+    """Return a pair for each execution of a dataset; `line` is 0 where the file lacks it."""
     opened.cache_clear()
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
     return read_pairs(file, known, LineReader(dataset.knowledge, fuzzy), _named(dataset), rejects)
@@ -135,7 +138,7 @@ def _scored_share(job: Job) -> list[Scored]:
 def _scored(
     case: StoredCaseRow, pairs: Sequence[tuple[Pair, BothLcs]], homes: Source, options: Options
 ) -> Iterator[Scored]:
-    """The scores of an execution's predictions, given with their LCS."""
+    """Yield the scores of an execution's predictions, given with their LCS."""
     with using(f"execution {case['execution_id']}"):
         world = start_of(case["environment"], case["home"], homes)
         options = replace(options, rules=RULES[case["rules"]])
@@ -150,7 +153,7 @@ def _scored(
 
 
 def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
-    """A pair with its reference, and the fields for grouping, without a goal that its row brings along."""
+    """Return a pair with its reference, and the fields for grouping, without a goal that its row brings along."""
     with using(f"execution {case['execution_id']}"):
         steps = program_of(case, bindings_of(case["bindings"])).steps
     given = {name: value for name, value in pair.more.items() if name not in GOALS}
@@ -158,7 +161,7 @@ def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
 
 
 def _named(dataset: Dataset) -> Named:
-    """A function from a row without `id` to its executions."""
+    """Return a function from a row without `id` to its executions."""
     of_program: dict[str, list[str]] = {}
     there: dict[tuple[str, str], list[str]] = {}
     query = f"SELECT {_ID}, program_id::VARCHAR, home::VARCHAR FROM executions WHERE {dataset.included} ORDER BY 1"
@@ -184,7 +187,7 @@ def _every(dataset: Dataset) -> list[str]:
 
 
 def chosen(dataset: Dataset, split: str = "", part: str = "", originals: bool = False) -> list[str]:
-    """The ids of the executions in a part of a split, sorted; without a split, of all that the dataset includes.
+    """Return the ids of the executions in a part of a split, sorted; without a split, of all that the dataset includes.
 
     Args:
         dataset: with the executions.

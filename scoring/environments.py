@@ -22,7 +22,7 @@ HOME = "home"
 def by_row(
     file: Path, knowledge: Knowledge, graph: Path | None = None, homes: Path | None = None, home: str = ""
 ) -> Environments:
-    """Environments named by each row: `graph`, a scene graph's file beside the predictions', or `home`, a name.
+    """Return environments named by each row: `graph`, a file next to the predictions', or `home`, a name.
 
     Args:
         file: the predictions; a row's path is relative to its folder.
@@ -52,7 +52,7 @@ def by_row(
 
 
 def _at(fault: Diagnostic, pair: Pair, file: Path) -> Diagnostic:
-    """The fault with the row that names the faulty file."""
+    """Return the fault with the row that names the faulty file."""
     message = f"the environment of `{pair.id}` ({file}:{pair.line}): {fault.message}"
     return Diagnostic(fault.code, message, fault.file, suggestion=fault.suggestion)
 

@@ -55,7 +55,7 @@ _MARKS = ("[", "<", "(", "|")
 
 
 def read(source: Source, reader: Reader = parse_steps) -> Lines:
-    """The steps of a program in order; text that does not parse is kept, so that it counts towards the length.
+    """Return the steps of a program in order; text that does not parse is kept, so that it counts towards the length.
 
     In a text, the lines before the first step are title and description; in a text without steps, every line counts as
     a step that does not parse. Blank lines are ignored; a line of several agents (`... | ...`) gives a step for each.
@@ -80,7 +80,7 @@ def steps_of(lines: Iterable[Line]) -> tuple[Step, ...]:
 
 
 def _body(text: str, reader: Reader) -> list[str]:
-    """The lines from the first step on, or all lines of a text without steps.
+    """Return the lines from the first step on, or all lines of a text without steps.
 
     Text before a bracketed or numbered step is title and description, even if it reads like a natural-language step.
     """

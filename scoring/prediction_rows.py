@@ -33,7 +33,9 @@ Named = Callable[[Mapping[str, Any]], Sequence[str]]
 def rows_of(
     path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None, numbered: bool = False
 ) -> Iterator[Row]:
-    """The rows with all of these columns, the first of which is the id; faults of other rows are added to `faults`.
+    """Yield the rows with all of these columns, the first of which is the id.
+
+    Faults of other rows are added to `faults`.
 
     Args:
         path: JSON Lines or Parquet.
@@ -65,7 +67,7 @@ def rows_of(
 
 
 def _with_ids(values: dict[str, Any], column: str, named: Named | None) -> list[dict[str, Any]]:
-    """The row, once for each of its ids."""
+    """Return the row, once for each of its ids."""
     if named is None or column in values:
         return [values]
     return [{**values, column: name} for name in named(values)] or [values]
@@ -89,11 +91,11 @@ def has_predictions(path: Path) -> bool:
 
 
 HEAD = 100
-"""Lines of a file that tell what it has."""
+"""Lines of a file from which its contents are recognized."""
 
 
 def source_of(value: Any) -> Source | None:
-    """A value as a program: a text, or a list of texts and of steps as in the published tables; else None."""
+    """Return a value as a program: a text, or a list of texts and of steps as in the published tables; else None."""
     if isinstance(value, str):
         return value
     if not isinstance(value, list):

@@ -87,7 +87,7 @@ def read_pairs(
 
 
 def _as_known(row: Row, known: Mapping[str, Lines]) -> Row:
-    """The row under the id of its reference, which may be of another version."""
+    """Return the row under the id of its reference, which may be of another version."""
     return replace(row, id=next((name for name in names_of(row.id) if name in known), row.id))
 
 
@@ -105,7 +105,7 @@ def _references(references: Path | Mapping[str, Source], reader: Reader, faults:
 def _rows(
     path: Path, columns: Sequence[str], faults: FirstFaults, named: Named | None = None, numbered: bool = False
 ) -> list[Row]:
-    """The rows of a file with unique ids; faults of the others are added to `faults`."""
+    """Return the rows of a file with unique ids; faults of the others are added to `faults`."""
     rows = _unique(rows_of(path, columns, faults, named, numbered), path, faults)
     if not rows and not faults:
         raise HearthError.of(Code.EMPTY, "no predictions", file=str(path), suggestion=f"write rows like {EXAMPLE}")
@@ -113,7 +113,7 @@ def _rows(
 
 
 def _unique(found: Iterable[Row], path: Path, faults: FirstFaults) -> list[Row]:
-    """The first row of each id; the others are faults."""
+    """Return the first row of each id; the others are faults."""
     rows: dict[str, Row] = {}
     for row in found:
         first = rows.setdefault(row.id, row)
@@ -125,7 +125,7 @@ def _unique(found: Iterable[Row], path: Path, faults: FirstFaults) -> list[Row]:
 
 
 def _whole(row: Row, path: Path, reader: Reader, faults: FirstFaults, alone: bool) -> Pair | None:
-    """The pair of a row with its own reference, or without one; None if the row is refused."""
+    """Return the pair of a row with its own reference, or without one; None if the row is refused."""
     if alone and row.values.get("reference") is None:
         return _pair(row, None, path, reader, faults)
     reference = _program(row, "reference", path, reader)

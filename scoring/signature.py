@@ -7,7 +7,7 @@ def signature(name: str, version: int = 1, /, **options: object) -> str:
     Args:
         name: of the score.
         version: incremented whenever the same input could score differently.
-        options: what changes the score's value, in this order.
+        options: the options that change the score's value, in this order.
     """
     parts = [f"{key}:{_word(value)}" for key, value in options.items()]
     return "|".join([name, *parts, f"v{version}"])

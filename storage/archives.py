@@ -22,7 +22,7 @@ LARGEST_MEMBER = 4_000_000_000
 """Bytes that a packed file may unpack to while it is read as a stream."""
 
 MOST_PACKED = 50
-"""How many times its size a packed file may unpack to, once that is more than `_HARMLESS` bytes."""
+"""Largest ratio of a packed file's contents to its size, once the contents exceed `_HARMLESS` bytes."""
 
 _HARMLESS = 8_000_000
 
@@ -39,16 +39,16 @@ class Member:
 
     @property
     def suffix(self) -> str:
-        """As of a path."""
+        """Return the suffix of its name, as that of a path."""
         return PurePosixPath(self.name).suffix
 
     def info(self) -> zipfile.ZipInfo:
-        """Its entry in the archive's directory."""
+        """Return its entry in the archive's directory."""
         return archive(self.archive).getinfo(self.name)
 
 
 Place = Path | Member
-"""Where a file is."""
+"""The place of a file."""
 
 
 class DamagedError(HearthError):
@@ -65,7 +65,7 @@ def _archive(path: str, changed: int) -> zipfile.ZipFile:
 
 
 def archive(path: Path) -> zipfile.ZipFile:
-    """The archive at a path, open once a process.
+    """Return the archive at a path, open once a process.
 
     Raises:
         HearthError: BAD_ARCHIVE.
@@ -74,7 +74,7 @@ def archive(path: Path) -> zipfile.ZipFile:
 
 
 def members(found: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
-    """What an archive holds, folders left out; `is_dir` itself breaks at a name that is empty."""
+    """Return the files of an archive, without folders; `is_dir` itself breaks at a name that is empty."""
     return [info for info in found.infolist() if not info.filename.endswith("/")]
 
 
@@ -110,7 +110,7 @@ def size_of(place: Place) -> int:
 
 
 def raw(place: Place) -> BinaryIO:
-    """A file's bytes, unpacked."""
+    """Return a file's bytes, unpacked."""
     if isinstance(place, Member):
         member = _opened(place)
         guarded: io.RawIOBase = _Guarded(member, place.name, place.info().compress_size)
@@ -130,7 +130,7 @@ def raw(place: Place) -> BinaryIO:
 
 
 def unpacked(data: bytes, name: str) -> BinaryIO:
-    """The stream of a gzip file's bytes.
+    """Return the stream of a gzip file's bytes.
 
     Args:
         data: the packed bytes.
@@ -167,7 +167,7 @@ class _Guarded(io.RawIOBase):
     def readinto(self, buffer: bytearray) -> int:  # type: ignore[override]
         try:
             data = self._stream.read(min(len(buffer), _READ))
-        except Exception as error:  # archives raise what their compression raises: zlib, lzma, EOFError, ArrowIOError
+        except Exception as error:  # archives raise the errors of their compression: zlib, lzma, EOFError, ArrowIOError
             raise _damaged(self._name, f"can't be unpacked: {error}") from error
         self._size += len(data)
         if bomb(self._size, self._packed):

@@ -1,4 +1,4 @@
-"""A folder takes the place of another in one step: whoever opens it finds the old or the new one, never none."""
+"""A folder takes the place of another in one step: a reader that opens it finds the old or the new one, never none."""
 
 import ctypes
 import os
@@ -30,14 +30,14 @@ def away(folder: Path) -> Path:
 
 
 def _real(folder: Path) -> Path:
-    """The folder that a link leads to: the link stays."""
+    """Return the folder that a link leads to: the link stays."""
     return folder.resolve() if folder.is_symlink() else folder
 
 
 def start_from(folder: Path, files: Iterable[Path]) -> None:
     """Make the folder for the next version, with these files of the present one in it; they share their bytes.
 
-    Nothing may write into these files: what changes must be written anew and renamed.
+    Nothing may write into these files: a changed file must be written anew and renamed.
     """
     following = beside(folder)
     if following.exists():
@@ -55,7 +55,7 @@ def start_from(folder: Path, files: Iterable[Path]) -> None:
 
 
 def put_in_place(folder: Path) -> None:
-    """Give the next version its folder's name; what stood there goes."""
+    """Give the next version its folder's name; the former folder goes."""
     following, before, folder = beside(folder), away(folder), _real(folder)
     if not folder.exists():
         following.rename(folder)
@@ -74,7 +74,7 @@ def tidy(folder: Path) -> None:
 
 
 def recover(folder: Path) -> None:
-    """Bring back what was moved away for a moment, where that moment was the last of a build."""
+    """Bring back the folder that was moved away for a moment, where that moment was the last of a build."""
     if not folder.exists():
         with suppress(FileNotFoundError):
             away(folder).rename(folder)

@@ -1,10 +1,10 @@
 """Files and folders at URLs, fetched before they are read; a dataset that is replaced meanwhile is of one version.
 
-Copies are in a folder that is removed when the process ends; within a process only what changed is fetched again.
+Copies are in a folder that is removed when the process ends; within a process only changed files are fetched again.
 
 A store cannot exchange two folders in one step. While a build replaces the dataset `publish`, the new one is complete
-in `.publish` before the first file of the old one changes, and goes when the last one has (`Store.replace`). So one of
-the two is whole at any moment, which its manifest shows: it has the size and the SHA-256 of every file.
+in `.publish` before the first file of the old one changes, and goes when the last one has (`Store.replace`). So either
+the one or the other is whole at any moment, as its manifest shows: it has the size and the SHA-256 of every file.
 
 fsspec's own caching does not serve here: it keeps files under hashes of their names, or all in one folder, where a
 dataset is read by the names of its tables and parts.
@@ -34,7 +34,7 @@ _one_at_a_time = threading.Lock()
 
 
 def fetched(path: str | Path) -> Path:
-    """The local path of a file or folder to be read; what is in a store is fetched, of a build only its dataset.
+    """Return the local path of a file or folder to be read; from a store it is fetched, of a build only its dataset.
 
     Raises:
         HearthError: MISSING_FILE, or the store cannot be reached.
@@ -61,7 +61,7 @@ def fetched(path: str | Path) -> Path:
 
 
 def _places(folder: str) -> tuple[str, ...]:
-    """Return where a dataset is: in its folder or, while a build replaces it, beside it."""
+    """Return the possible places of a dataset: its folder and, while a build replaces it, the folder next to it."""
     path = PurePosixPath(folder)
     return (folder, str(path.with_name(f".{path.name}"))) if len(path.parts) > 1 else (folder,)
 
@@ -71,7 +71,7 @@ def _manifests(fs: Any, folder: str) -> Iterator[bool]:
 
 
 def _fetch_dataset(fs: Any, folder: str, copy: Path) -> None:
-    """Make the copy one version of a dataset; where it stays as it is and is not whole, what is there."""
+    """Make the copy one version of a dataset; if the store's stays as it is and is not whole, copy the files there."""
     before = None
     for _ in range(_ROUNDS):
         fs.invalidate_cache()
@@ -127,7 +127,7 @@ def _update(fs: Any, infos: dict[str, dict[str, Any]], copy: Path, check: bool =
 
 
 def _said(manifest: Path) -> dict[str, tuple[Any, Any]]:
-    """The size and digest of each file by a manifest; nothing of files with other entries."""
+    """Return the size and digest of each file by a manifest; nothing of files with other entries."""
     content = read_json(manifest)
     files = content.get("files") if isinstance(content, dict) else None
     entries = files.items() if isinstance(files, dict) else ()
@@ -135,18 +135,18 @@ def _said(manifest: Path) -> dict[str, tuple[Any, Any]]:
 
 
 def _versions(infos: dict[str, dict[str, Any]]) -> dict[str, str]:
-    """The version of each file that is not hidden."""
+    """Return the version of each file that is not hidden."""
     return {name: _version(info) for name, info in sorted(infos.items()) if not name.rsplit("/", 1)[-1].startswith(".")}
 
 
 def _version(info: dict[str, Any]) -> str:
-    """What changes when a file in a store is written anew."""
+    """Return a digest that changes when a file in a store is written anew."""
     return value_digest([str(info.get(key)) for key in ("size", "ETag", "etag", "mtime", "created", "LastModified")])
 
 
 @lru_cache(maxsize=1)
 def _temporary_folder(process: int) -> Path:
-    """A folder of this process, closed to others and removed when it ends, for copies that are only read."""
+    """Return a folder of this process, closed to others and removed when it ends, for copies that are only read."""
     folder = Path(tempfile.mkdtemp(prefix="hearth-"))
     atexit.register(_remove, folder, process)
     return folder

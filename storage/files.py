@@ -21,13 +21,13 @@ TEMPORARY = ".tmp"
 
 
 def is_temporary(name: str) -> bool:
-    """Return whether a file's name is that of something half written, or of what a library keeps beside such a file."""
+    """Return whether a file's name is that of a half-written file, or of a file that a library keeps next to one."""
     return TEMPORARY in Path(name).suffixes
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary name beside `path`; on success it is fsynced and takes the place of `path`."""
+    """Yield a temporary name next to `path`; on success it is fsynced and takes the place of `path`."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}{TEMPORARY}")
     try:
         yield temporary
@@ -54,7 +54,7 @@ def sync_folder(folder: Path) -> None:
 
 
 def drop_temporary(files: Iterable[Path]) -> None:
-    """Remove those of some files that somebody who was stopped had written in part."""
+    """Remove those of some files that a stopped process had written in part."""
     for leftover in [path for path in files if is_temporary(path.name)]:
         leftover.unlink(missing_ok=True)
 
@@ -71,7 +71,7 @@ def write_json(path: Path, value: Any) -> None:
 
 
 def read_json(path: Path) -> Any | None:
-    """The JSON of a file; None when it is absent, not a regular file, too large or not JSON."""
+    """Return the JSON of a file; None when it is absent, not a regular file, too large or not JSON."""
     try:
         return orjson.loads(read_input(path, LARGEST_JSON))
     except (HearthError, orjson.JSONDecodeError):
@@ -113,16 +113,16 @@ def files_digest(files: Iterable[Path], folder: Path) -> str:
 
 
 SERVED = ".server"
-"""Folder in which `serve` keeps its store, in the folder of what it collects."""
+"""Folder of `serve`'s store, in the folder of the files that it collects."""
 
 
 def walk(folder: Path) -> Iterator[Path]:
-    """The files under a folder in the order of their names, hidden ones and links that leave it left out."""
+    """Yield the files under a folder in the order of their names, hidden ones and links that leave it left out."""
     return (path for path in _visible(folder) if path.is_file() and not _not_followed(path, folder))
 
 
 def links_not_followed(folder: Path) -> Iterator[Path]:
-    """The links under a folder that `walk` leaves out: those to folders, and those that leave it."""
+    """Yield the links under a folder that `walk` leaves out: those to folders, and those that leave it."""
     return (path for path in _visible(folder) if _not_followed(path, folder))
 
 

@@ -1,4 +1,4 @@
-"""Bytes of a file that somebody names: a regular file, no larger than its kind is."""
+"""Bytes of a file that a user names: a regular file, no larger than its kind is."""
 
 import os
 import stat
@@ -22,11 +22,11 @@ LARGEST_TABLE = 1 << 30
 
 
 _INHERITED = ("/dev/stdin", "/dev/fd/")
-"""Where a shell puts what it opened for a command, as in `check <(make_programs)`."""
+"""Places of the files that a shell opens for a command, as in `check <(make_programs)`."""
 
 
 def read_input(path: Path, largest: int = LARGEST) -> bytes:
-    """The bytes of a file; `-` is standard input.
+    """Return the bytes of a file; `-` is standard input.
 
     Devices, sockets and named pipes are refused: they may never end, or never begin.
 
@@ -40,7 +40,7 @@ def read_input(path: Path, largest: int = LARGEST) -> bytes:
 
 
 def read_start(path: Path, count: int) -> bytes:
-    """The first bytes of a file, or all that it has.
+    """Return the first bytes of a file, or all that it has.
 
     Raises:
         HearthError: MISSING_FILE or UNSUPPORTED_FILE, as of `read_input`.
@@ -50,7 +50,7 @@ def read_start(path: Path, count: int) -> bytes:
 
 
 def read_lines(path: Path, longest: int = LARGEST) -> Iterator[bytes]:
-    """The lines of a file with their ends, of which one is in memory at a time.
+    """Yield the lines of a file with their ends, with one line in memory at a time.
 
     Args:
         path: as of `read_input`.
@@ -80,7 +80,7 @@ def _lines(file: BinaryIO, name: str, longest: int) -> Iterator[bytes]:
 def _opened(path: Path) -> Iterator[BinaryIO]:
     inherited = str(path).startswith(_INHERITED)
     try:
-        # Not waiting for whoever writes into a pipe; of regular files the flag changes nothing.
+        # The call does not wait for the writer of a pipe; of regular files the flag changes nothing.
         descriptor = os.open(path, os.O_RDONLY | (0 if inherited else os.O_NONBLOCK))
     except (OSError, ValueError) as error:
         missing = isinstance(error, FileNotFoundError | NotADirectoryError | PermissionError)
@@ -99,7 +99,7 @@ def _opened(path: Path) -> Iterator[BinaryIO]:
 
 @contextmanager
 def placed(path: Path) -> Iterator[Path]:
-    """The path itself of a file or folder; else a temporary file with what standard input or a shell's pipe holds.
+    """Yield the path of a file or folder itself; else a temporary copy of standard input or of a shell's pipe.
 
     Raises:
         HearthError: as of `read_input`.
@@ -121,7 +121,7 @@ def _limited(data: bytes, name: str, largest: int) -> bytes:
 
 
 def load_yaml(path: Path) -> Any:
-    """The plain value of a YAML file.
+    """Return the plain value of a YAML file.
 
     Raises:
         HearthError: the file cannot be read, is not text or YAML, or holds too much.

@@ -17,7 +17,7 @@ def locked(folder: Path, doing: str = "building") -> Iterator[None]:
 
     Args:
         folder: made if it is not there.
-        doing: what such processes are doing there, for the message.
+        doing: the work of such processes there, for the message.
 
     Raises:
         HearthError: LOCKED, naming the process that holds it now; UNWRITABLE, when the folder cannot be made.

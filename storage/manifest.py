@@ -1,4 +1,4 @@
-"""The manifest of a stage: what it was made from, what it counts, and the hash of every file it wrote."""
+"""The manifest of a stage: its inputs, its counts, and the hash of every file it wrote."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,10 +12,13 @@ from hearth.version import ACTION_SET, VERSION
 NAME = "manifest.json"
 TIMING = "timing.json"
 FORMAT = 3
-"""Of datasets; it changes with their tables. `datasets/format/earlier.yaml` says how earlier ones are read."""
+"""Version of the format of datasets; it changes with their tables.
+
+`datasets/format/earlier.yaml` gives the readings of earlier formats.
+"""
 
 UNHASHED = frozenset({NAME, TIMING, "catalog.duckdb"})
-"""The manifest itself, what differs from run to run, and the catalog, whose bytes DuckDB does not fix."""
+"""The manifest itself, files that differ from run to run, and the catalog, whose bytes DuckDB does not fix."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +35,12 @@ class Manifest:
 
     @property
     def counts(self) -> Counts:
-        """What became of its records."""
+        """Return the counts of its records."""
         return Counts.from_json(self.content["counts"])
 
     @property
     def parts(self) -> list[dict[str, Any]]:
-        """Its partitions: `rows`, and `files` with their digests by table."""
+        """Return its partitions: `rows`, and `files` with their digests by table."""
         return list(self.content["parts"])
 
     @property
@@ -50,12 +53,12 @@ class Manifest:
         write_json(self.folder / NAME, self.content)
 
     def intact(self) -> bool:
-        """Every file is there with the length it had."""
+        """Return whether every file is there with the length it had."""
         return all(_length(self.folder / name) == entry["bytes"] for name, entry in self.content["files"].items())
 
 
 def read_manifest(folder: Path) -> Manifest | None:
-    """The manifest of a complete stage; None where there is none, or one of another format."""
+    """Return the manifest of a complete stage; None where there is none, or one of another format."""
     content = read_json(folder / NAME)
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         return None
@@ -63,7 +66,7 @@ def read_manifest(folder: Path) -> Manifest | None:
 
 
 def describe(folder: Path, asked: dict[str, Any], inputs: dict[str, str], key: str, **facts: Any) -> Manifest:
-    """The manifest of a stage whose other files are all in place; `write` marks the stage as complete."""
+    """Return the manifest of a stage whose other files are all in place; `write` marks the stage as complete."""
     content = {
         "format": FORMAT,
         "version": VERSION,

@@ -20,13 +20,13 @@ def leaves(name: str) -> bool:
 
 
 def numbered(name: str, taken: Container[str]) -> str:
-    """A name, with the least number from 2 on with which it is not taken, if it is: `a~2`."""
+    """Return a name, with the least number from 2 on with which it is not taken, if it is: `a~2`."""
     names = chain([name], (f"{name}~{number}" for number in count(2)))
     return next(each for each in names if each not in taken)
 
 
 def inside(folder: Path, name: str) -> Path:
-    """The path of a name within a folder; the name may have folders of its own.
+    """Return the path of a name within a folder; the name may have folders of its own.
 
     Raises:
         HearthError: DAMAGED_FILE: the name is empty or leaves the folder, by itself or by a link on the way.
@@ -54,7 +54,7 @@ def _stays(path: Path, folder: Path) -> bool:
 
 
 def file_name(text: str) -> str:
-    """An id as the name of a file on every system, still readable: other characters become `%` and their code.
+    """Return an id as the name of a file on every system, still readable: other characters become `%` and their code.
 
     It is one name of one folder, whatever the id: never empty, `.`, `..` or longer than systems allow.
     """

@@ -55,14 +55,17 @@ def uninterrupted() -> Iterator[None]:
 
 
 def end(pool: ProcessPoolExecutor) -> None:
-    """Stop what workers are at: their build was stopped, and they need not have had the signal."""
+    """Stop the workers: their build was stopped, and they need not have had the signal."""
     for process in list((pool._processes or {}).values()):
         process.terminate()
 
 
 def begin() -> None:
-    """Let a worker end with its build: without a word when that is stopped at the keyboard, since the build itself says
-    what to do, and at once when it is killed. Where a shell has started the build with `&`, both ignore the keyboard.
+    """Let a worker end with its build.
+
+    When the build is stopped at the keyboard, the worker ends without a word, since the build itself prints the remedy.
+    When the build is killed, the worker ends at once. Where a shell has started the build with `&`, both ignore the
+    keyboard.
     """
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -94,11 +97,11 @@ AHEAD = 8
 def spread(
     function: Callable[[Job], Result], jobs: Iterable[Job], workers: int, seen: Seen = unseen
 ) -> Iterator[Result]:
-    """The results in the order of the jobs, for any number of workers.
+    """Yield the results in the order of the jobs, for any number of workers.
 
     Args:
         function: of a module, so that other processes find it.
-        jobs: what it is called with, one after the other; only a few more are taken than results are asked for.
+        jobs: its arguments, one after the other; only a few more are taken than results are asked for.
         workers: processes; below 2, or for a single job, all is done in this one.
         seen: called with the number of jobs done.
     """

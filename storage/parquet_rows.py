@@ -13,7 +13,7 @@ HARMLESS_ROWS = 1_000_000
 """Rows that any file may have; more only if it has as many bytes: each row has an id of its own."""
 
 MOST_PACKED = 200
-"""How many times its size a file may unpack to, once that is more than `LARGEST_TABLE` bytes."""
+"""Largest ratio of a file's contents to its size, once the contents exceed `LARGEST_TABLE` bytes."""
 
 BATCH = 1_000
 """Rows in memory at a time, where none is large."""
@@ -25,7 +25,7 @@ _HELD = 64 << 20
 def row_lists(
     file: Any, packed: int, name: str, columns: Sequence[str] | None = None
 ) -> Iterator[list[dict[str, Any]]]:
-    """The rows of an opened Parquet file, some at a time.
+    """Yield the rows of an opened Parquet file, some at a time.
 
     Args:
         file, packed, name, columns: those of `row_batches`.
@@ -43,7 +43,7 @@ def row_lists(
 
 
 def row_batches(file: Any, packed: int, name: str, columns: Sequence[str] | None = None) -> Iterator[Any]:
-    """The rows of an opened Parquet file as `pyarrow.RecordBatch`es.
+    """Yield the rows of an opened Parquet file as `pyarrow.RecordBatch`es.
 
     Args:
         file: a `pyarrow.parquet.ParquetFile`.

@@ -35,17 +35,17 @@ class Reject:
     def of(
         cls, code: Code, message: str, *, file: str = "", line: int = 0, found: str = "", suggestion: str = ""
     ) -> Reject:
-        """A reject for one fault."""
+        """Return a reject for one fault."""
         return cls((Diagnostic(code, message, file, line, found=found, suggestion=suggestion),))
 
     @classmethod
     def because(cls, faults: Iterable[Diagnostic], file: str = "") -> Reject:
-        """A reject for several faults; `file` is put where they name none."""
+        """Return a reject for several faults; `file` is put where they name none."""
         return cls(tuple(fault if fault.file or not file else fault.at(file) for fault in faults))
 
     @classmethod
     def failed(cls, failure: Failure, file: str = "", line: int = 0, where: str = "") -> Reject:
-        """A reject for a failure of the engine or of grounding; `where` names the home or environment."""
+        """Return a reject for a failure of the engine or of grounding; `where` names the home or environment."""
         step = f"[{failure.action}] {', '.join(failure.names)}".rstrip() if failure.action else ""
         message = ", ".join(filter(None, (": ".join(filter(None, (step, why(failure)))), where)))
         remedy = REMEDIES.get(failure.code, "")
@@ -53,7 +53,7 @@ class Reject:
 
     @classmethod
     def caused(cls, error: BaseException, file: str = "") -> Reject:
-        """A reject for an exception: a `HearthError` keeps its faults, any other is internal."""
+        """Return a reject for an exception: a `HearthError` keeps its faults, any other is internal."""
         if isinstance(error, HearthError) and error.diagnostics:
             return cls.because(error.diagnostics, file)
         frames = traceback.extract_tb(error.__traceback__)
@@ -64,11 +64,11 @@ class Reject:
 
     @property
     def code(self) -> str:
-        """What it counts under."""
+        """Return the code that it is counted under."""
         return INTERNAL_ERROR if self.internal else str(self.diagnostics[0].code)
 
     def rows(self) -> list[Row]:
-        """The row of the rejects table for each fault."""
+        """Return the row of the rejects table for each fault."""
         return [
             {
                 "code": self.code if self.internal else str(fault.code),
@@ -93,5 +93,5 @@ def as_text(value: object) -> str:
 
 
 def _as_number(value: object) -> int:
-    """A line or column; 0 where it is not one."""
+    """Return a line or column; 0 where it is not one."""
     return value if isinstance(value, int) and 0 <= value <= _LARGEST else 0

@@ -1,4 +1,4 @@
-"""Folders at URLs, as fsspec opens and lists them. What a store lists is never written outside the local copy."""
+"""Folders at URLs, as fsspec opens and lists them. Listed names never lead outside the local copy."""
 
 import os
 import re
@@ -17,7 +17,10 @@ _URL = re.compile(r"([a-z][a-z0-9+.-]+):/{1,2}(?=[^/])(.+)", re.DOTALL)
 
 
 def url_of(path: str | Path) -> str | None:
-    """The URL that a path is meant as, also where a `Path` has swallowed a slash of it; None for a plain path."""
+    """Return the URL that a path is meant as, also where a `Path` has swallowed a slash of it.
+
+    The result is None for a plain path.
+    """
     match = _URL.fullmatch(str(path))
     return f"{match[1]}://{match[2].rstrip('/')}" if match and len(match[1]) > 1 else None
 
@@ -38,7 +41,7 @@ def filesystem(url: str) -> tuple[Any, str]:
 
 
 def listed(fs: Any, root: str) -> dict[str, dict[str, Any]]:
-    """What a store lists below a folder, by names within it, sorted; nothing where the folder does not exist.
+    """Return a store's entries below a folder, by names within it, sorted; none where the folder does not exist.
 
     Raises:
         HearthError: DAMAGED_FILE: a name leaves the folder, or a link leads out of it.

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 
 
 def repeated(folder: Path, column: str) -> str | None:
-    """The first, by name, of the values that a column of a table has twice; None if all differ.
+    """Return the first, by name, of the values that a column of a table has twice; None if all differ.
 
     Of each value its hash of 64 bits is kept. Values of one hash are compared themselves: two may have the same.
 

@@ -1,8 +1,8 @@
 """Folders at URLs (S3 or any other store of fsspec) that are built in, worked on in a local copy.
 
-Complete parts go to the store at once, a stage's manifest last, so that the store, too, only ever holds what is whole;
-a build on another machine takes up what it finds there. A folder that is read while it is replaced is written beside
-itself, and its place is taken inside the store.
+Complete parts go to the store at once, a stage's manifest last. So the store, too, only ever holds complete parts, and
+a build on another machine continues from them. The replacement of a folder that may be read is written next to it, and
+takes its place inside the store.
 """
 
 import os
@@ -82,8 +82,8 @@ class Store:
     def settle(self) -> str:
         """Make the local copy and the store agree, and give both a new revision.
 
-        What only this machine built since its last visit goes to the store; where another machine has built there, the
-        local copy is fetched anew.
+        The parts that only this machine built since its last visit go to the store; where another machine has built
+        there, the local copy is fetched anew.
         """
         with reported(self.url):
             self._fs.invalidate_cache()
@@ -133,15 +133,15 @@ class Store:
             self._sync(stage, stage)
 
     def tidy(self, stage: str) -> None:
-        """Remove what a stopped build left beside a stage's folder."""
+        """Remove the files that a stopped build left next to a stage's folder."""
         with reported(self.url):
             self._remove(_following(stage), self._under(_following(stage)))
 
     def replace(self, stage: str) -> None:
         """Make a stage's folder in the store the same as the local one; readers find the old or the new one throughout.
 
-        Until the new one is complete beside the old one, nothing of the old one changes; until it has taken its place,
-        it stays there. See `fetching`.
+        Until the new one is complete next to the old one, nothing of the old one changes. The new one stays there until
+        it has taken the place of the old one. See `fetching`.
         """
         with reported(self.url):
             self._sync(stage, _following(stage))
@@ -158,7 +158,7 @@ class Store:
         self._remove(_following(stage), [NAME, *sorted(new - {NAME})])
 
     def _go_on_replacing(self) -> None:
-        """Let every version that is complete beside its folder take its place: a build was stopped meanwhile."""
+        """Let every version that is complete next to its folder take its place: a build was stopped meanwhile."""
         for folder, _, name in (path.rpartition("/") for path in self._names()):
             if name == NAME and folder.startswith(".") and "/" not in folder:
                 self._take_place(folder.removeprefix("."))
@@ -171,7 +171,10 @@ class Store:
                 self.replace(stage)
 
     def _sync(self, stage: str, there: str) -> None:
-        """Make a folder in the store the same as a local one, the manifest last; what workers have pushed is there."""
+        """Make a folder in the store the same as a local one, the manifest last.
+
+        Files that workers have pushed are there.
+        """
         self._fs.invalidate_cache()
         known, folder = self._under(there), self.work / stage
         here = {path.relative_to(folder).as_posix(): path for path in _files(folder)}
@@ -183,7 +186,7 @@ class Store:
         self._remove(there, known.keys() - here.keys())
 
     def _under(self, folder: str) -> dict[str, int]:
-        """The sizes of the files in a folder of the store."""
+        """Return the sizes of the files in a folder of the store."""
         return {name: info["size"] for name, info in listed(self._fs, self._path(folder)).items()}
 
     def _copy(self, source: str, target: str) -> None:
@@ -220,13 +223,13 @@ class Store:
 
 @lru_cache(maxsize=8)
 def store(url: str) -> Store:
-    """The store of that URL, one in a process."""
+    """Return the store of that URL, one in a process."""
     return Store(url)
 
 
 @contextmanager
 def working(out: str) -> Iterator[tuple[str, str, str]]:
-    """The local folder to build in, and URL and revision of the store it is a copy of; "" for a plain folder.
+    """Yield the local folder to build in, and URL and revision of the store it is a copy of; "" for a plain folder.
 
     Raises:
         HearthError: LOCKED, or the store cannot be reached.
@@ -241,10 +244,10 @@ def working(out: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _own_folder() -> Path:
-    """A folder of this user's for copies that builds work in.
+    """Return a folder of this user's for copies that builds work in.
 
     Raises:
-        HearthError: UNWRITABLE: somebody else made it, or it is open to others.
+        HearthError: UNWRITABLE: another user made it, or it is open to others.
     """
     folder = Path(tempfile.gettempdir()) / f"hearth-{os.getuid()}"
     with suppress(FileExistsError):
@@ -274,5 +277,5 @@ def _is_plain(name: str) -> bool:
 
 
 def read_text(path: Path) -> str | None:
-    """A small file's text; None when it is not there."""
+    """Return a small file's text; None when it is not there."""
     return path.read_text("utf-8") if path.exists() else None

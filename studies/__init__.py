@@ -1,1 +1,1 @@
-"""Studies with people: what they are asked, who does what, their simulation, tables, statistics and report."""
+"""Studies with people: their questions, assignment, simulation, tables, statistics and report."""

@@ -1,4 +1,4 @@
-"""Who does what: every task under every condition equally often, and every person under every condition, too.
+"""The assignment of tasks: every task under every condition equally often, and every person under every condition.
 
 Trials stand in one row, number i under condition i mod C; the task moves on by one as well, and by one more each time
 that both would begin anew, so that all pairs come up. A person has a stretch of the row: stretches hold each condition
@@ -38,7 +38,7 @@ Slots = tuple[tuple[Planned, ...], ...]
 
 
 def assignment(study: Study, groups: int = 1) -> Slots:
-    """The trials of every place in a study.
+    """Return the trials of every place in a study.
 
     Args:
         study: whose seed decides.
@@ -61,7 +61,7 @@ def assignment(study: Study, groups: int = 1) -> Slots:
 
 
 def _in_turn(number: int, groups: int, chooser: Random) -> list[int]:
-    """The numbers of tasks, shuffled within their kinds; kinds come in turn."""
+    """Return the numbers of tasks, shuffled within their kinds; kinds come in turn."""
     kinds = [list(range(kind, number, groups)) for kind in range(min(groups, number))]
     for kind in kinds:
         chooser.shuffle(kind)
@@ -86,7 +86,7 @@ def _row(items: Sequence[int], names: Sequence[str], trials: int) -> Iterator[Pl
 
 
 def latin_square(size: int) -> list[list[int]]:
-    """Rows of the numbers below a size in which each number stands once in every row and every column.
+    """Return rows of the numbers below a size in which each number stands once in every row and every column.
 
     Of an even size it is a Williams design: each number also follows each other once.
     """
@@ -97,7 +97,7 @@ def latin_square(size: int) -> list[list[int]]:
 def _ordered(
     stretch: Sequence[Planned], names: Sequence[str], square: Sequence[Sequence[int]], person: int
 ) -> Iterator[Planned]:
-    """A person's trials; each run of as many as there are conditions has the order of a row of the square."""
+    """Yield a person's trials; each run of as many as there are conditions has the order of a row of the square."""
     size = len(names)
     for turn, first in enumerate(range(0, len(stretch), size)):
         order = {names[number]: place for place, number in enumerate(square[(person + turn) % size])}
@@ -135,7 +135,7 @@ LOOKED = 300_000
 
 
 def imbalances(study: Study, slots: Slots) -> list[str]:
-    """What is not balanced in an assignment; empty where all is."""
+    """Return the imbalances of an assignment; none if it is balanced."""
     found = []
     pairs = Counter((each.item, each.condition) for slot in slots for each in slot)
     if set(pairs.values()) != {study.repeats} or len(pairs) != study.items * len(study.conditions):

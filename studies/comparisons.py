@@ -1,8 +1,10 @@
-"""Tests of a study: paired two-tailed t-tests and the normality of their residuals, as the thesis has them (6.6, B.4.4,
-C.5.2), with what it lacks: differences, effect sizes, and intervals of 95 %.
+"""Tests of a study, as the thesis has them (6.6, B.4.4, C.5.2).
 
-scipy has all of it. statsmodels was weighed and left out: what it would add, mixed models, the thesis does not report,
-and pairs by task take care of tasks that differ.
+These are paired two-tailed t-tests and the normality of their residuals. Differences, effect sizes and intervals of 95
+% are added; the thesis lacks them.
+
+scipy has all of it. statsmodels was weighed and left out: the thesis does not report its addition, mixed models, and
+pairs by task account for tasks that differ.
 """
 
 from __future__ import annotations
@@ -24,8 +26,8 @@ class Comparison:
     """A paired comparison over tasks or films.
 
     Attributes:
-        metric: what is compared.
-        one, other: of what.
+        metric: the compared metric.
+        one, other: the two sides of the comparison.
         pairs: how many.
         difference, low, high: mean of one less other, and its interval.
         t, freedom, p: of the paired two-tailed t-test.
@@ -33,7 +35,7 @@ class Comparison:
             interval by the noncentral t distribution.
         normality, normality_p: D'Agostino and Pearson's K2 of the residuals, which are the differences, and its p.
         signed_p: of Wilcoxon's signed-rank test, for residuals that are not normal.
-        thesis: what the thesis reports of the same comparison.
+        thesis: the thesis's report on the same comparison.
     """
 
     metric: str
@@ -61,10 +63,10 @@ def compare(
     """Compare two values of each task or film that has both.
 
     Args:
-        metric: what they are.
+        metric: the metric of the values.
         names: of the two.
         one, other: the values by task or film.
-        thesis: what it reports.
+        thesis: the thesis's report.
     """
     from scipy import stats
 
@@ -90,7 +92,7 @@ LARGEST_T = 200.0
 
 
 def effect_interval(t: float, pairs: int) -> tuple[float | None, float | None]:
-    """The interval of Cohen's d of pairs: of which true values the observed t is neither too high nor too low.
+    """Return the interval of Cohen's d of pairs: of which true values the observed t is neither too high nor too low.
 
     None for both where t is beyond `LARGEST_T`.
     """
@@ -123,14 +125,17 @@ def normality(values: Sequence[float]) -> tuple[float | None, float | None]:
 
 
 def signed_rank(values: Sequence[float]) -> float | None:
-    """The p of Wilcoxon's signed-rank test, two-tailed."""
+    """Return the p of Wilcoxon's signed-rank test, two-tailed."""
     from scipy import stats
 
     return float(stats.wilcoxon(values).pvalue) if any(values) else None
 
 
 def interval(values: Sequence[float]) -> tuple[Mean, float]:
-    """The mean with its standard error, and half the width of its interval by the t distribution; 0 of one value."""
+    """Return the mean with its standard error, and half the width of its interval by the t distribution.
+
+    The width is 0 for one value.
+    """
     from scipy import stats
 
     found = mean(values)

@@ -1,4 +1,4 @@
-"""A study as it goes on: who is where in it, and what may come next; for people and for agents in their places."""
+"""A study under way: each person's stage, and the possible next events; for people and for agents in their places."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from hearth.studies.study_trials import checked
 CONSENT, TUTORIAL, PRACTICE, TRIAL, QUESTIONS, EXIT, DONE, LEFT = STAGES = (
     "consent", "tutorial", "practice", "trial", "questions", "exit", "done", "left",
 )  # fmt: skip
-"""Where a person may be in a study, in this order."""
+"""The stages of a person in a study, in this order."""
 
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """Where a person is in a study.
+    """The stage of a person in a study.
 
     Attributes:
         person: the id.
@@ -51,7 +51,7 @@ class Conduct:
 
     Args:
         study: its design.
-        ledger: keeps what happens.
+        ledger: keeps the events.
         known: gives the knowledge.
         clock: the time, in seconds since 1970.
     """
@@ -82,15 +82,15 @@ class Conduct:
         raise HearthError.of(Code.CONFLICT, "too many people join at this moment", suggestion="try again")
 
     def has_room(self) -> bool:
-        """Return whether somebody who joins now gets a place."""
+        """Return whether a person who joins now gets a place."""
         return next(self._open_places(self.ledger.read(PLACES)), None) is not None
 
     def _open_place(self, joined: Sequence[Event]) -> int | None:
-        """The place that the next gets; who gave no sign there for too long has left from now on."""
+        """Return the place of the next person; a person silent there for too long counts as having left from now on."""
         return next((place for place, person in self._open_places(joined) if not person or self._gone(person)), None)
 
     def _open_places(self, joined: Sequence[Event]) -> Iterator[tuple[int, str]]:
-        """The places that are open, each with who has had it last and is to be counted as gone, if anybody."""
+        """Yield the open places, each with the last person there who is to be counted as gone, if there is one."""
         last = {each.data["place"]: each for each in joined}
         yield from ((place, "") for place in range(len(self.slots)) if place not in last)
         for event in sorted(last.values(), key=lambda each: each.number):
@@ -109,7 +109,7 @@ class Conduct:
         return True
 
     def is_silent(self, standing: Standing) -> bool:
-        """Return whether somebody who is under way gave no sign for as long as the study allows."""
+        """Return whether a person under way gave no sign for as long as the study allows."""
         return standing.stage not in (DONE, LEFT) and (
             self.clock() - self.last_sign(standing) >= self.study.limits.idle_hours * 3600
         )
@@ -119,7 +119,10 @@ class Conduct:
         return max([each.at for each in standing.events] or [self.joined_at(standing.person)])
 
     def code(self, person: str) -> str:
-        """The code of a person: what the person is given at the end, and what desk and tables have as the id."""
+        """Return the code of a person.
+
+        The person gets the code at the end, and the desk and the tables have it as the id.
+        """
         return salted(self.ledger.secret("participants"), person)
 
     def joined_at(self, person: str) -> float:
@@ -141,39 +144,39 @@ class Conduct:
         return Standing(person, place, stage, number, events)
 
     def trial(self, standing: Standing) -> Planned:
-        """The trial that is to come, or whose questions are asked."""
+        """Return the trial that is to come, or whose questions are asked."""
         return self.slots[standing.place][standing.number]
 
     def condition(self, standing: Standing) -> Condition:
-        """The condition of that trial."""
+        """Return the condition of that trial."""
         return self.study.condition(self.trial(standing).condition)
 
     def questions(self, standing: Standing) -> tuple[Question, ...]:
-        """What is asked now."""
+        """Return the present questions."""
         if standing.stage == EXIT:
             return self.study.exit
         return self.study.asked(self.condition(standing)) if standing.stage == QUESTIONS else ()
 
     def consent(self, person: str) -> Standing:
-        """A person agrees to take part."""
+        """Record that a person agrees to take part."""
         return self._go_on(person, CONSENT, "consented", {})
 
     def read(self, person: str) -> Standing:
-        """A person has read the tutorial."""
+        """Record that a person has read the tutorial."""
         return self._go_on(person, TUTORIAL, "read", {})
 
     def practised(self, person: str) -> Standing:
-        """A person has done a practice trial."""
+        """Record that a person has done a practice trial."""
         return self._go_on(person, PRACTICE, "practised", {})
 
     def played(
         self, person: str, record: Mapping[str, Any], seconds: float = 0.0, times: Sequence[float] = ()
     ) -> Standing:
-        """A person has played a trial.
+        """Record that a person has played a trial.
 
         Args:
             person: who.
-            record: all that was done, as `result_files.episode_data` writes it; it is done again here.
+            record: all actions, as `result_files.episode_data` writes them; they are replayed here.
             seconds: that it took.
             times: when the person decided in each tick, in seconds since it was begun; none where that is not known.
 
@@ -187,15 +190,15 @@ class Conduct:
         return self._append(standing, "did", {**_named(planned), "seconds": seconds, **kept, "record": data})
 
     def watched(self, person: str, seconds: float = 0.0) -> Standing:
-        """A person has watched a film."""
+        """Record that a person has watched a film."""
         standing = self._expected(person, TRIAL)
         return self._append(standing, "did", {**_named(self.trial(standing)), "seconds": seconds})
 
     def answer(self, person: str, answers: Mapping[str, Any]) -> Standing:
-        """A person answers the questions after a trial, or those at the end.
+        """Record that a person answers the questions after a trial, or those at the end.
 
         Raises:
-            HearthError: BAD_ARGUMENT: nothing is asked, an answer is lacking, or one is not of its question.
+            HearthError: BAD_ARGUMENT: there is no question, an answer is lacking, or one is not of its question.
         """
         standing = self.standing(person)
         if standing.stage not in (QUESTIONS, EXIT):
@@ -213,7 +216,7 @@ class Conduct:
         return self._append(standing, "answered", {**named, "answers": given})
 
     def leave(self, person: str, why: str = "left") -> Standing:
-        """A person leaves; the place is given to the next who joins. Who is done has nothing to leave."""
+        """Let a person leave, unless the person is done; the place goes to the next person who joins."""
         standing = self.standing(person)
         if standing.stage in (DONE, LEFT):
             return standing

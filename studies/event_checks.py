@@ -1,4 +1,4 @@
-"""Events of a folder that somebody gave: their form, and whether they are ways through its study."""
+"""Events of a folder that a user gave: their form, and whether they are ways through its study."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _FIELDS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
     "left": {"why": str},
     "finished": {"answers": dict},
 }
-"""What the data of every kind of event has."""
+"""The data of every kind of event."""
 
 
 _METRICS = {"success", "ticks", "length", "reward"}
-"""What every record says of its episode."""
+"""The metrics in every record of an episode."""
 
 
 def check_events(study: Study, slots: Slots, ledger: Ledger, file: str) -> None:
@@ -95,7 +95,7 @@ def _check_answers(asked: Sequence[Question], event: Event, file: str) -> None:
     questions = {each.name: each for each in asked}
     for name, answer in event.data["answers"].items():
         if name not in questions or questions[name].fault(answer):
-            raise _wrong(event, f"`{name[:20]}` is not an answer to what is asked", file)
+            raise _wrong(event, f"`{name[:20]}` is not an answer to a present question", file)
 
 
 def _named(event: Event) -> Planned:

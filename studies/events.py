@@ -1,4 +1,4 @@
-"""What happened in a study, one event after another: nothing else is kept, and all else follows from it."""
+"""The events of a study, one after another: nothing else is kept, and all else follows from them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from hearth.storage.files import sync_folder, value_digest, write_bytes
 from hearth.storage.input_files import LARGEST_TABLE, read_input
 
 PLACES = "places"
-"""The stream of who took which place; every other stream is a person's."""
+"""The stream of places that people took; every other stream is a person's."""
 
 KINDS = ("joined", "consented", "read", "practised", "did", "answered", "left", "finished")
-"""What may happen: `joined` in the stream of places, the others in a person's."""
+"""The kinds of events: `joined` in the stream of places, the others in a person's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Event:
         number: its place in the stream, from 0; one event has it.
         kind: one of `KINDS`.
         at: seconds since 1970; of simulated people, since they joined.
-        data: what belongs to it.
+        data: the data of its kind.
     """
 
     stream: str
@@ -41,13 +41,13 @@ class Event:
 
 
 class Ledger(Protocol):
-    """Where events are kept; `study_store` of the server keeps them in a database, `FileLedger` in a file."""
+    """The storage of events; `study_store` of the server keeps them in a database, `FileLedger` in a file."""
 
     def streams(self) -> list[str]:
-        """The streams of people, in the order in which they began."""
+        """Return the streams of people, in the order in which they began."""
 
     def read(self, stream: str) -> list[Event]:
-        """The events of a stream, in order."""
+        """Return the events of a stream, in order."""
 
     def append(self, event: Event) -> bool:
         """Keep an event, on the disk when it returns; False, and nothing kept, if another has its number."""
@@ -56,11 +56,14 @@ class Ledger(Protocol):
         """Delete a person's events, and the person's id in the stream of places."""
 
     def secret(self, name: str) -> str:
-        """A random text of this study, made when it is first asked for; of a simulation, derived from its seed."""
+        """Return a random text of this study, made when it is first asked for.
+
+        A simulation derives it from its seed.
+        """
 
 
 def redacted(event: Event, stream: str) -> Event:
-    """An event of the places without a person's id."""
+    """Return an event of the places without a person's id."""
     if event.data.get("person") != stream:
         return event
     return Event(event.stream, event.number, event.kind, event.at, {**event.data, "person": ""})
@@ -79,11 +82,11 @@ class MemoryLedger:
         self.salt = salt
 
     def streams(self) -> list[str]:
-        """The streams of people."""
+        """Return the streams of people."""
         return [each for each in self.events if each != PLACES]
 
     def read(self, stream: str) -> list[Event]:
-        """The events of a stream."""
+        """Return the events of a stream."""
         return list(self.events.get(stream, ()))
 
     def _next(self, event: Event) -> bool:
@@ -103,7 +106,7 @@ class MemoryLedger:
         self.events[PLACES] = [redacted(each, stream) for each in self.events[PLACES]]
 
     def secret(self, name: str) -> str:
-        """The salt that it was made with."""
+        """Return the salt that it was made with."""
         self.salt = self.salt or secrets.token_hex(16)
         return salted(self.salt, name)
 
@@ -113,7 +116,7 @@ class FileLedger(MemoryLedger):
 
     Args:
         path: the file; begun if it is not there.
-        header: what its first line says; a file that says something else is refused.
+        header: the contents of its first line; a file with another header is refused.
         salt: of the ids in tables.
 
     Raises:
@@ -143,7 +146,7 @@ class FileLedger(MemoryLedger):
         """Keep an event in the file."""
         if not self._next(event):
             return False
-        with self.path.open("ab") as file:  # first, so that memory never has what the file lacks
+        with self.path.open("ab") as file:  # first, so that memory never has an event that the file lacks
             file.write(_line(event_data(event)))
         return super().append(event)
 
@@ -157,12 +160,12 @@ class FileLedger(MemoryLedger):
 
 
 def event_data(event: Event) -> dict[str, Any]:
-    """An event as JSON."""
+    """Return an event as JSON."""
     return {"stream": event.stream, "number": event.number, "kind": event.kind, "at": event.at, "data": event.data}
 
 
 def event_of(line: bytes, file: str, number: int) -> Event:
-    """An event of a line.
+    """Return an event of a line.
 
     Raises:
         HearthError: BAD_JSON: it is not one.
@@ -171,14 +174,14 @@ def event_of(line: bytes, file: str, number: int) -> Event:
 
     try:
         given = orjson.loads(line)
-        orjson.dumps(given)  # what is read may stand deeper in one another than can be written
+        orjson.dumps(given)  # values from a file may be nested too deep to be written
         return Event(str(given["stream"]), int(given["number"]), str(given["kind"]), float(given["at"]), given["data"])
     except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise HearthError.of(Code.BAD_JSON, f"line {number} is not an event", file=file) from error
 
 
 def header_of(path: Path) -> dict[str, Any]:
-    """The first line of a file of events.
+    """Return the first line of a file of events.
 
     Raises:
         HearthError: MISSING_FILE; BAD_JSON.

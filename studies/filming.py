@@ -1,4 +1,4 @@
-"""Films of what is judged: small, quickened, by the camera that sees the step best; or what a browser plays in 3D."""
+"""Films to judge: small, accelerated, by the camera that sees the step best; or replays for a browser's 3D player."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ SIZE, RATE = (320, 240), 5.0
 """Width and height in pixels, and pictures a second."""
 
 QUICK = {True: 4.0, False: 2.0}
-"""How much faster than life: episodes, and programs."""
+"""Acceleration of films: of episodes, and of programs."""
 
 FOLDERS = {FILM: ("films", ".webm"), REPLAY: ("replays", ".json")}
-"""The folder, and the ending of the files, of what is shown as a film or as a replay."""
+"""The folder, and the ending of the files, of films and of replays."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Shoot:
     """A film that is to be made.
 
     Attributes:
-        film: of what.
+        film: the film's content.
         task: of an episode; None of a program.
         seed: of the study.
         folder: gets the film.
@@ -83,7 +83,7 @@ def shoot(job: Shoot) -> Path:
 
 
 def _write_replay(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: Path) -> None:
-    """What the browser's player reads: `home`, the shapes of the home, and `run`, what differs from it tick by tick."""
+    """Write the browser player's input: `home`, the shapes of the home, and `run`, the differences tick by tick."""
     from hearth.rendering.film.replay_3d import home_shapes, run_shapes
 
     library("trimesh")
@@ -115,7 +115,7 @@ def _execution(job: Shoot, knowledge: Knowledge) -> Execution:
 
 
 def _episode(job: Shoot, knowledge: Knowledge) -> Execution:
-    """An episode as the execution of a program: what was tried and failed is left out."""
+    """Return an episode as the execution of a program: failed attempts are left out."""
     assert job.task is not None
     start, ticks = ticks_of(job.task, record_of(job.film.content), knowledge)
     steps, worlds = [], [start]

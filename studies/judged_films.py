@@ -1,4 +1,4 @@
-"""What people judge: films of episodes by people and agents, or of programs that were written for descriptions."""
+"""The films that people judge: of episodes by people and agents, or of programs written for descriptions."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class JudgedFilm:
         item: number of its task or program.
         condition: whose it is, a condition's name.
         name: of its file.
-        group: what films are compared by: the condition, or the band of a program.
-        about: what people read beside it: the goal, or the description.
+        group: the group of compared films: the condition, or the band of a program.
+        about: the text that people read next to it: the goal, or the description.
         home: where it is.
-        measure: what it is worth by itself: the ticks of an episode, or the normalised LCS of a program.
+        measure: its own score: the ticks of an episode, or the normalised LCS of a program.
         content: the episode's record, or the program's lines.
     """
 
@@ -45,12 +45,12 @@ class JudgedFilm:
     content: Any
 
     def as_json(self) -> dict[str, Any]:
-        """As the file of films has it."""
+        """Return the film as the file of films has it."""
         return asdict(self)
 
 
 def films_of(data: Any, file: str) -> tuple[JudgedFilm, ...]:
-    """The inverse of `JudgedFilm.as_json`, of a list that anybody may have written.
+    """Return the films of a list, the inverse of `JudgedFilm.as_json`; the list may be a stranger's.
 
     Raises:
         HearthError: BAD_JSON with the number of the film.
@@ -77,7 +77,7 @@ _MOST = {"condition": 60, "name": 70, "group": 60, "about": 10_000, "home": 200}
 
 
 def _fault_of(film: Any) -> str:
-    """What is wrong with a film as JSON; "" where nothing is."""
+    """Return the fault of a film as JSON; "" if there is none."""
     if not isinstance(film, dict) or film.keys() != {each.name for each in fields(JudgedFilm)}:
         return "it has other keys than a film"
     for name, most in _MOST.items():
@@ -106,8 +106,8 @@ def of_episodes(
 
     Args:
         study: the judges'.
-        people: what people did, by task.
-        agent: what the human-like agent did, by task.
+        people: people's records, by task.
+        agent: the human-like agent's records, by task.
         titles: a task's goal in words.
 
     Raises:
@@ -126,7 +126,7 @@ def of_episodes(
 
 
 def goal_in_words(study: Study, task_id: str) -> str:
-    """A task's goal as its judges read it: each predicate with its count."""
+    """Return a task's goal as its judges read it: each predicate with its count."""
     task = next(each for each in tasks_of(study) if each.id == task_id)
     grammar = challenge(task.challenge).grammar
     titles = " and ".join(grammar.sets[name].asked for name in task.sets)
@@ -134,7 +134,7 @@ def goal_in_words(study: Study, task_id: str) -> str:
 
 
 def read_films(path: Path) -> tuple[JudgedFilm, ...]:
-    """The films of a study's folder.
+    """Return the films of a study's folder.
 
     Raises:
         HearthError: MISSING_FILE: they were not prepared; BAD_JSON with the number of the film.

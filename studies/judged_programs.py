@@ -25,7 +25,7 @@ from hearth.studies.judged_films import JudgedFilm
 from hearth.studies.study import Band, Study
 
 HOMES = ("rowan", "willow")
-"""Where programs are filmed: the homes of testing."""
+"""The homes in which programs are filmed: the homes of testing."""
 
 DRAWN = 600
 """Synthetic programs that are drawn, of which those that fit are damaged."""
@@ -47,7 +47,7 @@ class Written(NamedTuple):
 
 
 def judged_programs(study: Study, knowledge: Knowledge, predictions: Path | None = None) -> list[JudgedFilm]:
-    """As many programs of each band as the study asks for; only those that run in a home of testing are taken.
+    """Return as many programs of each band as the study asks for; only those that run in a home of testing.
 
     Args:
         study: its films' bands.
@@ -85,13 +85,13 @@ def _film(study: Study, band: Band, turn: int, one: Written, home: str) -> Judge
 
 
 def execution_in(program: Program, home: Home, seed: int) -> Execution | None:
-    """A program's execution in an environment that is drawn for it; None where it does not run in the home."""
+    """Return a program's execution in an environment that is drawn for it; None where it does not run in the home."""
     found = sample(program, home, seed, program.title)
     return None if isinstance(found, Failure) else found[1]
 
 
 def program_of(film: JudgedFilm) -> Program:
-    """The program of a film."""
+    """Return the program of a film."""
     title, _, description = film.about.partition(": ")
     return Program(
         title=title, description=description, steps=parse_program("\n".join([title, "", *film.content]))[0].steps
@@ -123,7 +123,10 @@ def _damaged(study: Study, knowledge: Knowledge) -> Iterator[Written]:
 
 
 def _in_band(steps: tuple[Step, ...], others: tuple[Step, ...], band: Band, chooser: Random) -> tuple[Step, ...]:
-    """Steps with some left out and some of another program put in, until their LCS is in a band; () if it never is."""
+    """Return steps with some left out and some of another program put in, until their LCS is in a band.
+
+    () if it never is.
+    """
     now = list(steps)
     for _ in range(TRIES):
         if now and band.holds(score(tuple(now), steps).step):

@@ -1,4 +1,4 @@
-"""What a study with people needs before it begins: the agent's episodes in its tasks, and the films that are judged."""
+"""The preparation of a study with people: the agent's episodes in its tasks, and the films to judge."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def prepared(
     workers: int = 1,
     seen: Seen = unseen,
 ) -> dict[str, Any]:
-    """Make what a study needs in the folder of its name; what is there already is kept.
+    """Make the files that a study needs in the folder of its name; existing ones are kept.
 
     Args:
         study: the design.

@@ -64,7 +64,7 @@ class Visit:
 
 
 def visits(sizes: Sequence[int], crowd: Crowd) -> list[Visit]:
-    """Who comes to a study whose places have these numbers of trials, until every place was finished by somebody."""
+    """Return the visits to a study whose places have these numbers of trials, until every place is finished."""
     chooser = rng(crowd.seed, "drop-outs")
     leaving = set(chooser.sample(range(len(sizes)), min(crowd.drop_outs, len(sizes))))
     waiting = list(range(len(sizes)))
@@ -103,10 +103,10 @@ def simulate(
 
     Args:
         study: the design.
-        crowd: who takes part.
-        folder: of the study; what a stopped simulation had written is kept.
+        crowd: the people that take part.
+        folder: of the study; events that a stopped simulation had written are kept.
         known: gives the knowledge.
-        films: what is judged.
+        films: the films to judge.
         alone: task -> ticks of the human-like agent alone, by which simulated people judge help.
         workers: processes.
         seen: called with the number of trials done.
@@ -135,7 +135,7 @@ def simulate(
 
 
 def play_ahead(ahead: Ahead) -> dict[str, Any]:
-    """The record of a trial that a simulated person does."""
+    """Return the record of a trial that a simulated person does."""
     import orjson
 
     record = played(job_of(ahead.study, ahead.planned, ahead.known, ahead.person))
@@ -198,7 +198,7 @@ class _Way:
         return answers(person, self.conduct.questions(standing), seen, chooser)
 
     def _impression(self, standing: Standing) -> Impression:
-        """What the last trial was like."""
+        """Return the impression of the last trial."""
         study, planned = self.conduct.study, self.conduct.trial(standing)
         film = self.films.get((planned.item, planned.condition))
         if film is not None:

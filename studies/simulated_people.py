@@ -1,7 +1,7 @@
 """Agents in people's places, and the ratings that they give, so that a whole study is tested before anyone is invited.
 
 Nothing of it is a finding about people. A person is the human-like agent with faults whose rates differ from person to
-person. Ratings come of a stated model: what a trial came to, the person's own bias, and chance; see `rated`.
+person. Ratings come of a stated model: the result of a trial, the person's own bias, and chance; see `rated`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ BIAS, NOISE = 0.5, 0.7
 """Standard deviations of a person's own bias and of chance, in steps of a scale."""
 
 SECONDS_A_TICK = 3.0
-"""How long a simulated person takes for a decision."""
+"""Time of a simulated person for a decision, seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +35,12 @@ class SimulatedPerson:
     bias: float
 
     def __call__(self) -> Faulty:
-        """A new agent for an episode."""
+        """Return a new agent for an episode."""
         return Faulty(self.faults)
 
 
 def simulated_person(seed: int, number: int) -> SimulatedPerson:
-    """The person of a number; equal for equal seeds."""
+    """Return the person of a number; equal for equal seeds."""
     chooser = rng(seed, "simulated person", number)
     faults = Faults(
         rationality=round(chooser.uniform(0.5, 3.0), 4),
@@ -55,7 +55,7 @@ def simulated_person(seed: int, number: int) -> SimulatedPerson:
 
 @dataclass(frozen=True, slots=True)
 class Impression:
-    """What a simulated person's rating is about, each from 0 to 1; 0.5 is neither good nor bad.
+    """The grounds of a simulated person's rating, each from 0 to 1; 0.5 is neither good nor bad.
 
     Attributes:
         knew: F1 of the helper's goal with the true one; 0.5 for a helper that is not given a goal.
@@ -68,13 +68,13 @@ class Impression:
     looks: float = 0.5
 
     def of(self, question: str) -> float:
-        """What a question is about: `trust` is about the worse of knowledge and help."""
+        """Return the ground of a question: for `trust`, the worse of knowledge and help."""
         about = {"knew": self.knew, "helpful": self.helpful, "trust": min(self.knew, self.helpful)}
         return about.get(question, self.looks)
 
 
 def answers(person: SimulatedPerson, asked: tuple[Question, ...], seen: Impression, chooser: Random) -> dict[str, Any]:
-    """The answers of a simulated person."""
+    """Return the answers of a simulated person."""
     return {each.name: _answer(person, each, seen, chooser) for each in asked}
 
 
@@ -85,7 +85,9 @@ def _answer(person: SimulatedPerson, question: Question, seen: Impression, choos
 
 
 def rated(question: Question, impression: float, bias: float, chooser: Random) -> int:
-    """A rating: the impression on the question's scale, plus bias and chance, to the nearest number of the scale."""
+    """Return a rating: the impression on the question's scale, plus bias and chance, to the nearest number of the
+    scale.
+    """
     value = question.low + (question.high - question.low) * impression + bias + chooser.gauss(0.0, NOISE)
     return min(question.high, max(question.low, round(value)))
 

@@ -37,12 +37,12 @@ def simulated_study(
 
     Args:
         study: the design.
-        crowd: who takes part.
+        crowd: the people that take part.
         out: gets a folder for each study.
         known: gives the knowledge.
         workers: processes.
-        watch: for what is being done, what is called with the number done.
-        beside: where other studies' files are.
+        watch: for the name of a task, the function that is called with the number done.
+        beside: the folder of other studies' files.
 
     Raises:
         HearthError: LOCKED, if another process simulates into the same folder; UNWRITABLE; errors of `simulate`.

@@ -1,4 +1,4 @@
-"""A study: who does or judges what, under which conditions, and what they are asked (thesis 6.6, B.4, C.5)."""
+"""A study: its people's tasks, under its conditions, and its questions (thesis 6.6, B.4, C.5)."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from typing import Literal
 
 PLAY, JUDGE = "play", "judge"
 ROOMS = (PLAY, JUDGE)
-"""What people do: act in homes, or judge films."""
+"""The tasks of people: to act in homes, or to judge films."""
 
 EPISODES, PROGRAMS = "episodes", "programs"
 SOURCES = (EPISODES, PROGRAMS)
-"""What films show: people and agents at tasks, or programs that were written for descriptions."""
+"""The contents of films: people and agents at tasks, or programs that were written for descriptions."""
 
 FILM, REPLAY = "film", "replay"
 SHOWN = (FILM, REPLAY)
-"""How what is judged is shown: as a film that was made before, or in 3D in the browser, to be seen from anywhere."""
+"""The presentation to judges: a film that was made before, or 3D in the browser, seen from anywhere."""
 
 AFTER = ("trial", "helped")
-"""When a question is asked: after every trial, or after those with a helper."""
+"""The times of a question: after every trial, or after trials with a helper."""
 
 Kind = Literal["scale", "choice", "text"]
 
@@ -43,7 +43,7 @@ class Question:
         kind: `scale` (whole numbers), `choice` or `text`.
         low, high: ends of a scale.
         labels: number -> its words.
-        choices: of which one is chosen.
+        choices: the possible answers.
         required: whether it must be answered.
         after: one of `AFTER`.
     """
@@ -59,7 +59,7 @@ class Question:
     after: str = "trial"
 
     def fault(self, answer: object) -> str:
-        """What is wrong with an answer; "" where nothing is."""
+        """Return the fault of an answer; "" if there is none."""
         if answer is None or answer == "":
             return "it needs an answer" if self.required else ""
         if self.kind == "scale":
@@ -82,8 +82,7 @@ class Condition:
     Attributes:
         name: in tables.
         title: in reports.
-        helper, goal: who helps, and what it is asked to do (see `challenges.episode_agents.Lineup`); nobody where
-            `none`.
+        helper, goal: the helper and its goal (see `challenges.episode_agents.Lineup`); no helper where `none`.
         actor: whose episodes films show: `person` or `agent`; "" where people play.
     """
 
@@ -129,7 +128,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Films:
-    """What is judged.
+    """The films to judge.
 
     Attributes:
         of: one of `SOURCES`.
@@ -148,7 +147,7 @@ class Films:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Times after which one does not wait longer.
+    """Times after which the study no longer waits.
 
     Attributes:
         minutes: of a trial.
@@ -161,7 +160,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Study:
-    """What a study's file says.
+    """The contents of a study's file.
 
     Attributes:
         name: its identifier.
@@ -170,11 +169,11 @@ class Study:
         room: one of `ROOMS`.
         seed: of all that is drawn.
         people: how many take part.
-        consent: what they agree to.
-        tutorial: what they read first.
+        consent: the text that they agree to.
+        tutorial: the text that they read first.
         practice: trials that do not count.
-        tasks: what is to be done; None where programs are judged.
-        films: what is judged; None where people play.
+        tasks: the tasks; None where programs are judged.
+        films: the films to judge; None where people play.
         interface: in which they play: `symbolic` or `visual`.
         conditions: at least one.
         repeats: how often each task is done under each condition.
@@ -214,7 +213,7 @@ class Study:
 
     @property
     def items(self) -> int:
-        """The number of tasks, or of programs."""
+        """Return the number of tasks, or of programs."""
         if self.tasks is not None:
             return self.tasks.number
         assert self.films is not None
@@ -222,13 +221,13 @@ class Study:
 
     @property
     def trials(self) -> int:
-        """All trials that count."""
+        """Return all trials that count."""
         return self.items * len(self.conditions) * self.repeats
 
     def condition(self, name: str) -> Condition:
-        """A condition by name."""
+        """Return a condition by name."""
         return next(each for each in self.conditions if each.name == name)
 
     def asked(self, condition: Condition) -> tuple[Question, ...]:
-        """The questions after a trial under a condition."""
+        """Return the questions after a trial under a condition."""
         return tuple(each for each in self.questions if each.after == "trial" or condition.helped)

@@ -42,12 +42,12 @@ def draw(number: str, found: Findings, alone: Findings | None, folder: Path) -> 
 
 
 def own_figure(study: str) -> str:
-    """The number of a study's figure; "" where it has none of its own."""
+    """Return the number of a study's figure; "" where it has none of its own."""
     return next((number for number, name in STUDIES.items() if name == study), "")
 
 
 def names_of(found: Findings) -> dict[str, str]:
-    """Who acted, in words."""
+    """Return the names of the actors, in words."""
     return {PEOPLE: "simulated people" if found.simulated else "people", AGENT: "human-like agent"}
 
 
@@ -94,7 +94,7 @@ def _point(axes: Any, found: Findings, who: str, name: str, title: str) -> None:
 
 
 def _bars(axes: Any, groups: list[tuple[Findings, str, str]], metric: str, names: Mapping[str, str]) -> None:
-    """A bar of each condition for people and one for the agent, with standard errors."""
+    """Draw a bar of each condition for people and one for the agent, with standard errors."""
     for offset, (who, label) in zip((-WIDTH / 2, WIDTH / 2), names.items(), strict=True):
         figures = [found.figure(who, name, metric) for found, name, _ in groups]
         there = [(place, each) for place, each in enumerate(figures) if each is not None]
@@ -129,7 +129,7 @@ def _ratings(axes: Any, found: Findings) -> None:
 
 
 def online(found: Findings, alone: Findings | None) -> Drawing:
-    """Figure 7-6: speedup with helpers that are not given the goal; b) is of people, a) of the agent beside it."""
+    """Figure 7-6: speedup with helpers that are not given the goal; b) is of people, a) of the agent."""
     figure: Drawing = library("matplotlib.figure").Figure(figsize=(7, 4), layout="constrained")
     axes = figure.subplots()
     helped = [(found, each.name, each.title) for each in found.study.conditions if each.helped]
@@ -178,4 +178,4 @@ FIGURES: dict[str, Callable[[Findings, Findings | None], Any]] = {
     "4-9": by_band,
     "likeness": likeness,
 }
-"""How each figure is drawn."""
+"""The function that draws each figure."""

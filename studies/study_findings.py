@@ -1,4 +1,4 @@
-"""What came of a study: success, speedup, reward and ratings with standard errors, and the thesis's tests."""
+"""The results of a study: success, speedup, reward and ratings with standard errors, and the thesis's tests."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from hearth.studies.study_tables import Rows
 PUBLISHED: dict[str, list[dict[str, str]]] = packaged("hearth.studies", "published_tests.yaml")
 
 PEOPLE, AGENT = "people", "agent"
-"""Who acted: the study's people, real or simulated, or the human-like agent in the same tasks."""
+"""The actors: the study's people, real or simulated, or the human-like agent in the same tasks."""
 
 METRICS = ("success", "speedup", "reward", "length")
 
@@ -35,7 +35,7 @@ class Figure:
 
 
 def figure_of(values: Mapping[Any, float]) -> Figure | None:
-    """The figure of values by task or film; None of no values."""
+    """Return the figure of values by task or film; None of no values."""
     if not values:
         return None
     found, half = interval(list(values.values()))
@@ -44,7 +44,7 @@ def figure_of(values: Mapping[Any, float]) -> Figure | None:
 
 @dataclass(frozen=True)
 class Findings:
-    """What came of a study.
+    """The results of a study.
 
     Attributes:
         study: the design.
@@ -69,12 +69,12 @@ class Findings:
     helper_faults: dict[str, int] = field(default_factory=dict)
 
     def figure(self, who: str, group: str, metric: str) -> Figure | None:
-        """A figure by who, condition and metric."""
+        """Return a figure by who, condition and metric."""
         return figure_of(self.values.get((who, group, metric), {}))
 
     @property
     def groups(self) -> list[tuple[str, str]]:
-        """What is compared, name and title: conditions, or bands of programs."""
+        """Return the compared groups, name and title: conditions, or bands of programs."""
         films = self.study.films
         if films is not None and films.bands:
             return [(each.name, each.title) for each in films.bands]
@@ -82,7 +82,7 @@ class Findings:
 
 
 def findings(collected: Collected, alone: Collected | None = None) -> Findings:
-    """What came of a study.
+    """Return the results of a study.
 
     Args:
         collected: the study with all that was collected.
@@ -122,7 +122,7 @@ def _by_condition(rows: Rows) -> dict[str, Outcomes]:
 def _alone(
     people: Mapping[str, Outcomes], results: Mapping[str, Results], other: Collected | None
 ) -> tuple[Outcomes, str]:
-    """The outcomes without a helper, and in words whose they are."""
+    """Return the outcomes without a helper, and in words whose they are."""
     if other is not None:
         name = next(each.name for each in other.study.conditions if not each.helped)
         return _by_condition(Rows(other))[name], f"people alone ({other.study.name})"
@@ -156,12 +156,12 @@ def _ratings(rows: Rows) -> dict[tuple[str, str, str], dict[Any, float]]:
 
 
 def scales(study: Study) -> list[str]:
-    """The names of the questions after trials that are answered by numbers."""
+    """Return the names of the questions after trials that are answered by numbers."""
     return [each.name for each in study.questions if each.kind == "scale"]
 
 
 def published(study: str, metric: str, condition: str) -> str:
-    """What the thesis reports of people and agent under a condition."""
+    """Return the thesis's report on people and agent under a condition."""
     rows = PUBLISHED.get(study, ())
     found = (row["text"] for row in rows if (row.get("metric", ""), row["condition"]) == (metric, condition))
     return next(found, "")

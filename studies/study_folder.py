@@ -31,7 +31,7 @@ EVENTS, FILMS, REFERENCES = "events.jsonl", "films.json", "references"
 
 
 def header(study: Study, seed: int, drop_outs: int) -> dict[str, Any]:
-    """The first line of a simulation's events; the study's whole text is in it."""
+    """Return the first line of a simulation's events; the study's whole text is in it."""
     return {"format": FORMAT, "study": study.text, "simulated": {"seed": seed, "drop_outs": drop_outs}}
 
 
@@ -51,16 +51,16 @@ class Collected:
 
     @property
     def study(self) -> Study:
-        """The design."""
+        """Return the design."""
         return self.conduct.study
 
     @property
     def ledger(self) -> Ledger:
-        """The events."""
+        """Return the events."""
         return self.conduct.ledger
 
     def records(self, finished: bool = True) -> dict[str, list[Record]]:
-        """What people did, by task; only who finished, unless all are asked for."""
+        """Return people's records, by task; only of people who finished, unless all are asked for."""
         found = defaultdict(list)
         for person in self.ledger.streams():
             if not finished or self.conduct.standing(person).finished:
@@ -71,7 +71,7 @@ class Collected:
 
 
 def opened(folder: Path, known: Known) -> Collected:
-    """The simulated study of a folder.
+    """Return the simulated study of a folder.
 
     Raises:
         HearthError: MISSING_FILE; BAD_JSON; every fault of the study.
@@ -88,7 +88,7 @@ def opened(folder: Path, known: Known) -> Collected:
 
 
 def beside(collected: Collected) -> Collected | None:
-    """The simulated study, in the folder beside, whose lengths are those without a helper; None where there is none."""
+    """Return the simulated study in the neighboring folder, with the lengths without a helper; None if absent."""
     name = collected.study.alone
     if not name or collected.folder is None:
         return None
@@ -97,7 +97,7 @@ def beside(collected: Collected) -> Collected | None:
 
 
 def related(study: Study, files: Path | None) -> Study | None:
-    """The study whose people another one needs: whom it films, or whose lengths are those alone.
+    """Return the study whose people another one needs: whom it films, or whose lengths are those alone.
 
     Args:
         study: the other one.
@@ -112,21 +112,21 @@ def related(study: Study, files: Path | None) -> Study | None:
     if files is not None and (path := inside(files, f"{name}.yaml")).is_file():
         return named(str(path))
     if name not in SHIPPED:
-        raise HearthError.of(Code.MISSING_FILE, f"there is no study `{name}`", suggestion=f"put {name}.yaml beside it")
+        raise HearthError.of(Code.MISSING_FILE, f"there is no study `{name}`", suggestion=f"put {name}.yaml next to it")
     return named(name)
 
 
 def references(
     study: Study, folder: Path, known: Known, workers: int = 1, watch: Callable[[str], Seen] | None = None
 ) -> dict[str, Results]:
-    """What the human-like agent does in the same tasks under the same conditions; what the folder has is kept.
+    """Return the human-like agent's results in the same tasks and conditions; results in the folder are kept.
 
     Args:
         study: whose tasks and conditions are meant.
         folder: of the study.
         known: gives the knowledge.
         workers: processes.
-        watch: for the name of a condition, what is called with the number of episodes done.
+        watch: for the name of a condition, the function that is called with the number of episodes done.
 
     Returns:
         Condition -> results; episodes alone are in each.
@@ -150,7 +150,7 @@ def references(
 
 
 def references_of(collected: Collected) -> dict[str, Results]:
-    """The references that a study's folder has."""
+    """Return the references that a study's folder has."""
     if collected.folder is None:
         return {}
     paths = sorted((collected.folder / REFERENCES).glob("*.jsonl"))
@@ -170,7 +170,7 @@ def prepare_films(
     agent: Mapping[str, Record],
     predictions: Path | None = None,
 ) -> list[JudgedFilm]:
-    """List what is judged in the study's folder; see `judged_films`."""
+    """Return the films to judge in the study's folder; see `judged_films`."""
     assert study.films is not None
     if study.films.of == EPISODES:
         films = list(of_episodes(study, people, agent, lambda task: goal_in_words(study, task)))
@@ -182,5 +182,5 @@ def prepare_films(
 
 
 def first_records(results: Results) -> dict[str, Record]:
-    """Task -> what the agent did alone the first time."""
+    """Return the agent's first record alone, by task."""
     return {each.task: each for each in results.records if not each.helped and each.seed == 0}

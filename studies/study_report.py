@@ -27,7 +27,7 @@ def write_report(found: Findings, alone: Findings | None, folder: Path) -> list[
 
 
 def page(found: Findings, pictures: list[str]) -> str:
-    """The page as HTML; every text is escaped."""
+    """Return the page as HTML; every text is escaped."""
     import jinja2
 
     text = (files("hearth.studies") / "study_report.html").read_text("utf-8")
@@ -50,7 +50,7 @@ def page(found: Findings, pictures: list[str]) -> str:
 
 
 def failures(found: Findings) -> list[str]:
-    """What is said of the helpers that could not go on, a line for each condition."""
+    """Return the notes about helpers that could not go on, a line for each condition."""
     titles = dict(found.groups)
     return [
         f"{titles[name]}: the helper failed in {count} {'trial' if count == 1 else 'trials'}. "
@@ -94,7 +94,7 @@ def _cell(figure: Figure | None, places: int) -> str:
 
 
 def test_row(each: Comparison) -> list[str]:
-    """A test as the page and the command show it."""
+    """Return a test as the page and the command show it."""
     shown = [each.metric, each.one, each.other, str(each.pairs)]
     if each.difference is None:
         return [*shown, "", "", "", "", "", "", each.thesis]
@@ -114,14 +114,14 @@ def test_row(each: Comparison) -> list[str]:
 
 
 def probability(p: float | None) -> str:
-    """A probability as papers print it."""
+    """Return a probability as papers print it."""
     if p is None:
         return ""
     return "< .001" if p < 0.001 else f"{p:.3f}".lstrip("0")
 
 
 def as_json(found: Findings) -> dict[str, Any]:
-    """The findings for machines."""
+    """Return the findings for machines."""
     from dataclasses import asdict
 
     figures = {

@@ -1,4 +1,4 @@
-"""A row of every table that `study export` writes; each column has its meaning beside its type."""
+"""A row of every table that `study export` writes; each column has its meaning next to its type."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from typing import Annotated, TypedDict
 
 
 class ParticipantRow(TypedDict):
-    """Somebody who took part."""
+    """A person who took part."""
 
     study: Annotated[str, "name of the study"]
     participant: Annotated[str, "salted id: equal in all tables of an export, and nothing else is known by it"]
     simulated: Annotated[bool, "an agent was in a person's place"]
-    place: Annotated[int, "the place in the study, from 0; who takes the place of somebody who left has the same"]
+    place: Annotated[int, "the place in the study, from 0; a successor of a person who left has the same"]
     stage: Annotated[str, "done, left, or how far the person is"]
     trials: Annotated[int, "that the person did"]
     seconds: Annotated[float, "of all trials"]
     left: Annotated[str, "why the person left; empty if not"]
     began: Annotated[float, "when the person joined, in seconds since 1970, UTC; 0 of simulated people"]
-    ended: Annotated[float | None, "when the person finished or left, in the same seconds; null of who is under way"]
+    ended: Annotated[float | None, "when the person finished or left, in the same seconds; null of a person under way"]
 
 
 class StudyTrialRow(TypedDict):
@@ -39,12 +39,12 @@ class StudyTrialRow(TypedDict):
     reward: Annotated[float | None, "1 if the goal was reached, less 0.004 a tick of its length"]
     conflicts: Annotated[int | None, "predicates of the other's goal that held and that the person or helper undid"]
     needless: Annotated[int | None, "things the helper moved that in the end neither count nor are where they were"]
-    end: Annotated[str, "code of what ended it before its time; empty if nothing did"]
+    end: Annotated[str, "code of the reason that ended it before its time; else empty"]
     helper_fault: Annotated[str, "code of the helper's fault that ended it, for which reports leave it out; else empty"]
 
 
 class DecisionRow(TypedDict):
-    """What the person or the helper tried in a tick of a trial."""
+    """The attempt of the person or the helper in a tick of a trial."""
 
     study: Annotated[str, "name of the study"]
     participant: Annotated[str, "whose trial"]

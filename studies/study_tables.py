@@ -50,7 +50,7 @@ def export(collected: Collected, folder: Path) -> dict[str, int]:
 
 
 def archive(collected: Collected) -> bytes:
-    """The same as a zip archive, with the study's file and the meaning of every column."""
+    """Return the tables as a zip archive, with the study's file and the meaning of every column."""
     import pyarrow.parquet as pq
 
     packed = io.BytesIO()
@@ -65,7 +65,7 @@ def archive(collected: Collected) -> bytes:
 
 
 def columns_in_words() -> str:
-    """The meaning of every column."""
+    """Return the meaning of every column."""
     lines = []
     for name, schema in TABLES.items():
         lines += [f"{name}: {comment_of(schema)}", *(f"  {each.name}: {comment_of(each)}" for each in schema), ""]
@@ -73,7 +73,7 @@ def columns_in_words() -> str:
 
 
 def tables(collected: Collected) -> dict[str, pa.Table]:
-    """The tables by name."""
+    """Return the tables by name."""
     rows = Rows(collected)
     every: dict[str, Iterator[Mapping[str, Any]]] = {
         "participants": rows.participants(),
@@ -102,7 +102,7 @@ class Rows:
         return {"study": self.study.name, "participant": participant, "simulated": self.collected.simulated}
 
     def participants(self) -> Iterator[Mapping[str, Any]]:
-        """A row for everybody."""
+        """Yield a row for everybody."""
         for standing in self.standings:
             did = _of_kind(standing, "did")
             left = [each.data["why"] for each in _of_kind(standing, "left")]
@@ -118,7 +118,7 @@ class Rows:
             }
 
     def trials(self) -> Iterator[Mapping[str, Any]]:
-        """A row for every trial."""
+        """Yield a row for every trial."""
         for standing in self.standings:
             for number, event in enumerate(_of_kind(standing, "did")):
                 data = event.data
@@ -138,7 +138,7 @@ class Rows:
                 }
 
     def decisions(self, knowledge: Knowledge) -> Iterator[Mapping[str, Any]]:
-        """A row for what each agent tried in each tick."""
+        """Yield a row for each agent's attempt in each tick."""
         for standing in self.standings:
             for number, event in enumerate(_of_kind(standing, "did")):
                 if "record" not in event.data:
@@ -162,7 +162,7 @@ class Rows:
                         }
 
     def ratings(self) -> Iterator[Mapping[str, Any]]:
-        """A row for every answer."""
+        """Yield a row for every answer."""
         for standing in self.standings:
             for number, event in enumerate(_of_kind(standing, "answered")):
                 yield from self._answers(standing, event, number)
@@ -190,7 +190,7 @@ class Rows:
 
 
 def helper_fault(data: Mapping[str, Any]) -> str:
-    """The code of what the helper failed with, if that ended a trial, by the data of its event; "" otherwise."""
+    """Return the code of the helper's failure, if that ended a trial, by the data of its event; "" otherwise."""
     end = (data.get("record") or {}).get("end")
     return str(end["code"]) if end and end.get("agent") == HELPER else ""
 
@@ -200,13 +200,13 @@ def _of_kind(standing: Standing, kind: str) -> list[Event]:
 
 
 def _trial_of(standing: Standing, item: int, condition: str) -> int:
-    """The number of the trial with a task under a condition; a person has it once."""
+    """Return the number of the trial with a task under a condition; a person has it once."""
     did = _of_kind(standing, "did")
     return next(n for n, each in enumerate(did) if (each.data["item"], each.data["condition"]) == (item, condition))
 
 
 def person_of(collected: Collected, given: str) -> str:
-    """Who is meant by an id of the tables, or by the id of a session.
+    """Return the person with an id of the tables, or with the id of a session.
 
     Raises:
         HearthError: UNKNOWN_ID: nobody of this id takes part.

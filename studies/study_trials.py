@@ -1,4 +1,4 @@
-"""Trials of a study as episodes of tasks: played by people or by agents, and checked by doing them again."""
+"""Trials of a study as episodes of tasks: played by people or by agents, and checked by a replay."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from hearth.studies.study import Condition, Study, Tasks
 
 @lru_cache(maxsize=16)
 def suite_of(tasks: Tasks) -> Suite:
-    """The tasks of a study."""
+    """Return the tasks of a study."""
     found = published_tasks.tasks(tasks.challenge, tasks.split, limit=tasks.number)
     return Suite(tasks.challenge, tasks.split, published_tasks.PUBLISHED, found)
 
 
 def tasks_of(study: Study) -> tuple[Task, ...]:
-    """The tasks of a study whose people play, or whose films show people and agents.
+    """Return the tasks of a study whose people play, or whose films show people and agents.
 
     Raises:
         HearthError: BAD_ARGUMENT: it has none.
@@ -44,7 +44,7 @@ def tasks_of(study: Study) -> tuple[Task, ...]:
 
 
 def practice_task(study: Study, number: int) -> Task:
-    """A task that does not count, in a home of training."""
+    """Return a task that does not count, in a home of training."""
     assert study.tasks is not None
     return published_tasks.tasks(study.tasks.challenge, "train", limit=number + 1)[number]
 
@@ -60,13 +60,15 @@ def check_helpers(study: Study) -> None:
 
 
 def lineup_of(condition: Condition) -> Lineup:
-    """Who takes part under a condition; the person is in the place of the human-like agent."""
+    """Return the agents under a condition; the person is in the place of the human-like agent."""
     return Lineup(helper=condition.helper, goal=condition.goal).checked()
 
 
 def job_of(study: Study, planned: Planned, known: Known, make: Callable[[], MainAgent] | None = None) -> Job:
-    """A trial as an episode; its number among the task's episodes is its repeat, so that a helper with a random goal
-    has the one that it has with the human-like agent (thesis 6.6).
+    """Return a trial as an episode.
+
+    Its number among the task's episodes is its repeat, so that a helper with a random goal has the one that it has with
+    the human-like agent (thesis 6.6).
 
     Args:
         study: of the trial.
@@ -92,7 +94,7 @@ def _inferred(task: Task, reader: str, known: Known) -> Goal:
 
 
 def checked(study: Study, planned: Planned, given: Mapping[str, Any], knowledge: Knowledge) -> dict[str, Any]:
-    """A record of a trial, with the metrics that come of doing again what was done.
+    """Return a record of a trial, with the metrics of a replay of its actions.
 
     Raises:
         HearthError: BAD_JSON: it is not a record; REPLAY_DIFFERS: it is one of another trial, or ends in another world.
@@ -106,13 +108,13 @@ def checked(study: Study, planned: Planned, given: Mapping[str, Any], knowledge:
         raise HearthError.of(Code.REPLAY_DIFFERS, f"the record is of {record.task}, not of this trial")
     outcome, final = again(task, record, knowledge)
     if final != record.final:
-        raise HearthError.of(Code.REPLAY_DIFFERS, "what was recorded ends in another world when it is done again")
+        raise HearthError.of(Code.REPLAY_DIFFERS, "the record ends in another world when it is replayed")
     data = episode_data(replace(record, metrics=outcome.as_json()))
     return {**data, "actions": [list(tick) for tick in record.actions]}
 
 
 def record_of(data: Mapping[str, Any]) -> Record:
-    """The record of a checked trial.
+    """Return the record of a checked trial.
 
     Raises:
         HearthError: BAD_JSON: it is none.

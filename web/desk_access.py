@@ -11,7 +11,7 @@ from hearth.schemas.failures import Code
 from hearth.web.store import private
 
 COOKIE = "hearth_desk"
-"""The cookie of who has entered the desk."""
+"""The cookie of a researcher who has entered the desk."""
 
 VARIABLE = "HEARTH_DESK_TOKEN"
 """The environment variable with the token, for servers on many machines."""
@@ -24,7 +24,7 @@ TRIES = 5
 
 
 def desk_token(out: Path) -> str:
-    """The token of the desk: the environment's, or that of a file which only its owner can read.
+    """Return the token of the desk: the environment's, or that of a file which only its owner can read.
 
     Raises:
         HearthError: DAMAGED_FILE: the file has no token, however often it is made.
@@ -45,7 +45,7 @@ def desk_token(out: Path) -> str:
 
 
 def _made(file: Path) -> str:
-    """A new token in a file that appears whole; that of another server if this came second."""
+    """Return a new token in a file that appears whole; that of another server if this came second."""
     token, beside = secrets.token_urlsafe(32), file.with_name(f".{file.name}.{secrets.token_hex(8)}")
     descriptor = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     try:

@@ -1,4 +1,4 @@
-"""How much and how fast one sender may ask."""
+"""Limits on the size and the rate of one sender's requests."""
 
 from __future__ import annotations
 
@@ -18,6 +18,15 @@ MOST_FIELDS = 2_000
 MOST_MESSAGE = 64 * 1024
 """Bytes of a message over a socket."""
 
+QUIET_SECONDS = 9.0
+"""Seconds for which a connection may ask nothing, read nothing, or be in the middle of a request's body.
+
+It is looked at every second, so that it ends within ten.
+"""
+
+MOST_CONNECTIONS = 4_000
+"""Connections of a process at once, where the limit of open files allows as many."""
+
 RATES = {"request": (40, 200), "begin": (1, 30), "token": (0.5, 10), "run": (1, 5)}
 """Requests a second and at once: all of a session; new sessions and tokens that are tried, of an address; runs of a
 program, of a session."""
@@ -27,7 +36,7 @@ MOST_SENDERS = 10_000
 
 
 class Rate:
-    """At most `burst` requests at once and `each_second` in the long run, of each sender.
+    """A limit of each sender: at most `burst` requests at once and `each_second` in the long run.
 
     Args:
         each_second: requests a second.
@@ -60,5 +69,5 @@ class Rate:
 
 
 def usual_rates() -> dict[str, Rate]:
-    """The limits of `RATES`, with nothing counted yet."""
+    """Return the limits of `RATES`, with nothing counted yet."""
     return {name: Rate(each_second, burst) for name, (each_second, burst) in RATES.items()}

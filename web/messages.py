@@ -15,7 +15,7 @@ from hearth.web.web_errors import WebError
 class Inbox:
     """Checks the messages of one connection: JSON objects with a `type`, numbered 1, 2, 3, ... in `n`.
 
-    A refused message does not count: the next one has the number that it should have had.
+    A refused message does not count: the next one has the number that the refused one should have had.
 
     Args:
         rate: the limit that this connection has.
@@ -26,7 +26,7 @@ class Inbox:
         self._rate = rate or Rate(each_second=60, burst=120)
 
     def take(self, raw: str | bytes) -> dict[str, Any]:
-        """The message in what came.
+        """Return the message in the received data.
 
         Raises:
             WebError: FILE_TOO_LARGE, TOO_FAST, BAD_JSON, BAD_ARGUMENT or OUT_OF_ORDER.
@@ -49,7 +49,7 @@ _NUL = re.compile(rb"(?<!\\)(?:\\\\)*\\u0000")
 
 
 def json_object(raw: str | bytes, place: str) -> dict[str, Any]:
-    """A JSON object of a stranger.
+    """Return a JSON object of a stranger.
 
     Raises:
         WebError: BAD_JSON.
@@ -70,7 +70,7 @@ def _kind(value: object) -> str:
 
 
 def text_field(message: dict[str, Any], name: str, most: int = 1_000) -> str:
-    """A field that is a text of at most `most` characters.
+    """Return a field that is a text of at most `most` characters.
 
     Raises:
         WebError: BAD_ARGUMENT.
@@ -83,7 +83,7 @@ def text_field(message: dict[str, Any], name: str, most: int = 1_000) -> str:
 
 
 def int_field(message: dict[str, Any], name: str, least: int, most: int) -> int:
-    """A field that is a whole number from `least` to `most`.
+    """Return a field that is a whole number from `least` to `most`.
 
     Raises:
         WebError: BAD_ARGUMENT.

@@ -14,16 +14,19 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+import sqlalchemy as sql
+
 from hearth.web.limits import MOST_BODY
+from hearth.web.sessions import Keeps
 from hearth.web.visit import Handler, Web
 
 
 class Who(Enum):
-    """Who may ask for an address."""
+    """The people who may ask for an address."""
 
     ANYONE = "anyone"
     PERSON = "a person with a session"
-    RESEARCHER = "who has the desk's token"
+    RESEARCHER = "a researcher with the desk's token"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,22 +49,27 @@ class Address:
 
 
 def get(path: str, handler: Handler, who: Who = Who.PERSON) -> Address:
-    """An address that is read."""
+    """Return an address that is read."""
     return Address("GET", path, handler, who)
 
 
 def post(path: str, handler: Handler, who: Who = Who.PERSON, most: int = MOST_BODY) -> Address:
-    """An address that changes something."""
+    """Return an address that changes something."""
     return Address("POST", path, handler, who, most)
 
 
 def socket(path: str, handler: Callable[[Any], Awaitable[None]]) -> Address:
-    """The address of a socket; its handler gets a `Link` of `web/link.py`."""
+    """Return the address of a socket; its handler gets a `Link` of `web/link.py`."""
     return Address("SOCKET", path, handler)
 
 
 def _nothing(web: Web) -> None:
-    """What most rooms do when a server starts."""
+    """Do nothing, as most rooms do when a server starts."""
+
+
+def _keeps_nothing(connection: sql.Connection, person: str, nobody: str) -> int:
+    """Keep the rows of a person who withdraws, as most rooms do."""
+    return 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +79,13 @@ class Room:
     Attributes:
         name: the first part of its addresses, and the folder of its templates and static files.
         title: as the navigation has it.
-        line: what one does there, for the start page.
-        addresses: what people may ask for.
-        desk: what researchers may ask for, under `/desk/NAME`.
+        line: the purpose, for the start page.
+        addresses: the addresses for people.
+        desk: the addresses for researchers, under `/desk/NAME`.
         needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
         listed: whether the start page and the navigation list it.
         opens: writes the files that follow from the store, when a server starts and after a deletion.
+        keeps: gives what others built on to nobody when its person withdraws; the rest goes with the session.
     """
 
     name: str
@@ -87,3 +96,4 @@ class Room:
     needs: tuple[str, ...] = ()
     listed: bool = True
     opens: Callable[[Web], None] = _nothing
+    keeps: Keeps = _keeps_nothing

@@ -1,6 +1,7 @@
 """Scripts of others that pages use: pinned in package-lock.json, fetched by `make web`, never committed.
 
-`python -m hearth.web.third_party_scripts` copies what pages need from `node_modules` to `fetched`, with the licences.
+`python -m hearth.web.third_party_scripts` copies the files that pages need from `node_modules` to `fetched`, with the
+licences.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from hearth.schemas.libraries import CHECKOUT
 
 HERE = Path(__file__).resolve().parent
 FETCHED = HERE / "fetched"
-"""What the server serves under `/fetched/`; the wheel contains it."""
+"""The folder that the server serves under `/fetched/`; the wheel contains it."""
 
 
 class Script(NamedTuple):
@@ -21,7 +22,7 @@ class Script(NamedTuple):
 
     Attributes:
         files: by their path within its package; the first shows that it is there.
-        purpose: what does not work without it.
+        purpose: the function that fails without it.
     """
 
     files: tuple[str, ...]
@@ -62,12 +63,12 @@ REMEDY = "run `make web` (it needs npm)" if CHECKOUT.is_file() else "install a w
 
 
 def missing() -> list[str]:
-    """The libraries that are not there."""
+    """Return the libraries that are not there."""
     return [name for name, script in THIRD_PARTY.items() if not (FETCHED / name / script.files[0]).is_file()]
 
 
 def copy(modules: Path = HERE / "node_modules") -> None:
-    """Copy the files of each library from npm's folder; what a module imports by name becomes an address."""
+    """Copy the files of each library from npm's folder; a module's imports by name become addresses."""
     shutil.rmtree(FETCHED, ignore_errors=True)
     for name, script in THIRD_PARTY.items():
         for file in script.files:

@@ -1,4 +1,4 @@
-"""What a handler of a room gets: one request with all that was checked about it, and ways to answer."""
+"""The input of a room's handler: one request with its checked parts, and ways to answer."""
 
 from __future__ import annotations
 
@@ -16,26 +16,27 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.web.limits import Rate
 from hearth.web.messages import json_object
-from hearth.web.sessions import Session
+from hearth.web.sessions import Keeps, Session
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
 
 
 @dataclass(frozen=True, slots=True)
 class Web:
-    """What all handlers share; it holds nothing that a session depends on, so that any process can answer.
+    """The common state of all handlers; no session depends on it, so that any process can answer.
 
     Attributes:
         store: the database.
         known: the knowledge that programs are checked against.
-        out: the server's folder: what rooms write there is what `build` reads, but for hidden folders.
+        out: the server's folder; `build` reads the files that rooms write there, but for hidden folders.
         templates: the pages.
         study: the file of the study, or None.
         desk: the digest of the desk's token.
         secure: whether people come by https.
-        rates: how fast one may ask, by the names of `RATES`.
+        rates: limits on the rate of requests, by the names of `RATES`.
         films: a dataset whose films people describe, or None.
         follows: write the files of rooms, which follow from the store.
+        keeps: give to nobody what others built on, when a person withdraws.
     """
 
     store: Store
@@ -48,9 +49,10 @@ class Web:
     secure: bool = False
     films: Path | None = None
     follows: tuple[Callable[[Web], None], ...] = ()
+    keeps: tuple[Keeps, ...] = ()
 
     def written(self) -> None:
-        """Write anew what rooms keep in files, once something that these follow from was deleted."""
+        """Write the rooms' files anew, once data that they follow from was deleted."""
         for write in self.follows:
             write(self)
 
@@ -60,9 +62,9 @@ class Visit:
     """A request.
 
     Attributes:
-        web: what all handlers share.
+        web: the common state of all handlers.
         request: the request as it came; its body is read already.
-        session: who asks, on addresses of persons; on others maybe None.
+        session: the sender's session, on addresses of persons; on others maybe None.
         body: at most as many bytes as the address allows.
         fields: a form's, or the address's query.
     """
@@ -75,12 +77,12 @@ class Visit:
 
     @property
     def person(self) -> str:
-        """The id of the session, on addresses of persons."""
+        """Return the id of the session, on addresses of persons."""
         assert self.session is not None
         return self.session.id
 
     def part(self, name: str) -> str:
-        """A part of the address that its route names: `/annotate/{task}`.
+        """Return a part of the address that its route names: `/annotate/{task}`.
 
         Raises:
             WebError: BAD_ARGUMENT, if it has a NUL character, which databases refuse.
@@ -91,7 +93,7 @@ class Visit:
         return value
 
     def json(self) -> dict[str, Any]:
-        """The body as a JSON object.
+        """Return the body as a JSON object.
 
         Raises:
             WebError: BAD_JSON.
@@ -99,7 +101,7 @@ class Visit:
         return json_object(self.body, "body")
 
     def field(self, name: str, most: int = 5_000) -> str:
-        """A field of the form; "" if it did not come.
+        """Return a field of the form; "" if it did not come.
 
         Raises:
             WebError: BAD_ARGUMENT, if it is longer than `most`.
@@ -112,11 +114,11 @@ class Visit:
         return value
 
     def page(self, template: str, status: int = 200, **values: Any) -> Response:
-        """A page from a template of `web/templates/`; all values are escaped."""
+        """Return a page from a template of `web/templates/`; all values are escaped."""
         return HTMLResponse(render(self.web, template, self.session, **values), status)
 
     def answer(self, value: Any, status: int = 200) -> Response:
-        """A JSON document; dataclasses are converted."""
+        """Return a JSON document; dataclasses are converted."""
         return json_answer(value, status)
 
     def go(self, address: str) -> Response:
@@ -134,11 +136,11 @@ Handler = Callable[[Visit], Response]
 
 
 def render(web: Web, template: str, session: Session | None, **values: Any) -> str:
-    """The HTML of a template."""
+    """Return the HTML of a template."""
     return web.templates.get_template(template).render(session=session, **values)
 
 
 def json_answer(value: Any, status: int = 200) -> Response:
-    """A JSON document as an answer."""
+    """Return a JSON document as an answer."""
     options = orjson.OPT_NON_STR_KEYS | orjson.OPT_SERIALIZE_NUMPY
     return Response(orjson.dumps(value, option=options), status, media_type="application/json")

@@ -1,4 +1,4 @@
-"""What the server refuses, as data: a code, the place, what was expected and what came."""
+"""The server's refusals, as data: a code, the place, the expected and the received value."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ STATUS: Mapping[Code, int] = {
     Code.FILE_TOO_LARGE: 413,
     Code.TOO_FAST: 429,
     Code.INTERNAL_ERROR: 500,
+    Code.DAMAGED_FILE: 500,
     Code.MISSING_FILE: 503,
+    Code.TIMED_OUT: 503,
+    Code.UNWRITABLE: 503,
 }
 """The HTTP status of a code; others are 400."""
 
@@ -30,8 +33,8 @@ class WebError(Exception):
     Attributes:
         code: the kind.
         place: the field, address or message at fault.
-        expected: what had to come.
-        actual: what came instead.
+        expected: the expected value.
+        actual: the received value.
         instead: an address of ours to which browsers are sent, where its page says why; "" for the page of a fault.
     """
 
@@ -43,11 +46,11 @@ class WebError(Exception):
 
     @property
     def status(self) -> int:
-        """The HTTP status of its answer."""
+        """Return the HTTP status of its answer."""
         return STATUS.get(self.code, 400)
 
     def as_json(self) -> dict[str, Any]:
-        """The answer's body, as documented in web/README.md."""
+        """Return the answer's body, as documented in web/README.md."""
         facts = {"code": str(self.code), "place": self.place, "expected": self.expected, "actual": self.actual}
         return {"error": facts}
 

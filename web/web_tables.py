@@ -15,10 +15,10 @@ SESSIONS = sql.Table(
     sql.Column("created", sql.Float, nullable=False, comment="seconds since 1970, UTC"),
     sql.Column("tab", sql.Text, nullable=False, server_default="", comment="the one tab that may act"),
 )
-"""A person at work: who has the token has the session."""
+"""A person at work: the holder of the token has the session."""
 
 
 def owner() -> sql.Column[str]:
-    """The column of a room's table for the session that a row belongs to; the row goes when the session goes."""
+    """Return the column of a room's table for the session that a row belongs to; the row goes when the session goes."""
     key = sql.ForeignKey("sessions.id", ondelete="CASCADE")
     return sql.Column("session", sql.Text, key, nullable=False, index=True)

@@ -32,7 +32,7 @@ class Wanted:
         return bool(self.programs) or self.limit is not None
 
     def chosen(self) -> tuple[str, dict[str, Any]]:
-        """SQL that selects their ids, and its parameters."""
+        """Return SQL that selects their ids, and its parameters."""
         names = (name for given in self.programs for name in names_of(given))
         asked = {f"id{number}": name for number, name in enumerate(names)}
         where = f" WHERE program_id IN ({', '.join(f'${name}' for name in asked)})" if asked else ""
@@ -41,14 +41,14 @@ class Wanted:
 
 
 def programs(dataset: Dataset, wanted: Wanted) -> Iterator[ProgramRow]:
-    """Rows of `programs`, sorted by id."""
+    """Yield rows of `programs`, sorted by id."""
     chosen, asked = wanted.chosen()
     yield from stream(dataset, f"SELECT * FROM programs SEMI JOIN ({chosen}) USING (program_id)"
                                 " ORDER BY program_id", asked)  # fmt: skip
 
 
 def runs(dataset: Dataset, wanted: Wanted, included: str = "") -> Iterator[tuple[ProgramRow, Run]]:
-    """Each execution with its program's row, sorted by the ids of both.
+    """Yield each execution with its program's row, sorted by the ids of both.
 
     Args:
         dataset: to read.
@@ -65,7 +65,7 @@ def runs(dataset: Dataset, wanted: Wanted, included: str = "") -> Iterator[tuple
 
 
 def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]:
-    """The rows of a query."""
+    """Yield the rows of a query."""
     # A separate cursor: a connection has one open result, and homes are read meanwhile.
     with reading(dataset.folder), dataset.connection.cursor() as cursor:
         for batch in cursor.sql(query, params=asked or None).to_arrow_reader(_BATCH):

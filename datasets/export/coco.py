@@ -31,7 +31,7 @@ def coco(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     `load_dataset("imagefolder", data_dir=".../images")` gives the pictures and their columns.
 
     An annotation is one thing in one picture, with its node, box, area and mask (COCO's run lengths). Categories are
-    the classes of `vocabulary`. What a mask shows besides nodes of the graph, as walls, is background.
+    the classes of `vocabulary`. Parts of a mask without a node of the graph, such as walls, are background.
 
     Returns:
         Number of pictures.
@@ -63,7 +63,7 @@ def coco(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def _with_classes(dataset: Dataset, shots: list[Any]) -> Iterator[tuple[Any, dict[int, str]]]:
-    """Each picture with the class of every node of its graph, which is made once for all cameras of a tick."""
+    """Yield each picture with the class of every node of its graph, which is made once for all cameras of a tick."""
     graph_of: tuple[Any, dict[int, str]] = None, {}
     query = "SELECT id, class_name FROM graph_nodes($execution, $tick)"
     for shot in shots:
@@ -90,7 +90,7 @@ def _mask(dataset: Dataset, name: str) -> NDArray[Any]:
 
 
 def _things(mask: NDArray[Any], classes: dict[int, str], known: dict[str, int]) -> Iterator[dict[str, Any]]:
-    """The annotation of each thing in a picture, by node id."""
+    """Yield the annotation of each thing in a picture, by node id."""
     import numpy as np
 
     for node in np.unique(mask).tolist():

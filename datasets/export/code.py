@@ -55,7 +55,7 @@ def _action(name: str) -> str:
 
 
 def call_name(action: str) -> str:
-    """`SwitchOn` -> `switch_on`; Python's own words get an underscore, and what is not a name becomes one."""
+    """Return `switch_on` for `SwitchOn`; Python's own words get an underscore, and any other text becomes a name."""
     name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", action).lower()
     if not (name.isascii() and name.isidentifier()):
         return _identifier(name)
@@ -73,7 +73,7 @@ def _function(row: ProgramRow, program: Program, name: str) -> Iterator[str]:
 
 
 def _comment(text: str) -> Iterator[str]:
-    """A comment, whose every line is one to Python too; characters that can't be seen are written as escapes."""
+    """Yield a comment, whose every line is one to Python too; characters that can't be seen are written as escapes."""
     for line in text.strip().splitlines():
         shown = "".join(ascii(char)[1:-1] if category(char) in _UNSEEN else char for char in line)
         yield f"    # {shown}".rstrip()

@@ -20,7 +20,7 @@ _WHERE = {
     **dict.fromkeys(("perturbations", "repairs"), _OF_PARENTS),
     **dict.fromkeys(("frames", "videos", "clips", "demonstration_frames"), _OF_RUNS),
 }
-"""Which rows a selection of programs has, by table; of other tables all."""
+"""The rows of a selection of programs, by table; of other tables all rows."""
 
 
 def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
@@ -40,7 +40,7 @@ def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def csv(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """The same as comma-separated values; nested values are JSON, and spreadsheets find only text, never formulas.
+    """Write the tables as comma-separated values; nested values are JSON, and spreadsheets find text, never formulas.
 
     Returns:
         Number of rows in all files.
@@ -54,7 +54,7 @@ def csv(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def tables(wanted: Wanted) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Every table with the query of its rows, all or those of the wanted programs, and its parameters."""
+    """Yield every table with the query of its rows, all or those of the wanted programs, and its parameters."""
     chosen, asked = wanted.chosen()
     for table in TABLES:
         where = _WHERE.get(table, "").format(chosen=chosen) if wanted.some else ""

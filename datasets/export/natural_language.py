@@ -17,13 +17,13 @@ ASKED = "How do you do this at home? Answer with one step a line."
 
 
 def sentences(program: Program, knowledge: Knowledge) -> list[str]:
-    """Each step as a natural-language sentence without instances: `Put cup on table`."""
+    """Return each step as a natural-language sentence without instances: `Put cup on table`."""
     actions = knowledge.actions
     return [say(actions[step.action], [ref.name for ref in step.objects]) for step in program.steps]
 
 
 def numbered(program: Program, knowledge: Knowledge) -> str:
-    """A program in the prompt format of planning papers: `Task: ...` and `Step 1: ...`."""
+    """Return a program in the prompt format of planning papers: `Task: ...` and `Step 1: ...`."""
     steps = (f"Step {number}: {text}" for number, text in enumerate(sentences(program, knowledge), 1))
     return "\n".join((f"Task: {program.title}", *steps))
 

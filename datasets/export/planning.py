@@ -98,7 +98,7 @@ ASKED = 32
 
 
 def _firsts(dataset: Dataset, names: list[str]) -> Iterator[Task]:
-    """The first task of each program with a task, in the order of the names."""
+    """Yield the first task of each program with a task, in the order of the names."""
     found: dict[str, Task] = {}
     for task in tasks(dataset, Wanted(tuple(names))):
         found.setdefault(task.program_id, task)
@@ -117,7 +117,7 @@ def dispensable(knowledge: Knowledge) -> dict[str, tuple[str, ...]]:
 
 
 def helpful(task: Task) -> tuple[str, ...]:
-    """The actions that a plan may need: those with an effect, and with objects in the problem."""
+    """Return the actions that a plan may need: those with an effect, and with objects in the problem."""
     home = task.world.home
     there = sum(1 << home.index[node] for node in task.objects)
     spare = dispensable(home.knowledge)
@@ -148,7 +148,7 @@ def solve(task: Task) -> Outcome:
 
 
 def steps_of(task: Task, plan: Any) -> tuple[Step, ...]:
-    """A plan of unified-planning as steps bound to nodes."""
+    """Return a plan of unified-planning as steps bound to nodes."""
     nodes = {name: node for node, name in object_names(task).items()}
     home = task.world.home
     actions = {name.lower(): name for name in home.knowledge.actions} | {TO_DOOR.lower(): "Walk"}

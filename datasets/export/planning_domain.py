@@ -2,9 +2,9 @@
 
 `kb.tools.pddl.domain` writes derived predicates as axioms, which few planners support. Here they are expanded where
 they are used, and the character is an object of type `agent`. Every thing of a problem has an INSIDE edge to its room
-from the start; all actions keep it so, and a room is found without following containers. Left out are two actions
-(the group `unplanned`, which Walk, PutBack and PutIn replace), the place that Grab remembers for one of them, and that
-what is watched must be on, which is an option.
+from the start; all actions keep it so, and a room is found without following containers. Three parts are left out: two
+actions (the group `unplanned`, which Walk, PutBack and PutIn replace), the place that Grab remembers for one of them,
+and the optional precondition that a watched thing is on.
 
 Closed doors stop a walk as in the engine (`Rules.doors`): a problem says by `blocks` which doors part which rooms. To a
 door that is closed between the character and the door's own room it walks on its own side (`this-side`: from where, the
@@ -26,7 +26,7 @@ TO_DOOR = "WalkToDoor"
 
 
 def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bool = True) -> str:
-    """The domain as text.
+    """Return the domain as text.
 
     Args:
         knowledge: of which the executed actions are written.
@@ -84,28 +84,28 @@ class _Writer(Writer):
         self._numbers = count(1)
 
     def action(self, action: Action, name: str = "", more: Iterable[str] = ()) -> Iterator[str]:
-        """The lines of one action; closed doors block a walk."""
+        """Yield the lines of one action; closed doors block a walk."""
         self._numbers = count(1)
         stopped = [f"(not {_STOPPED})"] if action.name in self.knowledge.group("walks") else []
         return super().action(action, name, more or stopped)
 
     def to_door(self, walk: Action) -> list[str]:
-        """A walk to the only closed door before its room: it ends in the room on this side."""
+        """Return a walk to the only closed door before its room: it ends in the room on this side."""
         self._on_own_side = True
         lines = list(self.action(walk, TO_DOOR, [_STOPPED_BY_ITSELF]))
         self._on_own_side = False
         return lines
 
     def fresh(self, name: str, number: object = "") -> str:
-        """A variable that a formula binds."""
+        """Return a variable that a formula binds."""
         return f"?{name}{next(self._numbers)}"
 
     def relation(self, name: str) -> str:
-        """As `relation_predicate`."""
+        """Return the name of a relation, as `relation_predicate` does."""
         return relation_predicate(name)
 
     def derived(self, literal: Literal[Term], names: Names) -> str:
-        """The definition of a derived predicate."""
+        """Return the definition of a derived predicate."""
         if literal.name == "close" and not self._loose:
             return self.plain(literal._replace(name="CLOSE"), names)
         head, body = self.knowledge.derived[literal.name]
@@ -114,7 +114,7 @@ class _Writer(Writer):
         )
 
     def found(self, term: Term, names: Names, variable: str) -> str:
-        """The condition under which a variable is the thing that a function finds."""
+        """Return the condition under which a variable is the thing that a function finds."""
         thing = names[term.name]
         if self._on_own_side and term.name == "o":
             start = self.fresh("from")
@@ -122,7 +122,7 @@ class _Writer(Writer):
         return f"(and (is-room {variable}) (or (= {thing} {variable}) (inside {thing} {variable})))"
 
     def changes(self, effect: Effect) -> Iterator[Effect]:
-        """An effect as one or more effects, without those on remembered places."""
+        """Yield an effect as one or more effects, without those on remembered places."""
         literal = effect.literal
         if literal.name == "REMEMBERS" or any(term.function == "place" for term in literal.terms):
             return iter(())

@@ -4,10 +4,11 @@ A problem has the execution's initial state; its goal is the execution's changes
 INSIDE and HOLDS edges of the things that it moved. CLOSE and FACING, which describe only the character's position, are
 not goals.
 
-Left out of a problem are things that cannot matter to it. What remains: the character and what it holds, what the goal
-names, what these are INSIDE, up to their rooms, what is ON a seat or bed among them, and every door that is closed or
-is to be. A plan of the pruned problem is one of the whole home, too: what was left out could only take up a hand, hide
-something, stop a walk or occupy a seat, and all that does so is kept.
+A problem leaves out the things that cannot matter to it. It keeps the character and the things that it holds, and the
+things that the goal names. It keeps the things that these are INSIDE, up to their rooms, and things ON a seat or bed
+among them. It keeps every door that is closed or is to be. A plan of the pruned problem is a plan of the whole home,
+too. A thing that was left out could only take up a hand, hide something, stop a walk or occupy a seat, and every thing
+with such an effect is kept.
 """
 
 from collections.abc import Iterator
@@ -81,7 +82,7 @@ def pddl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
-    """The planning task of each execution that has a goal, sorted by the ids of program and execution."""
+    """Yield the planning task of each execution that has a goal, sorted by the ids of program and execution."""
     from hearth.datasets.format.cases import start_of
 
     homes = StoredHomes(dataset)
@@ -96,7 +97,7 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
 
 
 def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
-    """The net change of all ticks."""
+    """Return the net change of all ticks."""
     whole = compose(map(change_of, run.row["ticks"]))
     states = [(*state, True) for state in whole.set_states] + [(*state, False) for state in whole.cleared_states]
     edges = [(edge, True) for edge in whole.added] + [(edge, False) for edge in whole.removed]
@@ -127,13 +128,13 @@ def _objects(world: World, nodes: set[int]) -> list[int]:
 
 
 def _closable(world: World, named: int) -> int:
-    """The doors that are closed at the start or named by the goal."""
+    """Return the doors that are closed at the start or named by the goal."""
     home = world.home
     return home.doors & (named | world.states[STATE_ID["CLOSED"]])
 
 
 def problem(task: Task) -> str:
-    """The problem as text."""
+    """Return the problem as text."""
     world, names = task.world, object_names(task)
     agents = {world.home.ids[i] for i in world.home.agents}
     objects = (f"    {name} - {'agent' if node in agents else 'object'}" for node, name in names.items())
@@ -158,7 +159,7 @@ def problem(task: Task) -> str:
 
 
 def object_names(task: Task) -> dict[int, str]:
-    """The PDDL name of each node: `coffee_table_41`."""
+    """Return the PDDL name of each node: `coffee_table_41`."""
     home = task.world.home
     return {node: f"{_word(home.classes[home.index[node]])}_{node}" for node in task.objects}
 
@@ -195,8 +196,9 @@ def _facts(task: Task, names: dict[int, str]) -> Iterator[str]:
 
 
 def _blocked(task: Task, names: dict[int, str]) -> Iterator[str]:
-    """The rooms that each door, when closed, separates, alone or together with other doors; and for each door, the
-    rooms from which each adjacent room is reachable without passing it.
+    """Yield the rooms that each door, when closed, separates, alone or together with other doors.
+
+    The second result has for each door the rooms from which each adjacent room is reachable without passing it.
     """
     home = task.world.home
     there = mask_of(home.index[node] for node in task.objects)
@@ -222,7 +224,7 @@ _TOGETHER = 3
 
 
 def _reached(home: Home, room: int, closed: int) -> int:
-    """The rooms reachable from a room with some doors closed."""
+    """Return the rooms reachable from a room with some doors closed."""
     reached, open_doors = 1 << room, home.doors & ~closed
     while True:
         more = reached
@@ -235,7 +237,7 @@ def _reached(home: Home, room: int, closed: int) -> int:
 
 
 def _kinds(world: World, i: int, known: set[str]) -> Iterator[str]:
-    """The facts about a thing's kind and states."""
+    """Yield the facts about a thing's kind and states."""
     home = world.home
     bit, name = 1 << i, home.classes[i]
     if home.rooms & bit:

@@ -50,7 +50,7 @@ def stem(program_id: str) -> str:
 
 
 def print_grounded(program: Program) -> str:
-    """A bound program in the release's format: actions in capitals, `(1.41)` for a bound object."""
+    """Return a bound program in the release's format: actions in capitals, `(1.41)` for a bound object."""
     head = f"{program.title}\n{program.description}\n\n\n"
     lines = []
     for number, step in enumerate(program.steps):

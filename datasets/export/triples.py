@@ -69,7 +69,7 @@ def _knowledge(knowledge: Knowledge) -> Iterator[str]:
 
 
 def iri(kind: str, name: str) -> str:
-    """A valid identifier for any name."""
+    """Return a valid identifier for any name."""
     return f"<{PREFIX.rstrip('#')}/{kind}/{quote(name, safe='')}>"
 
 
@@ -77,6 +77,6 @@ _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\
 
 
 def text(value: str | None) -> str:
-    """A literal, without the control characters that Turtle forbids."""
+    """Return a literal, without the control characters that Turtle forbids."""
     cleaned = "".join(char for char in value or "" if char >= " " or char in "\n\r\t")
     return f'"{cleaned.translate(_ESCAPES)}"'

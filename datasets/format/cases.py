@@ -33,7 +33,7 @@ _SYMMETRIC = "CLOSE"
 
 
 def environment_of(environment: Environment, edges: frozenset[Edge]) -> DifferenceRow:
-    """A sampled environment as a row, at a cost proportional to its difference from the home.
+    """Return a sampled environment as a row, at a cost proportional to its difference from the home.
 
     Args:
         environment: as sampled.
@@ -68,7 +68,7 @@ def _restated(home: Home, states: Mapping[int, Iterable[str]]) -> tuple[tuple[St
 
 
 def difference_of(world: World, home: Home, edges: frozenset[Edge]) -> DifferenceRow:
-    """The difference of an initial world from another home, as a row.
+    """Return the difference of an initial world from another home, as a row.
 
     Args:
         world: an initial world.
@@ -83,7 +83,7 @@ _without = lru_cache(maxsize=32)(without)
 
 
 def home_of(environment: DifferenceRow, base: Home) -> Home:
-    """The home of a row's environment."""
+    """Return the home of a row's environment."""
     change = environment_change(environment)
     if change.removed_nodes:
         base = _without(base, change.removed_nodes)
@@ -94,16 +94,16 @@ class Source(Protocol):
     """A source of homes: a build, or a dataset."""
 
     def home(self, name: str) -> Home:
-        """The home of that name."""
+        """Return the home of that name."""
 
 
 def start_of(environment: DifferenceRow, home: str, homes: Source) -> World:
-    """The initial world of an environment."""
+    """Return the initial world of an environment."""
     return World.start(home_of(environment, homes.home(home)))
 
 
 def run_row(execution: Execution) -> RunRow:
-    """The columns of a run."""
+    """Return the columns of a run."""
     return {
         "rules": next(name for name, rules in RULES.items() if rules == execution.rules),
         "bindings": binding_rows(execution.program),
@@ -120,7 +120,7 @@ def rerun(case: CaseRow, homes: Source) -> Execution:
 
 
 def difference_on_replay(case: CaseRow, homes: Source) -> str:
-    """The difference between a case's replay and its row; empty if they agree."""
+    """Return the difference between a case's replay and its row; empty if they agree."""
     execution = rerun(case, homes)
     if (execution.failure and failure_row(execution.failure)) != case["failure"]:
         expected = case["failure"]["code"] if case["failure"] else "no failure"

@@ -28,7 +28,7 @@ _STATE = itemgetter("node", "state")
 
 
 def node_row(node: Node) -> forms.NodeRow:
-    """A node, as a row."""
+    """Return a node, as a row."""
     box: forms.BoxRow | None = node.box and {"center": _point_row(node.box.center), "size": _point_row(node.box.size)}
     return {
         "id": node.id,
@@ -47,7 +47,7 @@ def _point_row(point: tuple[float, float, float]) -> forms.PointRow:
 
 
 def node_of(row: forms.NodeRow) -> Node:
-    """The inverse of `node_row`."""
+    """Invert `node_row`."""
     box = row["box"]
     return Node(
         row["id"],
@@ -66,7 +66,7 @@ def _point(row: forms.PointRow) -> tuple[float, float, float]:
 
 
 def graph_row(graph: EnvironmentGraph) -> forms.GraphRow:
-    """A graph, edges sorted, each once."""
+    """Return a graph, edges sorted, each once."""
     edges = sorted(edge_set(graph.edges))
     return {
         "nodes": [node_row(node) for node in graph.nodes],
@@ -77,13 +77,13 @@ def graph_row(graph: EnvironmentGraph) -> forms.GraphRow:
 
 
 def graph_of(row: forms.GraphRow) -> EnvironmentGraph:
-    """The inverse of `graph_row`."""
+    """Invert `graph_row`."""
     edges = map(Edge, row["sources"], row["relations"], row["targets"])
     return EnvironmentGraph(tuple(map(node_of, row["nodes"])), tuple(edges))
 
 
 def change_row(change: Change) -> forms.ChangeRow:
-    """A change, as a row."""
+    """Return a change, as a row."""
     # Arrow accepts named tuples and pairs as structs, and reads them much faster than dicts.
     found: Any = {
         "added": list(change.added),
@@ -96,7 +96,7 @@ def change_row(change: Change) -> forms.ChangeRow:
 
 
 def change_of(row: forms.ChangeRow) -> Change:
-    """The inverse of `change_row`."""
+    """Invert `change_row`."""
     return Change(
         tuple(edges_of(row["added"])),
         tuple(edges_of(row["removed"])),
@@ -106,29 +106,29 @@ def change_of(row: forms.ChangeRow) -> Change:
 
 
 def environment_row(change: Change) -> forms.DifferenceRow:
-    """A difference from a home, as a row."""
+    """Return a difference from a home, as a row."""
     came, went = list(map(node_row, change.added_nodes)), list(change.removed_nodes)
     return {"added_nodes": came, "removed_nodes": went, **change_row(change)}
 
 
 def environment_change(row: forms.DifferenceRow) -> Change:
-    """The inverse of `environment_row`."""
+    """Invert `environment_row`."""
     came, went = tuple(map(node_of, row["added_nodes"])), tuple(row["removed_nodes"])
     return replace(change_of(row), added_nodes=came, removed_nodes=went)
 
 
 def edges_of(rows: Iterable[forms.EdgeRow]) -> Iterator[Edge]:
-    """The edges of rows."""
+    """Yield the edges of rows."""
     return map(Edge._make, map(_EDGE, rows))
 
 
 def named(row: stage_rows.NamedRow) -> stage_rows.NamedRow:
-    """The columns of a row that a program keeps from stage to stage."""
+    """Return the columns of a row that a program keeps from stage to stage."""
     return columns_of(stage_rows.NamedRow, row)
 
 
 def step_rows(program: Program) -> list[forms.StepRow]:
-    """A program's steps as rows, without node ids."""
+    """Return a program's steps as rows, without node ids."""
     return [
         {
             "agent": step.agent,
@@ -143,7 +143,7 @@ def step_rows(program: Program) -> list[forms.StepRow]:
 
 
 def steps_of(rows: Iterable[forms.StepRow], bindings: Bindings | None = None) -> tuple[Step, ...]:
-    """The inverse of `step_rows`; objects in `bindings` are bound."""
+    """Invert `step_rows`; objects in `bindings` are bound."""
     bound: Bindings = bindings or {}
     return tuple(
         Step(
@@ -161,13 +161,13 @@ def steps_of(rows: Iterable[forms.StepRow], bindings: Bindings | None = None) ->
 
 
 def program_of(row: forms.ScriptRow, bindings: Bindings | None = None) -> Program:
-    """The program of a row."""
+    """Return the program of a row."""
     lines = tuple(step["line"] for step in row["steps"])
     return Program(row["title"], row["description"], steps_of(row["steps"], bindings), lines)
 
 
 def binding_rows(program: Program) -> list[forms.BindingRow]:
-    """The node of each object in a bound program, as rows."""
+    """Return the node of each object in a bound program, as rows."""
     return [
         {"name": ref.name, "instance": ref.instance, "node": ref.node}
         for ref in program.objects()
@@ -176,12 +176,12 @@ def binding_rows(program: Program) -> list[forms.BindingRow]:
 
 
 def bindings_of(rows: Iterable[forms.BindingRow]) -> Bindings:
-    """The inverse of `binding_rows`."""
+    """Invert `binding_rows`."""
     return {(row["name"], row["instance"]): row["node"] for row in rows}
 
 
 def failure_row(failure: Failure) -> forms.FailureRow:
-    """A failure, as a row."""
+    """Return a failure, as a row."""
     return {
         "code": str(failure.code),
         "tick": failure.tick,
@@ -221,7 +221,7 @@ def condition_rows(conditions: Iterable[Condition]) -> list[forms.ConditionRow]:
 
 
 def conditions_of(rows: Iterable[forms.ConditionRow]) -> Preconditions:
-    """The inverse of `condition_rows`; conditions that came with a program are soft."""
+    """Invert `condition_rows`; conditions that came with a program are soft."""
     return Preconditions(
         tuple(
             Condition(
@@ -238,7 +238,7 @@ def conditions_of(rows: Iterable[forms.ConditionRow]) -> Preconditions:
 
 
 def warning_row(fault: Diagnostic) -> forms.WarningRow:
-    """A diagnostic that does not stop a program."""
+    """Return a diagnostic that does not stop a program."""
     return {
         "code": str(fault.code),
         "line": fault.line,

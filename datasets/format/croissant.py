@@ -15,9 +15,7 @@ from hearth.storage.files import file_digest, write_json
 from hearth.version import RELEASED, VERSION
 
 NAME = "croissant.json"
-SUMMARY = (
-    "Programs of household activities, run in homes: what was done, what changed, what broke and how it was mended."
-)
+SUMMARY = "Programs of household activities, run in homes: their actions, the changes, the failures and the repairs."
 PARQUET = "application/x-parquet"
 LICENSE = "https://spdx.org/licenses/MIT.html"
 
@@ -28,7 +26,9 @@ def write_croissant(folder: Path, strength: str = MILD) -> None:
 
 
 def describe(folder: Path, strength: str) -> dict[str, Any]:
-    """The description as JSON-LD: every Parquet file with its hash, every table with its key and all its columns.
+    """Return the description as JSON-LD.
+
+    Every Parquet file with its hash, every table with its key and all its columns.
 
     Columns within columns are sub-fields, extracted by JSONPath. Of a list within a list mlcroissant 1.1 reads one
     entry only, so the objects of a step are a field for each place; of other such lists it reads the first. References
@@ -89,7 +89,10 @@ def _records(table: str) -> dict[str, Any]:
 
 
 def _field(table: str, column: pa.Field, path: str) -> dict[str, Any]:
-    """A column, or a column within one: the names on the way to it are joined by points, lists marked by `[*]`."""
+    """Return a column, or a column within one.
+
+    The names on the way to it are joined by points, lists marked by `[*]`.
+    """
     listed = pa.types.is_list(column.type)
     kind = column.type.value_type if listed else column.type
     found = _head(table, path, column.name, comment_of(column), listed)
@@ -111,14 +114,14 @@ def _within(table: str, kind: pa.StructType, path: str) -> list[dict[str, Any]]:
 
 
 def _place(table: str, kind: pa.StructType, path: str) -> dict[str, Any]:
-    """The objects that the steps of a list have in one place; empty where a step has fewer."""
+    """Return the objects that the steps of a list have in one place; empty where a step has fewer."""
     place = path[path.rindex("[") + 1 : -1]
     meaning = f"Of each entry, the object in place {place}, from 0; empty where there are fewer."
     return {**_head(table, path, place, meaning, True), "subField": _within(table, kind, path)}
 
 
 def _head(table: str, path: str, name: str, meaning: str, listed: bool) -> dict[str, Any]:
-    """What every field has; `steps[*].objects[0].name` is `programs/steps/objects/0/name`."""
+    """Return the common keys of every field; `steps[*].objects[0].name` is `programs/steps/objects/0/name`."""
     words = path.replace("[*]", "").replace("[", ".").replace("]", "").split(".")
     head = {"@type": "cr:Field", "@id": "/".join([table, *words]), "name": name, "description": meaning}
     return {**head, "repeated": True} if listed else head

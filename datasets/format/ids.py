@@ -18,18 +18,18 @@ OURS = r"^(?:crowd|written)(:3[DP][0-9]{4}[0-9A-Z]{5})\b"
 
 
 def current_id(name: str) -> str:
-    """The id that a record, or what was made of it, has in this version."""
+    """Return the id that a record, or a row made of it, has in this version."""
     return re.sub(OURS, r"written\1", name)
 
 
 def names_of(name: str) -> tuple[str, ...]:
-    """An id as it is, as this version has it, and as 0.1 had it."""
+    """Return an id as it is, as this version has it, and as 0.1 had it."""
     return tuple(dict.fromkeys((name, current_id(name), re.sub(OURS, r"crowd\1", name))))
 
 
 @lru_cache(maxsize=10_000)
 def activity_id(title: str) -> str:
-    """The activity id of a title: lower case, words joined by underscores."""
+    """Return the activity id of a title: lower case, words joined by underscores."""
     return "_".join(re.findall(r"[^\W_]+", title.lower())) or "untitled"
 
 

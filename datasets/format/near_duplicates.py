@@ -56,18 +56,21 @@ def near_sequences(rows: Sequence[Sequence[Hashable]], least: float) -> Iterator
 
 
 def _ranks(texts: Iterable[str]) -> dict[str, int]:
-    """The rank of each letter; the rarer it is, the smaller."""
+    """Return the rank of each letter; the rarer it is, the smaller."""
     seen = Counter(chain.from_iterable(texts))
     return {letter: rank for rank, (letter, _) in enumerate(reversed(seen.most_common()))}
 
 
 def _rarest(letters: str, common: int, rank: Mapping[str, int]) -> set[str]:
-    """The rarest letters, of which every text that shares `common` letters has one; a marker for an empty text."""
+    """Return the rarest letters, of which every text that shares `common` letters has one.
+
+    An empty text has a marker.
+    """
     return set(sorted(letters, key=rank.__getitem__)[: len(letters) - common + 1]) or {""}
 
 
 def _classes(letters: str) -> int:
-    """A bit for each class of letters that a text has: each bit of one of two alone is a letter of it alone."""
+    """Return a bit for each class of letters that a text has: each bit of one of two alone is a letter of it alone."""
     found = 0
     for each in letters:
         found |= 1 << ord(each) % _BITS
@@ -115,13 +118,13 @@ _KINDS, _FEW = 32, 8
 
 
 def _edit_bound(counts: NDArray[np.int32], mine: NDArray[np.int32]) -> NDArray[np.int32]:
-    """(texts,) lower bounds of the edits between texts with (classes, texts) counts and one text's counts."""
+    """Return (texts,) lower bounds of the edits between texts with (classes, texts) counts and one text's counts."""
     found: NDArray[np.int32] = abs(counts - mine[:, None]).sum(0, dtype=counts.dtype)
     return found
 
 
 def _character_counts(texts: Sequence[str]) -> NDArray[np.int32]:
-    """(_KINDS, texts) number of characters of each class in each text."""
+    """Return (_KINDS, texts) number of characters of each class in each text."""
     counts = np.empty((_KINDS, len(texts)), np.int32)
     for place, text in enumerate(texts):
         codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32)

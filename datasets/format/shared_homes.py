@@ -12,7 +12,7 @@ from hearth.storage.files import write_json
 
 
 def common(rows: Iterable[GraphRow]) -> EnvironmentGraph:
-    """The nodes and edges common to all graphs, with the most frequent states."""
+    """Return the nodes and edges common to all graphs, with the most frequent states."""
     nodes: dict[int, Node] = {}
     edges: set[Edge] = set()
     states: dict[int, Counter[tuple[str, ...]]] = defaultdict(Counter)

@@ -1,4 +1,4 @@
-"""Which of a program's sketches is taken: those of people, or those inferred from what the repairs can restore."""
+"""The choice among a program's sketches: people's, or those inferred from the steps that repairs can restore."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _KINDS = {ANNOTATED: _PEOPLE, INFERRED: f"NOT ({_PEOPLE})"}
 
 
 def sketches_query(kind: str = ANNOTATED) -> str:
-    """A query of `program_id` and `keep`: the sketch of each program; one of the kind goes before others.
+    """Return a query of `program_id` and `keep`: the sketch of each program; one of the kind goes before others.
 
     Raises:
         HearthError: BAD_ARGUMENT, for another kind.

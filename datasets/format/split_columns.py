@@ -1,4 +1,4 @@
-"""What splits depend on, by column: hundreds of thousands of programs and their runs take some bytes each."""
+"""The inputs of splits, by column: hundreds of thousands of programs and their runs take some bytes each."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class SplitProgram:
 
 
 def normalised(text: str) -> str:
-    """A text in lower case with single spaces."""
+    """Return a text in lower case with single spaces."""
     return " ".join(text.lower().split())
 
 
@@ -73,7 +73,7 @@ class Near:
 
     @classmethod
     def of(cls, numbers: NDArray[np.int32], values: Sequence[Any], pairs: Pairs) -> Near:
-        """The near duplicates, at least `NEAR`, among values that numbers stand for."""
+        """Return the near duplicates, at least `NEAR`, among values that numbers stand for."""
         one, other = array("i"), array("i")
         for a, b in pairs(values, NEAR):
             one.extend((a, b))
@@ -81,20 +81,20 @@ class Near:
         return cls(numbers, np.array(one, np.int32), np.array(other, np.int32), len(values))
 
     def around(self, programs: NDArray[Any]) -> NDArray[np.bool_]:
-        """(values,) which values those of some programs, given by their places, are similar or equal to."""
+        """Return (values,) which values those of some programs, given by their places, are similar or equal to."""
         mine = np.zeros(self.count + 1, bool)
         mine[self.numbers[programs]] = True
         mine[NOTHING] = False
         return self.like(mine)
 
     def like(self, values: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """(values,) which values are similar or equal to some."""
+        """Return (values,) which values are similar or equal to some."""
         found = values.copy()
         found[self.other[values[self.one]]] = True
         return found
 
     def among(self, values: NDArray[np.bool_], programs: NDArray[Any]) -> NDArray[np.bool_]:
-        """Which of some programs have one of some values; `values` as `around` gives them."""
+        """Return whether each of some programs has one of some values; `values` as `around` gives them."""
         found: NDArray[np.bool_] = values[self.numbers[programs]]
         return found
 
@@ -131,7 +131,7 @@ class SplitPrograms:
 
     @classmethod
     def of(cls, programs: Iterable[SplitProgram]) -> SplitPrograms:
-        """The columns of programs in any order; they are read once. Of programs with one id the first counts."""
+        """Return the columns of programs in any order; they are read once. Of programs with one id the first counts."""
         ids, parts, parents = Texts(), array("b"), _Numbers()
         letters, steps, texts = Letters(), Texts(), _Numbers()
         for each in programs:
@@ -152,7 +152,7 @@ class SplitPrograms:
         return cls(names, rows != NOTHING, root, _taken(parts, rows), near, near_by_text)
 
     def place(self, program_id: str) -> int:
-        """The place of a program.
+        """Return the place of a program.
 
         Raises:
             KeyError: the program is unknown.
@@ -177,14 +177,14 @@ def _in_order(ids: Texts, parents: Iterable[str]) -> tuple[Texts, NDArray[np.int
 
 
 def _above(names: Texts, rows: NDArray[np.int32], parents: _Numbers) -> NDArray[np.int32]:
-    """The place of the parent of each name, or `NOTHING`."""
+    """Return the place of the parent of each name, or `NOTHING`."""
     places = np.array([*map(names.find, parents.known), NOTHING], np.int32)
     above: NDArray[np.int32] = places[_taken(parents.numbers, rows)]  # the last one is that of the number `NOTHING`
     return above
 
 
 def _different(texts: Texts) -> tuple[NDArray[np.int32], Texts]:
-    """The number of each text among the different ones, or `NOTHING` for an empty one; and these.
+    """Return the number of each text among the different ones, or `NOTHING` for an empty one; and these.
 
     A table of all of them would take more memory than they do: equal ones follow each other in order.
     """
@@ -200,13 +200,13 @@ def _different(texts: Texts) -> tuple[NDArray[np.int32], Texts]:
 
 
 def _taken(column: array[int] | NDArray[Any], rows: NDArray[np.int32]) -> NDArray[Any]:
-    """What a column has in some rows, `NOTHING` in the row `NOTHING`."""
+    """Return a column's values in some rows, `NOTHING` in the row `NOTHING`."""
     values = np.append(np.array(column), np.array([NOTHING], np.array(column).dtype))
     return values[rows]
 
 
 def _roots(above: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The last of the places above each, or its own."""
+    """Return the last of the places above each, or its own."""
     root = np.where(above == NOTHING, np.arange(len(above), dtype=np.int32), above)
     while not np.array_equal(higher := root[root], root):
         root = higher

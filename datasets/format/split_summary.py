@@ -1,4 +1,4 @@
-"""What splits are and how much leaks between their parts, beside a random split."""
+"""A summary of splits: their parts, and the leakage between them, compared with a random split."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ def summary(programs: SplitPrograms, runs: Runs, rows: SplitRows, seed: int) -> 
 
 @dataclass(slots=True)
 class Members:
-    """How many runs the parts of a split have, and which programs, as (ids,) masks."""
+    """The runs and programs of a split's parts: counts of runs, and programs as (ids,) masks."""
 
     runs: Counter[str | None] = field(default_factory=Counter)
     programs: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, runs: Iterable[tuple[str, int, str | None]], programs: int) -> Members:
-        """Those of the runs of a split, as `SplitRows.parts` gives them; `programs` is the number of ids."""
+        """Return the members of a split's runs, as `SplitRows.parts` gives them; `programs` is the number of ids."""
         found = cls()
         for _, place, part in runs:
             found.runs[part] += 1
@@ -90,7 +90,7 @@ def _at_random(programs: SplitPrograms, places: Places, tested: int, seed: int) 
 
 
 def leakage(programs: SplitPrograms, train: Places, test: Places) -> dict[str, int]:
-    """Number of test programs with a sibling, similar steps or a similar description in train."""
+    """Return the number of test programs with a sibling, similar steps or a similar description in train."""
     steps, texts = programs.steps, programs.texts
     return {
         "programs": len(test),

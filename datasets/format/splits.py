@@ -2,7 +2,7 @@
 
 Near duplicates are assigned together, whatever their activity: a program and its repaired descendants, programs with
 nearly the same steps, and programs with nearly the same description. If a rule would still separate such a group, its
-programs outside the latest part have none. The leakage that remains is measured, beside that of a random split.
+programs outside the latest part have none. The remaining leakage is measured and compared with that of a random split.
 """
 
 from __future__ import annotations
@@ -33,7 +33,25 @@ In a split by program, a program has one part, or none in some homes; by executi
 """
 
 LEFT_OUT = "left_out"
-"""In names of files, programs without a part in `activities`."""
+"""Name in files for programs without a part in `activities`."""
+
+SHARES = (*PARTS, LEFT_OUT)
+"""The shares of a table that descends from programs; each has files of its own."""
+
+BY_CASE = ("programs", "environments", "executions", "perturbations", "repairs")
+"""Tables that have a row for a program in an environment, each in the share of its program."""
+
+DRAWN = ("frames", "videos", "clips", "demonstration_frames")
+"""Tables of pictures of executions, each row in the share of its program; clips are in the part that they name."""
+
+DESCENDED = (*BY_CASE, "sketches", *DRAWN)
+"""Tables that descend from programs."""
+
+
+def share_of(table: str, part: str | None) -> str:
+    """Return the name of the share of a table that has the rows of a part: `executions.test`."""
+    return f"{table}.{part or LEFT_OUT}"
+
 
 _NONE: Mapping[str, Mapping[str, str | None]] = MappingProxyType({})
 
@@ -75,12 +93,12 @@ def by_activity(programs: SplitPrograms, group: NDArray[np.int32]) -> NDArray[np
 
 
 def part_name(number: int) -> str | None:
-    """The name of a part by its position in `PARTS`; None for `NOTHING`."""
+    """Return the name of a part by its position in `PARTS`; None for `NOTHING`."""
     return None if number == NOTHING else PARTS[number]
 
 
 def held_out(runs: Runs, seed: int) -> str:
-    """The home that is held out; homes are numbered in the order of `Runs.homes`."""
+    """Return the home that is held out; homes are numbered in the order of `Runs.homes`."""
     return runs.homes[derive(seed, "split", "home") % len(runs.homes)] if runs.homes else ""
 
 
@@ -119,7 +137,7 @@ class SplitRows(Iterable[SplitRow]):
                 yield {"split": split, "execution_id": execution_id, "program_id": ids[place], "part": part}
 
     def parts(self, split: str) -> Iterator[tuple[str, int, str | None]]:
-        """For each run in a split its id, the place of its program, and its part; in the order of the ids."""
+        """Yield for each run in a split its id, the place of its program, and its part; in the order of the ids."""
         part_of = self._rule(split)
         for execution_id, place, home in self._runs:
             if split in RULES or split in self._own.get(self._original(place), ()):
@@ -130,7 +148,7 @@ class SplitRows(Iterable[SplitRow]):
         return self._programs.ids[original]
 
     def _rule(self, split: str) -> Callable[[int, str], str | None]:
-        """What gives the part of a run in a split, by the place of its program and its home."""
+        """Return a function that gives the part of a run in a split, by the place of its program and its home."""
         if split == "activities":
             return lambda place, home: part_name(self._part[place])
         if split == "held_out_home":

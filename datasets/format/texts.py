@@ -17,7 +17,7 @@ SURROGATES = 0xD800, 0x800
 
 
 def letter(number: int) -> str:
-    """A character for a number from 0 to a million; small ones have the fewest bytes."""
+    """Return a character for a number from 0 to a million; small ones have the fewest bytes."""
     first, count = SURROGATES
     return chr(number if number < first else number + count)
 
@@ -30,7 +30,7 @@ class Letters(dict[Hashable, str]):
         return given
 
     def text(self, elements: Iterable[Hashable]) -> str:
-        """A sequence of elements as a text."""
+        """Return a sequence of elements as a text."""
         return "".join(map(self.__getitem__, elements))
 
 
@@ -71,7 +71,7 @@ class Texts(Sequence[str]):
         return map(self.__getitem__, range(len(self)))
 
     def order(self) -> NDArray[np.int64]:
-        """(texts,) the places of the texts in alphabetical order; of equal ones, the earlier first.
+        """Return (texts,) the places of the texts in alphabetical order; of equal ones, the earlier first.
 
         Its `data` gives them one at a time; a list of them would take 40 bytes each.
         """
@@ -83,6 +83,6 @@ class Texts(Sequence[str]):
         return np.asarray(pc.sort_indices(column)).view(np.int64)
 
     def find(self, text: str) -> int | None:
-        """The place of a text, where all are in alphabetical order; None if it is none of them."""
+        """Return the place of a text, where all are in alphabetical order; None if it is none of them."""
         place = bisect_left(self, text)
         return place if place < len(self) and self[place] == text else None

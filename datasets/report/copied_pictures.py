@@ -15,7 +15,7 @@ _QUERY = "SELECT file FROM frames WHERE modality = 'rgb' UNION SELECT file FROM 
 
 
 def shown_as(dataset: Dataset) -> dict[str, str]:
-    """What the report calls each picture and film that the tables name and the folder holds."""
+    """Return the report's name for each picture and film that the tables name and the folder holds."""
     found = [name for (name,) in dataset.rows(_QUERY)[1] if name and _source(dataset, name)]
     return {name: f"{FOLDER}/{number}{PurePosixPath(name).suffix}" for number, name in enumerate(found)}
 
@@ -28,9 +28,9 @@ _LOOKS = """SELECT e.program_id, p.file, p.film FROM
 
 
 def pictured(dataset: Dataset) -> dict[str, tuple[str, bool]]:
-    """Program id -> what the report calls a picture of it, "" if there are films only, and whether there is a film.
+    """Return by program id the report's name for a picture of the program, and whether there is a film.
 
-    The picture is one of a step past its middle, not from above if there are others.
+    The name is "" if there are films only. The picture is of a step past its middle, not from above if possible.
     """
     ours = shown_as(dataset)
     found: dict[str, tuple[str, bool]] = {}
@@ -53,7 +53,7 @@ def copy_pictures(dataset: Dataset, to: Path) -> None:
 
 
 def _source(dataset: Dataset, name: str) -> Path | None:
-    """The file of that name in a dataset; None where it is not a file in it, or not a picture."""
+    """Return the file of that name in a dataset; None where it is not a file in it, or not a picture."""
     try:
         path = inside(dataset.folder, name)
     except HearthError:

@@ -27,7 +27,7 @@ class Plan:
 
 
 def plans(dataset: Dataset) -> list[Plan]:
-    """Every home, by name."""
+    """Return every home, by name."""
     _, rows = dataset.rows("SELECT home, rooms, nodes FROM homes ORDER BY home")
     return [
         Plan(home, ", ".join(rooms).replace("_", " "), nodes, draw(dataset.home(home).nodes))
@@ -36,7 +36,7 @@ def plans(dataset: Dataset) -> list[Plan]:
 
 
 def draw(nodes: tuple[Node, ...]) -> str:
-    """A floor plan in metres: rooms with their names, furniture as boxes; z points up the page."""
+    """Return a floor plan in metres: rooms with their names, furniture as boxes; z points up the page."""
     rooms = [(node, node.box) for node in nodes if node.category == "Rooms" and node.box]
     if not rooms:
         return ""
@@ -67,7 +67,7 @@ def _names(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
 
 
 def _room_name(node: Node, box: Box) -> Rectangle:
-    """What the name of a room covers; its height is the letters'."""
+    """Return the area of a room's name; its height is the letters'."""
     x, y, width, _ = _rectangle(box)
     length = max(len(node.class_name), 1)
     size = min(0.35, 1.6 * (width - 0.3) / length)
@@ -82,8 +82,10 @@ _LONGEST, _LETTER, _LEGIBLE = 0.24, 0.56, 0.085
 
 
 def _furniture_names(nodes: tuple[Node, ...]) -> Iterator[str]:
-    """The names of furniture in which they fit, along its longer side, over what stands there as in
-    `homes/floor_plan_drawing.py`; those of mats where nothing stands on them.
+    """Yield the names of furniture in which they fit, along its longer side, above the things on it as in
+    `homes/floor_plan_drawing.py`.
+
+    Names of mats are given where nothing is on them.
     """
     drawn = list(_furniture(nodes))
     taken = [_room_name(node, node.box) for node in nodes if node.category == "Rooms" and node.box]
@@ -110,7 +112,7 @@ def _overlap(one: Rectangle, other: Rectangle) -> bool:
 
 
 def _furniture(nodes: tuple[Node, ...]) -> Iterator[tuple[Node, Rectangle]]:
-    """The things that are large enough to be drawn, and where, the largest first."""
+    """Yield the things that are large enough to be drawn, and where, the largest first."""
     drawn = [(node, _rectangle(node.box)) for node in nodes if node.box and node.category not in _SHELL]
     for node, at in sorted(drawn, key=lambda each: -each[1][2] * each[1][3]):
         if at[2] * at[3] >= _SMALLEST and node.category != "Doors":

@@ -28,7 +28,7 @@ class Figure:
 
 
 def figures(dataset: Dataset) -> list[Figure]:
-    """Every figure with a non-empty result."""
+    """Return every figure with a non-empty result."""
     found = []
     for each in packaged("hearth.datasets.report", "figures.yaml"):
         columns, rows = dataset.rows(each["query"])

@@ -31,7 +31,7 @@ def chosen(dataset: Dataset, most: int) -> list[str]:
 
 
 def write_replays(dataset: Dataset, to: Path, most: int) -> dict[str, tuple[int, int]]:
-    """Write what the pages of runs play: `data/home-N.js` of each home, `data/replay-N.js` of each run.
+    """Write the data that the pages of runs play: `data/home-N.js` of each home, `data/replay-N.js` of each run.
 
     Args:
         dataset: whose runs they are.

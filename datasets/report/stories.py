@@ -31,7 +31,7 @@ class Stories:
 
     @cached_property
     def pictures(self) -> dict[str, str]:
-        """What the report calls each picture and film."""
+        """Return the report's name for each picture and film."""
         return shown_as(self.dataset)
 
     @cached_property
@@ -114,7 +114,7 @@ class _Home:
                 self.edges[edge.target].add(edge)
 
     def around(self, shown: set[int], environment: DifferenceRow) -> WorkingGraph:
-        """The nodes in `shown` at the start, and their edges."""
+        """Return the nodes in `shown` at the start, and their edges."""
         edges = (edge for node in shown for edge in self.edges.get(node, ()))
         graph = WorkingGraph((self.nodes[node] for node in shown & self.nodes.keys()), edges)
         change = replace(
@@ -133,8 +133,8 @@ def _about(change: Change, shown: set[int]) -> Change:
 
 
 def _graph(graph: WorkingGraph, names: dict[int, str], shown: set[int], people: set[int]) -> Row:
-    # Rooms contain everything, and pictures face everything: only locations of named things, and what characters face,
-    # are shown.
+    # Rooms contain everything, and pictures face everything. Only locations of named things, and nodes that characters
+    # face, are shown.
     kept = sorted(e for e in graph.edges if e.source in shown and (e.relation != "FACING" or e.source in people))
     kept = kept[:_MOST_RELATIONS]
     nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & graph.nodes.keys())})
@@ -177,7 +177,7 @@ def _repair(row: RepairRow) -> Row:
 
 
 def _differing(before: list[str], after: list[str]) -> tuple[list[str], list[str]]:
-    """The lines that a repair removes and adds."""
+    """Return the lines that a repair removes and adds."""
     pairs = [
         (before[i:j], after[k:n])
         for tag, i, j, k, n in SequenceMatcher(None, before, after, autojunk=False).get_opcodes()

@@ -34,12 +34,12 @@ _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, pare
 def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unseen, replays: int = 0) -> int:
     """Write the report of a dataset into a folder; the same files for any number of workers.
 
-    `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so data is in scripts:
-    `data/programs.js` has a short row per program, `data/stories-N.js` the data of their pages, `data/home-N.js` and
-    `data/replay-N.js` what some runs look like in 3D.
+    `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so data is in scripts.
+    `data/programs.js` has a short row per program, and `data/stories-N.js` the data of their pages. `data/home-N.js`
+    and `data/replay-N.js` have some runs in 3D.
 
     Args:
-        dataset: what is reported.
+        dataset: the dataset to report on.
         to: the folder.
         workers: processes.
         seen: reports the progress.
@@ -74,7 +74,7 @@ def _written(dataset: Dataset, to: Path, workers: int, seen: Seen, replays: int)
 
 
 def _pictured(program: str, looks: Mapping[str, tuple[str, bool]]) -> tuple[str, int]:
-    """A program's picture, or "", and 2 if there is a film of it, 1 if there are pictures, else 0."""
+    """Return a program's picture, or "", and 2 if there is a film of it, 1 if there are pictures, else 0."""
     file, film = looks.get(program, ("", False))
     return file, 2 if film else int(program in looks)
 
@@ -94,7 +94,7 @@ def _page(dataset: Dataset, programs: int) -> str:
 
 
 def _rows(dataset: Dataset) -> list[list[Any]]:
-    """A row per program: id, title, origin, split, steps, number of homes, repairs, failure code."""
+    """Return a row per program: id, title, origin, split, steps, number of homes, repairs, failure code."""
     query = f"""SELECT p.*,
             coalesce(e.homes, 0) AS homes, coalesce(e.code, '') AS code, coalesce(r.repairs, 0) AS repairs
         FROM (SELECT {_ROW} FROM programs) p
@@ -130,7 +130,7 @@ Shard = tuple[int, str, str]
 
 @lru_cache(maxsize=1)
 def _opened(folder: str) -> tuple[Dataset, Stories]:
-    """A dataset and its homes, once a process."""
+    """Return a dataset and its homes, once a process."""
     dataset = Dataset.open(folder)
     return dataset, Stories(dataset)
 

@@ -12,7 +12,9 @@ SAME = 1e-4
 
 
 def best_places(values: np.ndarray, most: int = 1) -> list[int]:
-    """The places of the `most` greatest values; of equal ones the first. -inf is taken only if all values are -inf.
+    """Return the places of the `most` greatest values.
+
+    Of equal values the first is taken. -inf is taken only if all values are -inf.
 
     Args:
         values: scores, (N,), N > 0.

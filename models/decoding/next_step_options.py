@@ -1,4 +1,4 @@
-"""What a program's next step may be: legal in the world as it then is, and afforded by the grammar (thesis A.3)."""
+"""The allowed next steps of a program: legal in the current world, and afforded by the grammar (thesis A.3)."""
 
 from __future__ import annotations
 
@@ -31,15 +31,16 @@ class Partial(NamedTuple):
 
 
 NONE = -1
-"""In place of a node: the step has no such object."""
+"""Number in place of a node: the step has no such object."""
 
 NOTHING = Partial()
 
 
 class Affordances:
-    """For each argument of each action, the nodes of a home whose class the grammar allows: constant for a home.
+    """The nodes of a home that each argument of each action may be, by the grammar: constant for a home.
 
-    Executability asks for it beside the engine (A.3): of programs of legal steps alone, about half are executable.
+    Executability requires affordances as well as the engine (A.3). If every step is legal but affordances are ignored,
+    about half of the programs are executable.
     """
 
     def __init__(self, home: Home) -> None:
@@ -47,7 +48,7 @@ class Affordances:
         self._known: dict[tuple[str, int], int] = {}
 
     def __call__(self, action: str, position: int) -> int:
-        """The nodes, as a bit set."""
+        """Return the nodes, as a bit set."""
         key = action, position
         mask = self._known.get(key)
         if mask is None:
@@ -61,7 +62,7 @@ class Affordances:
 
 
 class _Afforded(dict[str, bool]):
-    """Whether an action affords the classes that were asked for so far."""
+    """A cache of answers: class name to whether the action affords that class."""
 
     def __init__(self, knowledge: Knowledge, action: str, position: int) -> None:
         self._affords = partial(knowledge.affords, action, position)
@@ -96,7 +97,7 @@ class Options:
         return len({*nodes}) == len(nodes) and all(mask >> node & 1 for mask, node in zip(masks, nodes, strict=True))
 
     def without(self, actions: Container[str], repeated: Iterable[tuple[str, int]] = ()) -> Options:
-        """The options without these actions, and without these objects in the first place of an action."""
+        """Return the options without these actions, and without these objects in the first place of an action."""
         masks = {name: found for name, found in self.masks.items() if name not in actions}
         for name, node in repeated:
             if name in masks and node == NONE:
@@ -109,7 +110,7 @@ class Options:
 
     @cached_property
     def firsts(self) -> int:
-        """The nodes that some action takes as its first object."""
+        """Return the nodes that some action takes as its first object."""
         found = 0
         for masks in self.masks.values():
             if masks:
@@ -117,7 +118,7 @@ class Options:
         return found
 
     def actions(self, chosen: Partial) -> list[str]:
-        """The actions that agree with the chosen first object, in alphabetical order."""
+        """Return the actions that agree with the chosen first object, in alphabetical order."""
         if chosen.first is None:
             return sorted(self.masks)
         if chosen.first == NONE:
@@ -125,7 +126,7 @@ class Options:
         return sorted(name for name, masks in self.masks.items() if masks and masks[0] >> chosen.first & 1)
 
     def second(self, chosen: Partial) -> int:
-        """The nodes that the chosen action takes beside the chosen first object."""
+        """Return the nodes that the chosen action takes as second object, given the chosen first object."""
         masks = self.masks[chosen.action or ""]
         return masks[1] & ~(1 << (chosen.first or 0)) if len(masks) > 1 else 0
 
@@ -144,7 +145,7 @@ class Grammar:
         self._known: dict[int, tuple[World, Options]] = {}
 
     def options(self, world: World) -> Options:
-        """What may be done in a world."""
+        """Return the steps that are possible in a world."""
         # By identity: the hash of a world costs more than its options. The world is kept, so that its id stays its own.
         known = self._known.get(id(world))
         if known is None:

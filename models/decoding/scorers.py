@@ -1,4 +1,4 @@
-"""What a model says about the next step, part by part: one interface for all models and all ways of searching."""
+"""A model's scores for the next step, part by part: one interface for all models and all search methods."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Asked(NamedTuple):
         state: the scorer's own, of the steps so far.
         chosen: the parts of the next step chosen before.
         world: after the steps so far; as at the start where decoding is free.
-        options: what may come next; None where decoding is free.
+        options: the allowed next steps; None where decoding is free.
         steps: so far.
     """
 
@@ -46,7 +46,7 @@ class Scores(NamedTuple):
     Attributes:
         values: of an action, in the order of `Scorer.actions`; of a node, in the order of the home's indices. Where the
             first part of a step is a node, one more for a step without objects. Where it is the first part, a last one
-            for the end of the program. -inf for what is never chosen.
+            for the end of the program. -inf for choices that are never made.
         steps: of whole steps, those proposed, in the order of `values`; each bound to nodes.
     """
 
@@ -71,10 +71,12 @@ class Scorer(Protocol):
         """See above."""
 
     def begin(self, worlds: Sequence[World], inputs: Sequence[Any]) -> Sequence[Any]:
-        """The state of each program before its first step, from the world at its start and the model's own input."""
+        """Return the state of each program before its first step, from the world at its start and the model's own
+        input.
+        """
 
     def score(self, asked: Sequence[Asked], part: Part) -> Sequence[Scores]:
-        """The scores of the next part of each program."""
+        """Return the scores of the next part of each program."""
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> Sequence[Any]:
-        """The state of each program after a step; `asked` has the world after it."""
+        """Return the state of each program after a step; `asked` has the world after it."""

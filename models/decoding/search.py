@@ -26,12 +26,12 @@ from hearth.simulation.world.world import World
 
 @dataclass(frozen=True)
 class Search:
-    """How programs are searched for.
+    """Settings of the search for programs.
 
     Attributes:
         beam: programs kept at a time.
         temperature: of sampling; 0 takes the best.
-        constrained: whether only what can be done is chosen.
+        constrained: whether only possible steps are chosen.
         least: steps at least, where something can be done; the empty program runs, too, and says nothing.
         longest: steps at most.
         free_moves: steps in a row at most that only go, look or prepare. Of 1,771 references three have more.
@@ -49,7 +49,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Start:
-    """Where a program is to be written.
+    """The inputs for writing one program.
 
     Attributes:
         world: at the start.
@@ -91,7 +91,7 @@ def decode(scorer: Scorer, starts: Sequence[Start], search: Search = Search()) -
 
     Args:
         scorer: the model.
-        starts: where, and from what.
+        starts: the world and the model's input of each program.
         search: how.
 
     Returns:
@@ -134,7 +134,7 @@ class _Decoder:
     # Choosing the parts of the next step
 
     def _level(self, beams: list[list[_Draft]], part: Part) -> list[list[_Draft]]:
-        """All programs after the choice of one part."""
+        """Return all programs after the choice of one part."""
         open_ = [draft for beam in beams for draft in beam if self._needs(draft, part)]
         if not open_:
             return beams
@@ -153,7 +153,7 @@ class _Decoder:
         return True
 
     def _kept(self, beam: list[_Draft], found: dict[int, list[Choice]]) -> list[_Draft]:
-        """The best drafts of a beam, or random ones; those that this part is not for stay as they are."""
+        """Return the best drafts of a beam, or random ones; those that this part is not for stay as they are."""
         choices = [c for draft in beam for c in found.get(id(draft), [(draft.score, draft)])]
         if len(choices) > self.search.beam:
             scores = np.array([score for score, _ in choices])
@@ -161,7 +161,7 @@ class _Decoder:
         return [draft for _, draft in choices]
 
     def _choices(self, draft: _Draft, part: Part, scores: Scores) -> list[Choice]:
-        """What may follow a draft: as many of the best choices as the beam has, or a random one."""
+        """Return the possible continuations of a draft: the best choices, as many as the beam has, or a random one."""
         allowed = self._allowed(draft, part, scores)
         values = scores.values[allowed]
         if not np.isfinite(values).any():
@@ -181,7 +181,7 @@ class _Decoder:
         return [min(int(np.searchsorted(total, self.starts[row].random.random() * total[-1])), len(values) - 1)]
 
     def _allowed(self, draft: _Draft, part: Part, scores: Scores) -> np.ndarray:
-        """The places in `scores.values` that may be chosen."""
+        """Return the places in `scores.values` that may be chosen."""
         count = len(scores.values)
         if draft.options is None:
             return np.arange(count)
@@ -204,7 +204,7 @@ class _Decoder:
         return np.array(places, dtype=np.int64)
 
     def _with(self, draft: _Draft, part: Part, place: int, scores: Scores) -> _Draft:
-        """The draft with one more part."""
+        """Return the draft with one more part."""
         if part is self.scorer.order[0] and place == len(scores.values) - 1:
             return replace(draft, ended=True, chosen=NOTHING)
         if part is Part.STEP:
@@ -218,7 +218,7 @@ class _Decoder:
     # Doing the step
 
     def _done(self, beams: list[list[_Draft]]) -> list[list[_Draft]]:
-        """All programs after the chosen step."""
+        """Return all programs after the chosen step."""
         flat = [draft if draft.ended else self._after(draft) for beam in beams for draft in beam]
         going = [draft for draft in flat if draft.steps and not draft.ended]
         states = self.scorer.advance([draft.asked() for draft in going], [draft.steps[-1] for draft in going])
@@ -231,13 +231,13 @@ class _Decoder:
         world = draft.world
         if draft.options is not None:
             after = act(world, step, self.starts[draft.row].rules)
-            assert not isinstance(after, Failure), after.message()  # the mask is exactly what the engine does
+            assert not isinstance(after, Failure), after.message()  # the mask is exact, as the engine is
             world = after
         free = draft.free + 1 if step.action in self.free else 0
         return replace(draft, world=world, steps=(*draft.steps, step), chosen=NOTHING, whole=None, free=free)
 
     def _braked(self, draft: _Draft) -> _Draft:
-        """The draft with what may come next, or ended."""
+        """Return the draft with its allowed next choices, or ended."""
         if draft.ended or len(draft.steps) >= self.search.longest:
             return replace(draft, ended=True)
         options = self._options(draft.world, self.starts[draft.row].rules)
@@ -263,7 +263,7 @@ def _allows(options: Options, step: Step, home: Home) -> bool:
 
 
 def _mean(draft: _Draft) -> float:
-    """Its score by step: a sum would prefer short programs."""
+    """Return a draft's score by step: a sum would prefer short programs."""
     return draft.score / (len(draft.steps) + 1)
 
 
@@ -273,7 +273,7 @@ def _step(chosen: Partial, home: Home) -> Step:
 
 
 def numbered(steps: Sequence[Step]) -> tuple[Step, ...]:
-    """Steps bound to nodes, with instances: the nodes of a class are numbered as they are mentioned."""
+    """Return steps bound to nodes, with instances: the nodes of a class are numbered as they are mentioned."""
     instances: dict[str, dict[int | None, int]] = {}
 
     def named(ref: ObjectRef) -> ObjectRef:

@@ -1,1 +1,1 @@
-"""Models whose input is pictures from above of what is done (thesis 5.4.3, A.1)."""
+"""Models whose input is pictures from above of a demonstration (thesis 5.4.3, A.1)."""

@@ -1,4 +1,4 @@
-"""Demonstrations and what is done in them as tensors."""
+"""Demonstrations and their steps as tensors."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Numbers = tuple[int, int, int]
 
 
 class Done(NamedTuple):
-    """What is done before each picture of a demonstration: for training alone.
+    """The steps before each picture of a demonstration, for training alone.
 
     Attributes:
         kept: whether the sketch keeps the step; None at the start.
-        steps: the step's action and classes; 0 for what the vocabulary lacks, and at the start.
+        steps: the step's action and classes; 0 for names that the vocabulary lacks, and at the start.
     """
 
     kept: tuple[bool | None, ...]
@@ -30,7 +30,7 @@ class Done(NamedTuple):
 
 
 class DoneBatch(NamedTuple):
-    """The same of B demonstrations.
+    """The steps of B demonstrations.
 
     Attributes:
         real: (B, L) bool, whether a step is before the picture.
@@ -66,7 +66,7 @@ def _filled(array: np.ndarray, longest: int) -> np.ndarray:
 
 
 def turn(seen: Above, way: int) -> Above:
-    """A demonstration seen from another side: one of eight, of which pictures that are not square have four.
+    """Return a demonstration seen from another side: one of eight, of which pictures that are not square have four.
 
     Args:
         seen: the demonstration.
@@ -86,7 +86,7 @@ def turn(seen: Above, way: int) -> Above:
 
 
 def done_batch(given: Sequence[Done], device: torch.device) -> DoneBatch:
-    """What is done in some demonstrations, as long as the longest of them."""
+    """Return the steps of some demonstrations, padded to the longest of them."""
     longest = max(len(each.kept) for each in given)
     real, kept = torch.zeros(len(given), longest, dtype=torch.bool), torch.zeros(len(given), longest)
     steps = torch.zeros(len(given), longest, 3, dtype=torch.int64)

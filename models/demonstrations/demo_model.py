@@ -46,12 +46,12 @@ Batch = tuple[FrameBatch, StepBatch, DoneBatch]
 
 @dataclass(frozen=True, slots=True)
 class DemoModel(Settings):
-    """A network over colours, one over masks, and what masks show of each class; then an encoder-decoder.
+    """A network over colors, one over masks, and the features of each class in the masks; then an encoder-decoder.
 
     Attributes:
         colours: whether it has the network over colours.
         masks: whether it has the network over masks.
-        facts: whether it sees what the masks show of each class beside the person, and points at classes (ours).
+        facts: whether it reads the features of each class relative to the person, and points at classes (ours).
         whole: its networks look at the whole picture, one of four pixels each way, not around the person.
         guided: the weight of naming each step of the program in training, whether the sketch keeps it or not; 0 for
             sketches alone, as in the thesis.
@@ -74,7 +74,7 @@ class DemoModel(Settings):
     longest: int = 12
 
     def fitting(self) -> None:
-        """The encoder has two directions, and something to read."""
+        """Check that the encoder has two directions, and something to read."""
         self.multiple("hidden", *WAYS)
         if not (self.colours or self.masks or self.facts):
             raise ValueError("the settings `colours`, `masks` and `facts` are false: one of them is true")
@@ -109,7 +109,7 @@ class DemoModel(Settings):
         return model
 
     def network(self, vocabulary: StepVocabulary, known: MaskClasses) -> Writer:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         traits = torch.from_numpy(known.traits)
         embedding = StepEmbedding(vocabulary, self.vector, traits)
         body = FrameBody(
@@ -121,7 +121,7 @@ class DemoModel(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedDemoModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         settings, content = cls.of(checkpoint.settings), checkpoint.content
         vocabulary = StepVocabulary.read(content["vocabulary"])
         known = MaskClasses.read(content["masks"], len(vocabulary.classes))
@@ -140,11 +140,14 @@ class TrainedDemoModel:
     trained: dict[str, Any] = field(default_factory=dict)
 
     def see(self, pictures: Pictures) -> Above:
-        """What pictures show, as the network reads it."""
+        """Return the features of pictures, as the network reads them."""
         return above(pictures.masks, pictures.colours, self.known.person, self.settings.whole)
 
     def sketches(self, demonstrations: Sequence[Above], width: int = 1) -> list[Steps]:
-        """The most probable sketch of each demonstration, by greedy or beam search; none depends on the others."""
+        """Return the most probable sketch of each demonstration, by greedy or beam search.
+
+        No sketch depends on the others.
+        """
         self.writer.eval()
         order = sorted(range(len(demonstrations)), key=lambda place: demonstrations[place].length)
         found: dict[int, Numbers] = {}
@@ -177,7 +180,7 @@ class TrainedDemoModel:
         return Task(self.writer, batches, self.loss, validate, identity)
 
     def loss(self, batch: Batch) -> torch.Tensor:
-        """Of the steps of sketches; `guided` times that of the steps before each picture."""
+        """Return the loss of the steps of sketches, plus `guided` times that of the steps before each picture."""
         frames, sketches, done = batch
         memory: Any = self.writer.body.encode(frames)
         total = self.writer.loss(memory, sketches)
@@ -186,7 +189,7 @@ class TrainedDemoModel:
         return total
 
     def guidance(self, frames: FrameBatch, memory: FrameMemory, done: DoneBatch) -> torch.Tensor:
-        """The loss of naming the step before each picture: whether it is kept, its action, and its classes."""
+        """Return the loss of naming the step before each picture: whether it is kept, its action, and its classes."""
         real = done.real
         kept = functional.binary_cross_entropy_with_logits(memory.kept[real], done.kept[real])
         action = functional.cross_entropy(memory.done[real], done.steps[..., 0][real])
@@ -203,7 +206,7 @@ class TrainedDemoModel:
         )
 
     def done(self, example: Example) -> Done:
-        """What is done before each picture of an example's demonstration: of several steps in a tick the first."""
+        """Return the step before each picture of an example's demonstration: of several steps in a tick, the first."""
         first = [not place or not step.joins for place, step in enumerate(example.steps)]
         steps = [self.vocabulary.numbers(step) or (0, 0, 0) for step in compress(example.steps, first)]
         return Done((None, *compress(example.keep, first)), ((0, 0, 0), *steps))
@@ -217,13 +220,13 @@ class TrainedDemoModel:
         raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.detach().cpu().numpy() for name, value in self.writer.state_dict().items()}
         content = {"vocabulary": self.vocabulary.document(), "masks": self.known.document()}
         return Checkpoint(NAME, asdict(self.settings), content, weights, self.trained)
 
 
 def sketch_lcs(predicted: Sequence[Steps], references: Sequence[Steps]) -> float:
-    """The mean LCS of whole steps; 0 without sketches."""
+    """Return the mean LCS of whole steps; 0 without sketches."""
     scores = score_pairs(zip(predicted, references, strict=True))
     return sum(score.step for score in scores) / len(scores) if scores else 0.0

@@ -18,7 +18,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
 
 BEYOND = 32
-"""Half the width of what masks are pooled over, around the person; pixels."""
+"""Half the width of the area around the person over which masks are pooled, pixels."""
 
 
 def demonstrated(
@@ -30,7 +30,7 @@ def demonstrated(
     seed: int,
     sketches: str,
 ) -> Iterator[tuple[str, Mapping[str, Steps]]]:
-    """The sketches of some executions by each model that reads demonstrations, and by the yardsticks.
+    """Yield the sketches of some executions by each model that reads demonstrations, and by the yardsticks.
 
     The yardsticks take a sketch of training, of the kind that is asked (`annotated` or `inferred`): a random one, and
     that of the demonstration whose masks are most alike.
@@ -68,7 +68,7 @@ def _nearest(there: Demonstrations, train: Sequence[tuple[Steps, str]], names: S
 
 
 def pooled(there: Demonstrations, execution: str) -> NDArray[np.float64]:
-    """The share of each class in the masks around the person, over all pictures: roots, of length 1."""
+    """Return the share of each class in the masks around the person, over all pictures: roots, of length 1."""
     total = np.zeros(1 << 16)
     for mask in there.pictures(execution).masks:
         ys, xs = np.nonzero(mask == there.person)

@@ -1,4 +1,4 @@
-"""Sketches from demonstrations beside sketches from descriptions of the same programs (thesis A.4)."""
+"""Sketches from demonstrations compared with sketches from descriptions of the same programs (thesis A.4)."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def compared(
 def _scores(
     models: Sequence[Path | str], there: Demonstrations, test: Sequence[tuple[Example, str]], beam: int
 ) -> list[tuple[str, list[float]]]:
-    """The LCS of each model's sketches: those that read demonstrations first."""
+    """Return the LCS of each model's sketches: those that read demonstrations first."""
     found: dict[str, list[tuple[str, list[float]]]] = {"film": [], "text": []}
     for model in models:
         name, trained = restore(model)
@@ -131,7 +131,7 @@ def _range(count: int) -> str:
 def _groups(
     rows: Sequence[tuple[tuple[Example, str], Sequence[float]]], key: Callable[[Example], str], most: int
 ) -> tuple[Group, ...]:
-    """Groups by a key: in the order of the first words, or the largest `most`."""
+    """Return groups by a key: in the order of the first words, or the largest `most`."""
     members: dict[str, list[Sequence[float]]] = {}
     for (each, _), values in rows:
         members.setdefault(key(each), []).append(values)

@@ -26,10 +26,11 @@ FILE = "above.npz"
 """Name of a demonstration's arrays in its folder."""
 
 MOST_PICTURES = 2_000
-"""Of a demonstration, which has one for each tick: programs of people have less than a hundred."""
+"""Pictures of a demonstration at most; it has one for each tick, and programs of people have less than a hundred ticks.
+"""
 
 MOST_CLASSES = 2_048
-"""That pictures show: each is looked at by itself. The knowledge has some hundreds."""
+"""Classes in pictures at most: each is looked at by itself. The knowledge has some hundreds."""
 
 
 class Pictures(NamedTuple):
@@ -60,7 +61,7 @@ class Demonstrations:
 
     @classmethod
     def of(cls, dataset: Dataset) -> Demonstrations:
-        """All that a dataset has.
+        """Return all that a dataset has.
 
         Raises:
             HearthError: UNKNOWN_ID, if there are none.
@@ -75,20 +76,20 @@ class Demonstrations:
         return cls(dataset, dict(rows), dataset.knowledge.objects["character"].id)
 
     def of_example(self, example: Example) -> str:
-        """The execution of an example's program that has a demonstration; "" if none has."""
+        """Return the execution of an example's program that has a demonstration; "" if none has."""
         return next((name for name in example.executions if name in self.files), "")
 
     def pictures(self, execution: str) -> Pictures:
-        """The pictures of an execution.
+        """Return the pictures of an execution.
 
         Raises:
-            HearthError: DAMAGED_FILE, if its arrays are not what the table says.
+            HearthError: DAMAGED_FILE, if its arrays differ from the table's facts.
         """
         file = self.files[execution]
         return arrays(read_input(inside(self.dataset.folder, file), LARGEST), file)
 
     def pictures_of(self, example: Example, execution: str) -> Pictures:
-        """The pictures of an example's execution, to learn what is done between them.
+        """Return the pictures of an example's execution, to learn the steps between them.
 
         Raises:
             HearthError: DAMAGED_FILE, as of `pictures`, or if they are not one more than the ticks of the program, or
@@ -107,7 +108,7 @@ class Demonstrations:
 
 
 def read_pictures(path: Path) -> Pictures:
-    """The pictures of a file, or of a folder with one.
+    """Return the pictures of a file, or of a folder with one.
 
     Raises:
         HearthError: MISSING_FILE; DAMAGED_FILE, if the file holds something else.
@@ -126,7 +127,7 @@ def is_demonstration(text: str) -> bool:
 
 
 def arrays(data: bytes, file: str) -> Pictures:
-    """The pictures of an .npz file as `rendering.film.pictures_from_above` stores them.
+    """Return the pictures of an .npz file as `rendering.film.pictures_from_above` stores them.
 
     Raises:
         HearthError: as of `film_array`.
@@ -144,6 +145,6 @@ def arrays(data: bytes, file: str) -> Pictures:
 
 
 def shown(demonstrations: Demonstrations, examples: Sequence[Example]) -> list[tuple[Example, str]]:
-    """The examples that have a demonstration, with its execution."""
+    """Return the examples that have a demonstration, with its execution."""
     found = ((each, demonstrations.of_example(each)) for each in examples)
     return [(each, name) for each, name in found if name]

@@ -1,5 +1,7 @@
-"""Pictures from above to steps: a network over the colours and one over the masks, fused with what masks show of each
-class, then recurrent over the pictures; the decoder attends to pictures (thesis 5.4.3, A.1).
+"""The network from pictures from above to steps (thesis 5.4.3, A.1).
+
+One network reads the colors and one the masks. Their outputs are fused with the features of each class in the masks. A
+recurrent network then reads the pictures in order, and the decoder attends to them.
 
 The thesis's network for colours is a ResNet-18 with weights of ImageNet, which are not to be had: ours is small and
 learns from nothing but these pictures.
@@ -25,7 +27,7 @@ COLOUR = 8
 """Planes of the masks: each class has a colour, which is learned from its properties."""
 
 SEEN = 64
-"""Numbers of what a network sees around the person."""
+"""Numbers in the output of a network that reads the area around the person."""
 
 UNNAMED = 0.15
 """The share of classes whose learned numbers are left out in training, so that new ones can be understood."""
@@ -52,17 +54,17 @@ class FrameBatch(NamedTuple):
 
     @property
     def inputs(self) -> Tensor:
-        """What a writer counts demonstrations by."""
+        """Return the tensor whose rows a writer counts as demonstrations."""
         return self.classes
 
     @property
     def words(self) -> Tensor:
-        """The same."""
+        """Return the same tensor as `inputs`."""
         return self.inputs
 
     @property
     def mask(self) -> Tensor:
-        """(B, L) bool: whether there is a picture."""
+        """Return (B, L) bool: whether there is a picture."""
         device = self.classes.device
         return torch.arange(self.classes.shape[1], device=device) < self.lengths.to(device)[:, None]
 
@@ -89,7 +91,7 @@ class FrameMemory(NamedTuple):
     about: Tensor
 
     def rows(self, chosen: Tensor) -> FrameMemory:
-        """Some of the demonstrations."""
+        """Return some of the demonstrations."""
         return FrameMemory(*(part[chosen] for part in self))
 
 
@@ -113,7 +115,7 @@ class MaskNetwork(nn.Module):
         self.last = nn.Linear(32 * 16, SEEN)
 
     def forward(self, masks: Tensor, traits: Tensor) -> Tensor:
-        """(N, G, G) classes and (C, traits) -> (N, SEEN)."""
+        """Map (N, G, G) classes and (C, traits) to (N, SEEN)."""
         planes = self.colour(traits)[masks].permute(0, 3, 1, 2)
         return functional.relu(self.last(self.layers(planes)))
 
@@ -127,7 +129,7 @@ class ImageNetwork(nn.Module):
         self.last = nn.Linear(32 * 16, SEEN)
 
     def forward(self, colours: Tensor) -> Tensor:
-        """(N, 3, S, S) -> (N, SEEN)."""
+        """Map (N, 3, S, S) to (N, SEEN)."""
         return functional.relu(self.last(self.layers(colours)))
 
 
@@ -141,7 +143,7 @@ class FrameBody(Seq2SeqBody):
         hidden: numbers in a hidden state.
         size: of the vector of a step.
         dropout: share of numbers left out in training.
-        sees: whether there are networks over colours, over masks, and of what masks show of each class.
+        sees: whether it has a network over colors, one over masks, and the features of each class in the masks.
     """
 
     def __init__(
@@ -173,7 +175,10 @@ class FrameBody(Seq2SeqBody):
         nn.init.normal_(self.vector.weight, std=0.1)
 
     def encode(self, batch: FrameBatch | FrameMemory) -> FrameMemory:  # type: ignore[override]
-        """Read demonstrations; what was read already stays as it is. No state depends on another demonstration."""
+        """Read demonstrations, and return a batch that was read already as it is.
+
+        No state depends on another demonstration.
+        """
         if isinstance(batch, FrameMemory):
             return batch
         tokens = self._tokens(batch)  # (B, L, K, H)
@@ -196,7 +201,7 @@ class FrameBody(Seq2SeqBody):
         return found * (batch.classes > 0)[..., None]
 
     def _frames(self, batch: FrameBatch, tokens: Tensor) -> Tensor:
-        """(B, L, width) of each picture; networks look at those that there are."""
+        """Return (B, L, width) of each picture; networks look at those that there are."""
         parts = []
         if self.facts:
             nearest = batch.numbers[..., :1]
@@ -209,7 +214,7 @@ class FrameBody(Seq2SeqBody):
         return torch.cat(parts, -1)
 
     def _mentioned(self, batch: FrameBatch, about: Tensor) -> Tensor:
-        """(B, L, C) for each class the most probable of the seen classes that may stand for it."""
+        """Return (B, L, C) for each class the most probable of the seen classes that may stand for it."""
         found = torch.zeros(*about.shape[:2], len(self.traits), device=about.device)
         for place in range(self.served.shape[1]):
             numbers = self.served[:, place][batch.classes]  # (B, L, K)
@@ -220,7 +225,10 @@ class FrameBody(Seq2SeqBody):
         return found
 
     def start(self, memory: FrameMemory) -> State:  # type: ignore[override]
-        """The state before the first step: from the mean of the pictures; nothing attended to, nothing passed."""
+        """Return the state before the first step.
+
+        From the mean of the pictures; nothing attended to, nothing passed.
+        """
         weights = memory.mask[..., None].to(memory.states.dtype)
         mean = (memory.states * weights).sum(1) / weights.sum(1)  # (B, H)
         return self.bridge(mean).tanh(), torch.zeros_like(mean), torch.zeros_like(memory.kept)
@@ -242,7 +250,7 @@ class FrameBody(Seq2SeqBody):
 
 
 def _spread(found: Tensor, real: Tensor) -> Tensor:
-    """(N, F) of the pictures that there are as (B, L, F)."""
+    """Return (N, F) of the pictures that there are as (B, L, F)."""
     return torch.zeros(*real.shape, found.shape[-1], device=found.device, dtype=found.dtype).masked_scatter(
         real[..., None], found
     )

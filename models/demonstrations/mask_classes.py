@@ -35,7 +35,7 @@ class MaskClasses:
 
     @classmethod
     def of(cls, knowledge: Knowledge, vocabulary: StepVocabulary) -> MaskClasses:
-        """Those of what is known."""
+        """Return the classes of the knowledge and the vocabulary."""
         things, numbers = knowledge.objects, vocabulary.class_numbers
         serves: dict[str, list[int]] = {name: [number] for name, number in numbers.items()}
         for name, number in numbers.items():
@@ -50,13 +50,13 @@ class MaskClasses:
         )
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return the classes as JSON."""
         return {"ids": [*self.ids], "properties": [[*each] for each in self.properties],
                 "serves": [[*each] for each in self.serves], "person": self.person}  # fmt: skip
 
     @classmethod
     def read(cls, document: Mapping[str, Any], classes: int) -> MaskClasses:
-        """Those of `document`, which may be a stranger's, for a vocabulary of some classes.
+        """Return the classes of `document`, which may be a stranger's, for a vocabulary of some classes.
 
         Raises:
             KeyError: a part is missing.
@@ -77,7 +77,7 @@ class MaskClasses:
 
     @cached_property
     def rows(self) -> NDArray[np.int64]:
-        """(65536,) the vocabulary's number of each class number; 0 for the background and for others."""
+        """Return (65536,) the vocabulary's number of each class number; 0 for the background and for others."""
         found = np.zeros(1 << 16, np.int64)
         found[list(self.ids)] = np.arange(1, len(self.ids) + 1)
         found[0] = 0
@@ -85,7 +85,10 @@ class MaskClasses:
 
     @cached_property
     def traits(self) -> NDArray[np.float32]:
-        """(classes, traits) whether a class has a property; the last is of people, the one before of all classes."""
+        """Return (classes, traits) whether a class has a property.
+
+        The last is of people, the one before of all classes.
+        """
         known = sorted({name for each in self.properties for name in each})
         found = np.zeros((len(self.ids), len(known) + 2), np.float32)
         for number, each in enumerate(self.properties):
@@ -96,7 +99,7 @@ class MaskClasses:
 
     @cached_property
     def served(self) -> NDArray[np.int64]:
-        """(classes + 1, MOST_SERVED) `serves` as an array; 0 fills up."""
+        """Return (classes + 1, MOST_SERVED) `serves` as an array; 0 fills up."""
         found = np.zeros((len(self.ids) + 1, MOST_SERVED), np.int64)
         for number, each in enumerate(self.serves, 1):
             found[number, : len(each)] = each

@@ -1,7 +1,7 @@
-"""What pictures from above show of each class beside the person, and around the person, as arrays.
+"""Features of pictures from above, as arrays: of each class relative to the person, and of the area around the person.
 
-The person does everything: what is near it, and what has changed since the picture before, is what a step is about.
-Lengths are pixels of the picture, some four centimetres each.
+The person performs every action. A step is therefore about objects near the person and about changes since the previous
+picture. Lengths are pixels of the picture, about four centimeters each.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ MOST_SEEN = 16
 """Classes of a picture at most: those that are nearest to the person or have changed most."""
 
 NUMBERS = 10
-"""Of a class in a picture, see `_numbers`."""
+"""Number of features of a class in a picture, see `_numbers`."""
 
 PEOPLE = 8
-"""Of the person in a picture, see `_person`."""
+"""Number of features of the person in a picture, see `_person`."""
 
 AROUND = 32
-"""Half the width of what is looked at around the person."""
+"""Half the width of the area that is read around the person, pixels."""
 
 CELLS = 22
 """Width of the masks around the person."""
@@ -33,7 +33,7 @@ EVERY = 4
 """One of how many pixels of the whole picture is looked at, each way."""
 
 REACH = 3.0
-"""How far from the person what touches it is."""
+"""Largest distance from the person at which a pixel counts as touching the person, pixels."""
 
 FADES = 8.0
 """The distance from the person at which nearness has fallen to a third."""
@@ -66,7 +66,7 @@ class Above(NamedTuple):
 
 
 class _Window(NamedTuple):
-    """What is around the person in a picture.
+    """The area around the person in a picture.
 
     Attributes:
         mask: class numbers.
@@ -81,7 +81,7 @@ class _Window(NamedTuple):
 
 
 def above(masks: NDArray[np.uint16], colours: NDArray[np.uint8], person: int, whole: bool = False) -> Above:
-    """What pictures show.
+    """Return the features of pictures.
 
     Args:
         masks: (T, H, W) class numbers.
@@ -106,7 +106,7 @@ def above(masks: NDArray[np.uint16], colours: NDArray[np.uint8], person: int, wh
 
 
 def _middles(bodies: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """The middle (x, y) of the person in each picture; where it is not seen, that of the picture before."""
+    """Return the middle (x, y) of the person in each picture; where it is not seen, that of the picture before."""
     found = []
     last = bodies.shape[2] / 2, bodies.shape[1] / 2
     for body in bodies:
@@ -138,10 +138,11 @@ def _numbers(
     before: dict[int, float],
     person: int,
 ) -> tuple[tuple[NDArray[np.uint16], NDArray[np.float32]], dict[int, float]]:
-    """The classes of a picture with (K, NUMBERS) of each, and how near each class is, for the next picture.
+    """Return the classes of a picture with (K, NUMBERS) of each, and how near each class is, for the next picture.
 
-    Nearness; what touches the person; what is around it; where (x, y) its nearest pixels are; what of it has appeared
-    and what has gone since the picture before; nearness then; growth since the first picture; whether it is nearest.
+    The numbers are: nearness; amount that touches the person; amount around the person; (x, y) of its nearest pixels;
+    amounts that appeared and disappeared since the previous picture; nearness in that picture; growth since the first
+    picture; and whether the class is nearest.
     """
     appeared, gone = np.bincount(mask[changed], minlength=1 << 16), np.bincount(old[changed], minlength=1 << 16)
     near = np.flatnonzero(np.bincount(window.mask.ravel(), minlength=1 << 16))
@@ -186,8 +187,11 @@ def _person(
     number: int,
     count: int,
 ) -> NDArray[np.float32]:
-    """Of the person: seen; size; how much larger than before; how far it moved, and whether; what else has changed;
-    how much of the demonstration is over; how long it is."""
+    """Return the person's features.
+
+    Visible; size; growth since the picture before; distance moved, and whether; area that has changed elsewhere; share
+    of the demonstration that is over; its length.
+    """
     size, past = np.count_nonzero(body), np.count_nonzero(body_before)
     moved = float(np.hypot(middle[0] - old[0], middle[1] - old[1]))
     return np.array(

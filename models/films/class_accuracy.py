@@ -13,7 +13,7 @@ MEASURED: dict[str, Callable[[Instruction], Hashable]] = {
     "objects": lambda done: done.objects,
     "steps": lambda done: done,
 }
-"""What of an instruction each column of tables 4.2 and 4.3 compares."""
+"""The part of an instruction that each column of tables 4.2 and 4.3 compares."""
 
 
 def accuracies(wanted: Sequence[Instruction], named: Sequence[Instruction]) -> dict[str, float]:

@@ -35,7 +35,7 @@ class ClassTable:
         properties: of the classes, as sorted lists, from row 1.
         actions: that training has, sorted.
         objects: how many objects each of them takes.
-        named: rows that are objects in training: what can be named although it is not seen.
+        named: rows that are objects in training: things that can be named although they are not visible.
         afforded: (actions, 2, rows) whether an action's first or second object may be of a class.
     """
 
@@ -49,7 +49,7 @@ class ClassTable:
 
     @classmethod
     def of(cls, knowledge: Knowledge, done: Sequence[Instruction]) -> ClassTable:
-        """Those of what is known, and of the instructions of training clips."""
+        """Return the classes of the knowledge and of the instructions of training clips."""
         things = [*knowledge.objects.values()]
         for each in done:
             if len(each.objects) > PLACES or not all(name in knowledge.objects for name in each.objects):
@@ -61,7 +61,7 @@ class ClassTable:
         for number, action in enumerate(actions):
             for place in range(counts[action]):
                 afforded[number, place, 1:] = [knowledge.affords(action, place, thing.name) for thing in things]
-        for each in done:  # what is done in training can be done
+        for each in done:  # an action of training affords its objects
             for place, name in enumerate(each.objects):
                 afforded[actions.index(each.action), place, row[name]] = True
         return cls(
@@ -75,7 +75,7 @@ class ClassTable:
         )
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return the table as JSON."""
         packed = ["".join("01"[bit] for bit in row) for row in self.afforded.reshape(-1, len(self) + 1).astype(int)]
         classes = [[*row] for row in zip(self.ids, self.names, map(list, self.properties), strict=True)]
         actions = [[*row] for row in zip(self.actions, self.objects, strict=True)]
@@ -83,7 +83,7 @@ class ClassTable:
 
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> ClassTable:
-        """That of `document`, which may be a stranger's.
+        """Return the table of `document`, which may be a stranger's.
 
         Raises:
             KeyError: a part is missing.
@@ -114,12 +114,12 @@ class ClassTable:
 
     @property
     def person(self) -> int:
-        """The number of people in masks."""
+        """Return the number of people in masks."""
         return self.ids[self.names.index(PERSON)]
 
     @cached_property
     def rows(self) -> NDArray[np.int64]:
-        """(65536,) the row of each class number; 0 is the background, whatever class has that number."""
+        """Return (65536,) the row of each class number; 0 is the background, whatever class has that number."""
         found = np.zeros(1 << 16, np.int64)
         found[list(self.ids)] = np.arange(1, len(self) + 1)
         found[0] = 0
@@ -127,7 +127,10 @@ class ClassTable:
 
     @cached_property
     def traits(self) -> NDArray[np.float32]:
-        """(rows, traits) whether a class has a property; the last is of people, the one before of all classes."""
+        """Return (rows, traits) whether a class has a property.
+
+        The last is of people, the one before of all classes.
+        """
         known = sorted({name for each in self.properties for name in each})
         found = np.zeros((len(self) + 1, len(known) + 2), np.float32)
         for number, each in enumerate(self.properties, 1):
@@ -137,7 +140,7 @@ class ClassTable:
         return found
 
     def numbers(self, done: Instruction) -> tuple[int, int, int]:
-        """The numbers of an action and of the rows of its objects; -1 for what training does not have, 0 for none."""
+        """Return the numbers of an action and of its objects' rows; -1 for names that training lacks, 0 for none."""
         action = self._action.get(done.action, -1)
         first, second = (*(self._row.get(name, -1) for name in done.objects), 0, 0)[:PLACES]
         return action, first, second

@@ -18,11 +18,11 @@ from hearth.models.text.text_batches import InputBatch
 
 @dataclass(frozen=True)
 class Doubt:
-    """What training does to films: a classifier is surer of those that it learned from than of new ones.
+    """Noise that training adds to films: a classifier is surer of its own training films than of new ones.
 
     Attributes:
         left_out: share of clips that are left out.
-        mistaken: share of clips that are taken for what another clip of some film of the batch shows.
+        mistaken: share of clips that get the label of another clip of some film of the batch.
         flattened: probabilities are raised to a power between this one and 1, the same for a film.
     """
 
@@ -32,13 +32,19 @@ class Doubt:
 
 
 def rows_of(vocabulary: StepVocabulary, table: ClassTable) -> NDArray[np.int64]:
-    """(C,) the row of a classifier's table for each class of a vocabulary; 0 for no object and for classes it lacks."""
+    """Return (C,) the row of a classifier's table for each class of a vocabulary.
+
+    The row is 0 for no object and for classes that the table lacks.
+    """
     row = {name: number for number, name in enumerate(table.names, 1)}
     return np.array([0, *(row.get(name, 0) for name in vocabulary.classes)], np.int64)
 
 
 def traits_of(vocabulary: StepVocabulary, table: ClassTable) -> NDArray[np.float32]:
-    """(C, traits) the properties of a vocabulary's classes; none for no object and for classes the table lacks."""
+    """Return (C, traits) the properties of a vocabulary's classes.
+
+    The values are 0 for no object and for classes that the table lacks.
+    """
     return table.traits[rows_of(vocabulary, table)]
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Confusion(NamedTuple):
-    """What the actions of test clips are taken for.
+    """The predicted actions of test clips, by their true action.
 
     Attributes:
         actions: that test clips have, the commonest first, then those that are named alone.
@@ -32,7 +32,7 @@ class Confusion(NamedTuple):
 
 
 def confusion(dataset: Dataset, model: Path | str, homes: str = "all") -> Confusion:
-    """The confusion of a classifier by true masks.
+    """Return the confusion of a classifier by true masks.
 
     Args:
         dataset: with clips.
@@ -49,7 +49,7 @@ def confusion(dataset: Dataset, model: Path | str, homes: str = "all") -> Confus
 
 
 def of_pairs(pairs: Sequence[tuple[str, str]]) -> Confusion:
-    """That of pairs of an action and what it is taken for."""
+    """Return the confusion of pairs of a true action and the predicted one."""
     rows, columns = (Counter(pair[place] for pair in pairs) for place in (0, 1))
     actions = sorted(rows | columns, key=lambda name: (-rows[name], name))
     table = np.zeros((len(actions), len(actions)))
@@ -60,7 +60,7 @@ def of_pairs(pairs: Sequence[tuple[str, str]]) -> Confusion:
 
 
 def drawn(found: Confusion) -> str:
-    """The matrix as SVG, the true action at the left."""
+    """Return the matrix as SVG, the true action at the left."""
     cell, left, top = 44, 150, 110
     side = cell * len(found.actions)
     lines = []

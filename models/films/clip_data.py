@@ -1,4 +1,4 @@
-"""Clips of a published dataset as arrays, and the numbers of what is seen and done in them."""
+"""Clips of a published dataset as arrays: numbers of their frames and of their instructions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NOTHING = 0
 
 
 class Instruction(NamedTuple):
-    """What is done in the middle of a clip: an action and the classes of its objects."""
+    """The instruction in the middle of a clip: an action and the classes of its objects."""
 
     action: str
     objects: tuple[str, ...]
@@ -68,7 +68,7 @@ class Clips:
 
     @classmethod
     def of(cls, dataset: Dataset, part: str, most: int = 0, *, array: str = MASKS, coloured: bool = False) -> Clips:
-        """The clips of a part; of some films alone if `most` is given.
+        """Return the clips of a part; of some films alone if `most` is given.
 
         Args:
             dataset: with clips.
@@ -78,7 +78,7 @@ class Clips:
             coloured: only films that have colours, as all have if colours are read.
 
         Raises:
-            HearthError: UNKNOWN_ID, if there are none; DAMAGED_FILE, when a film's arrays are not what rows say.
+            HearthError: UNKNOWN_ID, if there are none; DAMAGED_FILE, when a film's arrays differ from the rows.
         """
         columns = "execution_id, file, first, frames, action, objects, kind, tick"
         where = "part = $part AND list_contains(modalities, $array)"
@@ -106,7 +106,7 @@ class Clips:
         return len(self.clips)
 
     def by_film(self) -> Iterator[Clips]:
-        """The clips of each film, with its masks alone."""
+        """Yield the clips of each film, with its masks alone."""
         for film, group in groupby(self.clips, key=lambda clip: clip.film):
             clips = tuple(clip._replace(film=0) for clip in group)
             yield Clips((self.executions[film],), [self.films[film]], clips, self.frames)
@@ -142,6 +142,6 @@ class Films(Sequence[NDArray[Any]]):
 
 
 def no_programs(model: str) -> HearthError:
-    """The error of a model of films that is asked for the program of a text or a sketch."""
+    """Return the error of a model of films that is asked for the program of a text or a sketch."""
     message = f"`{model}` is a model of films: it has no programs for texts or sketches"
     return HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model show M FILM` reads a film with it")

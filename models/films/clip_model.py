@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "clips-rgb"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 AT_ONCE = 128
 """Clips that are classified at once."""
@@ -97,13 +97,13 @@ class ClipModel(Settings):
             yield weights * len(wanted) / (weights * counts).sum()
 
     def network(self, labels: Labels) -> ClipNetwork:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         sizes = len(labels.actions), len(labels.objects) + 1
         return ClipNetwork(self.width, *sizes, self.dropout)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedClipModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         settings, labels = cls.of(checkpoint.settings), Labels.read(checkpoint.content["labels"])
         network = filled(lambda: settings.network(labels), checkpoint.weights).to(device())
         return TrainedClipModel(settings, labels, network, dict(checkpoint.trained))
@@ -119,7 +119,7 @@ class TrainedClipModel:
     facts: dict[str, Any] = field(default_factory=dict)
 
     def named(self, clips: Clips, relations: Iterable[Sequence[int]] = RELATIONS) -> list[Instruction]:
-        """The instruction that each clip is taken for: the most probable of training's."""
+        """Return the instruction that each clip is taken for: the most probable of training's."""
         best = self.scores(clips, relations).argmax(1)
         return [self.labels.instructions[number] for number in best.tolist()]
 
@@ -128,7 +128,7 @@ class TrainedClipModel:
         return self.scores_of(clips, pictures_of(clips), relations)
 
     def scores_of(self, clips: Clips, pictures: Pictures, relations: Iterable[Sequence[int]]) -> NDArray[np.float32]:
-        """The same by the pictures of the clips' films."""
+        """Return the same scores, from the pictures of the clips' films."""
         rows = torch.from_numpy(self.labels.rows).to(place_of(self.network))  # (I, 3)
         ways = list(relations)
         self.network.eval()
@@ -141,7 +141,7 @@ class TrainedClipModel:
         return np.concatenate(found)
 
     def readings(self, clips: Clips) -> Iterator[Reading]:
-        """What the clips of each film may show, film by film: instructions of training."""
+        """Yield the possible instructions of the clips of each film, film by film: instructions of training."""
         for part in clips.by_film():
             yield Reading(self.labels.instructions, self.scores(part))
 
@@ -158,6 +158,6 @@ class TrainedClipModel:
         raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         return Checkpoint(NAME, asdict(self.settings), {"labels": self.labels.document()}, weights, self.facts)

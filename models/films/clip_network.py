@@ -33,7 +33,7 @@ class FrameNetwork(nn.Module):
         self.whole = nn.Linear(sizes[-1] * 12, width)
 
     def forward(self, frames: Tensor) -> Tensor:
-        """(N, H, W, 3) colours from 0 to 255 -> (N, width)."""
+        """Map (N, H, W, 3) colours from 0 to 255 to (N, width)."""
         found = frames.permute(0, 3, 1, 2).float() / 128 - 1  # (N, 3, H, W)
         for layer, norm in zip(self.layers, self.norms, strict=True):
             found = functional.relu(norm(layer(found)))
@@ -58,7 +58,7 @@ class ClipNetwork(nn.Module):
         self.heads = nn.ModuleList(nn.Linear(2 * width, count) for count in (actions, objects, objects))
 
     def forward(self, pictures: Tensor) -> list[Tensor]:
-        """(N, 4, H, W, 3) colours, in the order of time -> (N, actions), (N, objects), (N, objects)."""
+        """Map (N, 4, H, W, 3) colours, in the order of time to (N, actions), (N, objects), (N, objects)."""
         count = len(pictures)
         frames = self.frame(pictures.flatten(0, 1)).reshape(count, -1)  # (N, 4 * width)
         related = self.relation(frames)
@@ -66,7 +66,7 @@ class ClipNetwork(nn.Module):
 
 
 def loss_of(found: list[Tensor], wanted: Tensor, weights: list[Tensor]) -> Tensor:
-    """The mean of minus the logarithms of what is so, each class by its weight; (N, 3) `wanted` has numbers from 0."""
+    """Return the mean negative log probability of the true classes, weighted; (N, 3) `wanted` has numbers from 0."""
     parts = [
         functional.nll_loss(scores, wanted[:, place], weight)
         for place, (scores, weight) in enumerate(zip(found, weights, strict=True))

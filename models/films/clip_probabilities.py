@@ -1,4 +1,4 @@
-"""What a classifier says of each clip of a film, as probabilities: what the encoder over clips reads."""
+"""A classifier's probabilities for each clip of a film: the input of the encoder over clips."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hearth.models.films.mask_clip_model import Scored, TrainedSeenModel
 
 @dataclass(frozen=True, slots=True)
 class ClipProbabilities:
-    """How probable actions and objects are in each of N parts of a film.
+    """Probabilities of actions and objects in each of N parts of a film.
 
     Attributes:
         actions: (N, A) of each action of the classifier.
@@ -31,7 +31,7 @@ class ClipProbabilities:
         return len(self.actions)
 
     def part(self, which: NDArray[np.int64]) -> ClipProbabilities:
-        """Some of the parts."""
+        """Return some of the parts."""
         return ClipProbabilities(self.actions[which], self.objects[which], self.lengths[which])
 
     def merged(self) -> ClipProbabilities:
@@ -49,7 +49,7 @@ class ClipProbabilities:
 
 
 def of_film(trained: TrainedSeenModel, masks: NDArray[np.uint16]) -> ClipProbabilities:
-    """What a classifier says of a film, cut into clips whatever is done in it; clips alike in a row are one.
+    """Return a classifier's probabilities for a film, cut into clips at fixed times; clips alike in a row are one.
 
     Args:
         trained: the classifier.
@@ -63,7 +63,10 @@ def of_film(trained: TrainedSeenModel, masks: NDArray[np.uint16]) -> ClipProbabi
 
 
 def of_scores(found: Scored, table: ClassTable) -> ClipProbabilities:
-    """The probabilities of each clip, of objects over all actions: those of actions that take none are row 0's."""
+    """Return the probabilities of each clip, of objects over all actions.
+
+    Those of actions that take none are row 0's.
+    """
     actions = np.exp(found.actions)  # (N, A)
     count = np.array(table.objects)
     objects = []

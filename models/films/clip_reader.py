@@ -7,7 +7,7 @@ from torch import Tensor, nn
 
 
 class ClipReader(nn.Module):
-    """Vectors of clips, of the probabilities of what is done in them.
+    """Vectors of clips, computed from the probabilities of their actions and objects.
 
     The thesis takes the embedding of the instruction that a clip is taken for; here every action and object counts by
     its probability. A class is known by its properties and by learned numbers, of which some classes' are left out in
@@ -30,7 +30,7 @@ class ClipReader(nn.Module):
         self.register_buffer("traits", traits, persistent=False)
 
     def forward(self, clips: Tensor) -> Tensor:
-        """(B, L, A + 1 + 2 C) probabilities of actions, length, first and second objects -> (B, L, width)."""
+        """Map (B, L, A + 1 + 2 C) probabilities of actions, length, first and second objects to (B, L, width)."""
         learned = self.of_classes.weight
         if self.training:
             learned = learned * (torch.rand(len(learned), 1, device=learned.device) >= self.unnamed)

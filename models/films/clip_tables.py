@@ -1,4 +1,4 @@
-"""Tables 4.2 and 4.3: what clips are taken for, the thesis's figures beside ours beside yardsticks."""
+"""Tables 4.2 and 4.3: instructions predicted from clips, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ClipTable(NamedTuple):
     """A table of the thesis.
 
     Attributes:
-        line: what is looked at.
+        line: the input of the table's models.
         kind: of the models that are compared.
         array: of a film that is looked at.
         thesis: the thesis's figures by homes.
@@ -65,7 +65,7 @@ TABLES = {
         "all": (0.5460, 0.4044, 0.3517, 0.4340),
     }),
 }  # fmt: skip
-"""By number; 4.3 is its part (a)."""
+"""The tables by number; 4.3 is its part (a)."""
 
 
 class ClipRow(NamedTuple):
@@ -78,7 +78,7 @@ class ClipRow(NamedTuple):
         scores: by column; of several seeds their means.
         spread: the standard error over seeds of `mean`; None of fewer than two.
         clips: how many were named; None where the thesis does not say.
-        seeds: how many trained models the scores are means of; 0 for what is not trained.
+        seeds: how many trained models the scores are means of; 0 for methods without training.
     """
 
     method: str
@@ -91,7 +91,7 @@ class ClipRow(NamedTuple):
 
 
 def clip_table(number: str, dataset: Dataset, models: Sequence[Path | str], seed: int = 0) -> list[ClipRow]:
-    """The rows of a table, over the clips of the test part: each clip by itself, and by the whole film.
+    """Return the rows of a table, over the clips of the test part: each clip by itself, and by the whole film.
 
     Args:
         number: of `TABLES`.
@@ -123,7 +123,7 @@ def clip_table(number: str, dataset: Dataset, models: Sequence[Path | str], seed
 def looked_at(
     number: str, dataset: Dataset, models: Sequence[Path | str]
 ) -> tuple[Clips, list[tuple[str, Classifier]]]:
-    """The test clips as a table's models look at them, and the models with their names.
+    """Return the test clips as a table's models look at them, and the models with their names.
 
     Raises:
         HearthError: as of `clip_table`.
@@ -135,26 +135,30 @@ def looked_at(
         networks = [trained for _, trained in given if isinstance(trained, TrainedMaskModel)]
         if len(networks) != 1:
             message = f"{len(networks)} checkpoints of `masks`, not one"
-            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name one beside classifiers of clips")
+            raise HearthError.of(
+                Code.BAD_ARGUMENT,
+                message,
+                suggestion="name one such checkpoint in addition to the classifiers of clips",
+            )
         test = replace(test, films=PredictedMasks(test.films, networks[0]))
         given = [each for each in given if each[1] is not networks[0]]
     return test, [(name, _classifier(trained, name, table.kind)) for name, trained in given]
 
 
 def _classifier(trained: Any, name: str, kind: type[Any]) -> Classifier:
-    """A trained model.
+    """Return a trained model.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it is of another kind.
     """
     if not isinstance(trained, kind):
-        message = f"`{name}` does not look at what the table is about"
+        message = f"`{name}` does not read the input of this table"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model list` has the input of each model")
     return trained  # type: ignore[no-any-return]
 
 
 def classifier(model: Path | str) -> tuple[str, TrainedSeenModel]:
-    """A trained classifier of clips by masks, and its name.
+    """Return a trained classifier of clips by masks, and its name.
 
     Raises:
         HearthError: errors of `restore`; BAD_ARGUMENT, for a model of another kind.
@@ -164,7 +168,7 @@ def classifier(model: Path | str) -> tuple[str, TrainedSeenModel]:
 
 
 def looks_at_masks(trained: Any, name: str) -> TrainedSeenModel:
-    """A trained classifier of clips by masks.
+    """Return a trained classifier of clips by masks.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it is another model.
@@ -173,7 +177,7 @@ def looks_at_masks(trained: Any, name: str) -> TrainedSeenModel:
 
 
 def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instruction]], seeds: int) -> Iterator[ClipRow]:
-    """A row for each kind of homes, of the answers of each seed."""
+    """Yield a row for each kind of homes, of the answers of each seed."""
     for homes, kinds in HOMES.items():
         which = [number for number, clip in enumerate(test.clips) if clip.kind in kinds]
         if not which:
@@ -185,7 +189,7 @@ def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instructio
 
 
 def standard_error(values: Sequence[float]) -> float | None:
-    """The standard error of a mean; None of fewer than two values."""
+    """Return the standard error of a mean; None of fewer than two values."""
     from statistics import stdev
 
     return stdev(values) / len(values) ** 0.5 if len(values) > 1 else None

@@ -32,17 +32,17 @@ MOST_BYTES = 1 << 29
 """Bytes of an array of a film in memory."""
 
 MOST_PIXELS = 1 << 20
-"""Of a picture."""
+"""Largest number of pixels of a picture."""
 
 MOST_PICTURES = 6_000
-"""Of a film: twenty minutes have 5,400."""
+"""Largest number of pictures of a film: twenty minutes have 5,400."""
 
 HEADER = 512
 """Characters of an array's header; the longest of `FORMS` has 128."""
 
 
 class _Header(NamedTuple):
-    """What the header of an array says, and the bytes that follow it."""
+    """The contents of an array's header, and the bytes that follow it."""
 
     shape: tuple[int, ...]
     dtype: np.dtype[Any]
@@ -50,7 +50,7 @@ class _Header(NamedTuple):
 
 
 def film_array(data: IO[bytes], file: str, array: str = MASKS, most: int = MOST_PICTURES) -> NDArray[Any]:
-    """An array of a film, as `rendering.film.clips` stores them, in the form of `FORMS`.
+    """Return an array of a film, as `rendering.film.clips` stores them, in the form of `FORMS`.
 
     Args:
         data: the file's.
@@ -72,13 +72,13 @@ def film_array(data: IO[bytes], file: str, array: str = MASKS, most: int = MOST_
                 found: NDArray[Any] = npy.read_array(member, allow_pickle=False, max_header_size=HEADER)
     except HearthError:
         raise
-    except Exception as error:  # zipfile, zlib and NumPy raise a dozen kinds for what is not a file of theirs
+    except Exception as error:  # zipfile, zlib and NumPy raise a dozen kinds for files that are not theirs
         raise damaged(file, str(error)[:100]) from error
     return found
 
 
 def _header(archive: ZipFile, name: str) -> _Header:
-    """What the header of an array says.
+    """Return the contents of an array's header.
 
     Raises:
         ValueError: it is packed or written in a way in which NumPy does not store arrays.
@@ -104,5 +104,5 @@ def _check_size(header: _Header, file: str, array: str, most: int) -> None:
 
 
 def damaged(file: str, message: str) -> HearthError:
-    """The error of a film's file that is not what it should be."""
+    """Return the error for a damaged film file."""
     return HearthError.of(Code.DAMAGED_FILE, message, file=file, suggestion="fetch the dataset again")

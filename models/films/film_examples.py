@@ -1,4 +1,4 @@
-"""Films as examples for a writer of programs: what a classifier says of their clips, and what is done in them."""
+"""Films as examples for a writer of programs: a classifier's probabilities for their clips, and their steps."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class FilmExample(NamedTuple):
 
     Attributes:
         execution: its id.
-        clips: what a classifier says of its clips: all that a writer reads.
-        steps: what is done, by the classes of its objects.
+        clips: a classifier's probabilities for its clips: all that a writer reads.
+        steps: its steps, by the classes of their objects.
         trial: its execution, in which other programs may be tried.
     """
 
@@ -36,7 +36,7 @@ class FilmExample(NamedTuple):
 
 
 def film_examples(dataset: Dataset, part: str, reader: TrainedSeenModel, most: int = 0) -> list[FilmExample]:
-    """The films of a part; each is read once.
+    """Return the films of a part; each is read once.
 
     Args:
         dataset: with clips.
@@ -70,7 +70,7 @@ class _Question:
 def film_probabilities(
     dataset: Dataset, clips: Clips, part: str, most: int, reader: TrainedSeenModel
 ) -> tuple[ClipProbabilities, ...]:
-    """What a classifier says of each film of a part.
+    """Return a classifier's probabilities for each film of a part.
 
     It takes two seconds a film, and several writers read the same: a process remembers it.
 

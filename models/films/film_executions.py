@@ -1,4 +1,4 @@
-"""What the films of a dataset show: the world at their start, and what is done by the classes of its objects."""
+"""The contents of a dataset's films: the world at their start, and their steps by the classes of the objects."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ class Shown(NamedTuple):
 
     @property
     def world(self) -> World:
-        """The world at the start."""
+        """Return the world at the start."""
         return self.trial.world
 
 
 def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
-    """What the films of some executions show, in their order."""
+    """Return the contents of the films of some executions, in their order."""
     found = trials(dataset, executions)
     if missing := [name for name in executions if name not in found]:
         raise HearthError.of(Code.UNKNOWN_ID, f"a clip is of an unknown execution, `{missing[0][:80]}`")
@@ -38,7 +38,7 @@ def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
 
 
 def by_class(steps: Steps, world: World) -> Steps:
-    """Steps with the classes of their nodes as names, as masks show them, and without nodes."""
+    """Return steps with the classes of their nodes as names, as masks show them, and without nodes."""
     home = world.home
 
     def named(ref: ObjectRef) -> ObjectRef:

@@ -1,4 +1,4 @@
-"""Figure 4-7: films of the test part, with what was described, what was done, and the program that is read."""
+"""Figure 4-7: films of the test part, each with its description, its true program and the predicted program."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 FRAMES = 8
-"""Of a film."""
+"""Number of pictures that the figure shows of a film."""
 
 STYLE = (
     "body{font:14px sans-serif;max-width:1100px;margin:1em auto}img{width:130px;margin:2px;image-rendering:pixelated}"
@@ -37,7 +37,7 @@ STYLE = (
 
 
 def film_page(dataset: Dataset, model: Path | str, films: int = 3) -> str:
-    """Some coloured test films as HTML: frames with their times; true and read program, common steps opposite.
+    """Return some coloured test films as HTML: frames with their times; true and read program, common steps opposite.
 
     Programs are read by the engine, from the world in which the film begins.
 

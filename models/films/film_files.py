@@ -1,4 +1,4 @@
-"""Which files are films: arrays of a dataset of clips, and videos."""
+"""The files that count as films: arrays of a dataset of clips, and videos."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def is_film(text: str) -> bool:
 
 
 def _films(path: Path) -> list[Path]:
-    """The films of a folder: its arrays, then its videos; a file itself."""
+    """Return the films of a folder: its arrays, then its videos; a file itself."""
     videos = sorted(each for suffix in VIDEOS for each in path.glob(f"*{suffix}")) if path.is_dir() else [path]
     return [each for each in (path / FILE, *videos) if each.is_file()]
 
 
 def film_file(path: Path) -> Path:
-    """The film of a folder: its arrays, else its first video; of a file itself.
+    """Return the film of a folder: its arrays, else its first video; of a file itself.
 
     Raises:
         HearthError: MISSING_FILE, if there is none.

@@ -19,8 +19,11 @@ from hearth.schemas.libraries import library
 from hearth.storage.input_files import read_input, read_start
 
 HEADS = {".webm": (0, b"\x1a\x45\xdf\xa3"), ".mp4": (4, b"ftyp")}
-"""What videos begin with, and where. Anything else is not given to FFmpeg, which goes by what a file holds: a list of
-other films would have it read those."""
+"""The first bytes of a video by file ending, with their position.
+
+Other files are not given to FFmpeg. FFmpeg follows the contents of a file, and a list of other films would make it read
+those films.
+"""
 
 LONGEST = 20 * 60
 """Seconds of a video at most."""
@@ -29,11 +32,11 @@ MOST_RATE = 240
 """Pictures a second of a video at most."""
 
 MOST_PIXELS = 4096 * 2304
-"""Of a picture of a video."""
+"""Largest number of pixels of a video's picture."""
 
 
 def read_masks(path: Path) -> NDArray[np.uint16]:
-    """(T, H, W) class numbers of a film of a dataset of clips (`clips.npz`).
+    """Return (T, H, W) class numbers of a film of a dataset of clips (`clips.npz`).
 
     Raises:
         HearthError: MISSING_FILE; DAMAGED_FILE, if the file holds something else.
@@ -42,7 +45,7 @@ def read_masks(path: Path) -> NDArray[np.uint16]:
 
 
 def read_pictures(path: Path) -> NDArray[np.uint8]:
-    """(T, H, W, 3) colours of a video, scaled to the size of clips, `RATE` a second.
+    """Return (T, H, W, 3) colours of a video, scaled to the size of clips, `RATE` a second.
 
     Raises:
         HearthError: MISSING_FILE, without OpenCV; DAMAGED_FILE, if it is another file; BAD_ARGUMENT, if it is

@@ -28,7 +28,7 @@ APART = 2
 
 @dataclass(frozen=True, slots=True)
 class FilmShown:
-    """What became of a film.
+    """The results for one film.
 
     Attributes:
         clips: how many two-second clips it was cut into.
@@ -46,7 +46,7 @@ class FilmShown:
 
 
 def cut(masks: NDArray[np.uint16]) -> Clips:
-    """A film as clips: one every `APART` frames, whatever is done in it.
+    """Return a film as clips: one every `APART` frames, whatever is done in it.
 
     Raises:
         HearthError: BAD_ARGUMENT, if it is shorter than a clip.
@@ -59,7 +59,7 @@ def cut(masks: NDArray[np.uint16]) -> Clips:
 
 
 def show_film(trained: TrainedSeenModel, masks: NDArray[np.uint16], home: Home, seed: int = 0) -> FilmShown:
-    """Name the steps of a film, and follow it with the engine in a home that has what it shows.
+    """Name the steps of a film, and follow it with the engine in a home that has the film's things.
 
     Args:
         trained: a classifier of clips.
@@ -80,7 +80,7 @@ def show_film(trained: TrainedSeenModel, masks: NDArray[np.uint16], home: Home, 
 
 
 def _world(steps: Steps, home: Home, seed: int) -> World:
-    """A world in which some steps can be done; where none is found, what the steps that can be repaired begin in."""
+    """Return a world in which some steps can be done, else the world in which the repairable steps begin."""
     start = World.start(home)
     completion = complete(steps, start, home.knowledge)
     kept = Program(steps=completion.execution.program.unbound().steps or steps)

@@ -1,7 +1,7 @@
-"""From the clips of a film to a program: by what each clip looks like alone, or with the engine as transition model.
+"""The program of a film from its clips: by each clip alone, or with the engine as transition model.
 
-With the engine the question is which instruction that can be done now explains what is seen: every program that is
-followed runs, because each step was done in the world that the steps before it made.
+With the engine, each clip gets the possible instruction that best explains it. Every program that is followed runs,
+because each step was done in the world that the steps before it made.
 """
 
 from __future__ import annotations
@@ -26,11 +26,13 @@ Scores = NDArray[np.float32]
 """(N, I) logarithms of how probable each of I instructions is in each of a film's N clips, in order."""
 
 CHANGE = 4.0
-"""What it costs, as a logarithm, to take a clip for another instruction than the clip before, where the order of steps
-is not known."""
+"""Cost of predicting another instruction than in the clip before, as a logarithm.
+
+It applies where the order of steps is not known.
+"""
 
 UNEXPLAINED = 8.0
-"""What it costs to leave a clip unexplained, below the best that can be said of it."""
+"""Cost of leaving a clip unexplained, as a logarithm below the clip's best score."""
 
 
 class FilmProgram(NamedTuple):
@@ -51,18 +53,18 @@ MOST_INSERTED = 3
 NO_STEPS = FilmProgram((), ())
 
 Moves = NDArray[np.float32]
-"""(I + 1, I) what it costs to go from an instruction, the last row from none, to another one."""
+"""(I + 1, I) costs of going from an instruction to another one; the last row is for the first step."""
 
 
 @dataclass(frozen=True, slots=True)
 class Filter:
-    """How programs are followed through a film.
+    """Settings for following programs through a film.
 
     Attributes:
         beam: worlds at a time, each with its best program.
         options: instructions that each of them may go on with in a clip.
         repaired: of those options, the first ones may be repaired where they can't be done: steps are inserted.
-        inserted: what an inserted step costs, as a logarithm.
+        inserted: cost of an inserted step, as a logarithm.
     """
 
     beam: int = 48
@@ -72,7 +74,7 @@ class Filter:
 
 
 def even_moves(count: int, change: float = CHANGE) -> Moves:
-    """The same cost for every change of `count` instructions; the first is free."""
+    """Return the same cost for every change of `count` instructions; the first is free."""
     moves = np.full((count + 1, count), change, np.float32)
     moves[-1] = 0
     return moves
@@ -89,17 +91,19 @@ class _Followed:
 
 
 def alone(scores: Scores, instructions: Sequence[Instruction]) -> FilmProgram:
-    """What each clip is taken for by itself, each once for the clips in a row that are taken for it."""
+    """Return the instruction predicted from each clip alone; a row of clips with the same instruction is one step."""
     return _merged(scores.argmax(1).tolist(), instructions) if len(scores) else NO_STEPS
 
 
 def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves | None = None) -> FilmProgram:
-    """The most probable sequence of instructions, each once for the clips in a row that it explains; no home is needed.
+    """Return the most probable sequence of instructions, each once for the clips in a row that it explains.
+
+    No home is needed.
 
     Args:
         scores: of the clips.
         instructions: by number.
-        moves: what changes cost; by default all the same.
+        moves: costs of changes; by default all the same.
     """
     if not len(scores):
         return NO_STEPS
@@ -130,7 +134,7 @@ def followed(
     how: Filter = Filter(),
     rules: Rules = DEFAULT,
 ) -> FilmProgram:
-    """The program that explains a film best among those that run in the world in which it begins.
+    """Return the program that explains a film best among those that run in the world in which it begins.
 
     In each clip a program goes on with its last instruction, or with another one that can be done then, or after steps
     that a repair inserts; objects are the nearest of their class. Of programs that have come to the same world by the
@@ -140,7 +144,7 @@ def followed(
         scores: of the clips.
         instructions: by number.
         world: at the film's start.
-        moves: what changes cost; by default all the same.
+        moves: costs of changes; by default all the same.
         how: the search.
         rules: of the engine.
     """
@@ -158,14 +162,14 @@ def followed(
 
 
 class _Search:
-    """The ways in which programs go on; what an instruction does in a world is computed once."""
+    """The search over continuations of programs; the effect of an instruction in a world is computed once."""
 
     def __init__(self, instructions: Sequence[Instruction], moves: Moves, how: Filter, rules: Rules) -> None:
         self.instructions, self.moves, self.how, self.rules = instructions, moves, how, rules
         self.after: dict[tuple[World, int, bool], tuple[Steps, World] | None] = {}
 
     def going_on(self, one: _Followed, row: Scores, place: int) -> Iterator[_Followed]:
-        """The ways in which a program explains one more clip."""
+        """Yield the ways in which a program explains one more clip."""
         unexplained = float(row.max()) - UNEXPLAINED
         staying = float(row[one.last]) if one.last >= 0 else unexplained
         yield replace(one, score=one.score + max(staying, unexplained))
@@ -178,7 +182,7 @@ class _Search:
                 yield _Followed(score, world, (*one.steps, *steps), (*one.starts, *[place] * len(steps)), number)
 
     def _done(self, one: _Followed, number: int, may_repair: bool) -> tuple[Steps, World] | None:
-        """The steps that do an instruction, the last of which it is, and the world after them."""
+        """Return the steps that do an instruction, the last of which it is, and the world after them."""
         key = one.world, number, may_repair
         if key not in self.after:
             program = Program(steps=(_step(self.instructions[number]),))
@@ -192,7 +196,7 @@ class _Search:
         return self.after[key]
 
     def _repaired(self, world: World, step: Step) -> tuple[Steps, World] | None:
-        """The same where steps have to be inserted, and none is needed afterwards."""
+        """Return the steps and the world after insertions before a step; None if steps are needed after it."""
         done = complete((step,), world, world.home.knowledge, self.rules)
         runs = not done.left_out and done.sources[-1:] == (0,) and len(done.sources) <= 1 + MOST_INSERTED
         return (done.execution.program.steps, done.execution.final) if runs else None

@@ -1,4 +1,7 @@
-"""The second phase for writers of films: policy gradient by LCS, and by what runs in the film's home (thesis 4.3.1)."""
+"""The second phase of training for writers of films: policy gradient by LCS and by execution (thesis 4.3.1).
+
+The programs are executed in the film's home.
+"""
 
 from __future__ import annotations
 
@@ -59,11 +62,11 @@ class FilmCritical(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedFilmWriter:
-        """The model of a checkpoint, which has the settings of the network."""
+        """Return the model of a checkpoint, which has the settings of the network."""
         return FilmWriter.restored(checkpoint)
 
 
 def sim_reward(examples: Sequence[FilmExample], programs: Sequence[Steps]) -> list[float]:
-    """The LCS, and `SIM` for programs that run in the environment of their film."""
+    """Return the LCS, and `SIM` for programs that run in the environment of their film."""
     pairs = zip(lcs_reward(examples, programs), examples, programs, strict=True)
     return [value + SIM * example.trial.runs(steps) for value, example, steps in pairs]

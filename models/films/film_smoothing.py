@@ -1,4 +1,4 @@
-"""What each clip of a film shows, read together with all other clips of the film.
+"""The instruction of each clip of a film, predicted together with all other clips of the film.
 
 How probable each instruction is in each clip given the whole film, by forward and backward sums over the sequences of
 which `film_programs.described` finds the most probable (Rabiner 1989).
@@ -20,12 +20,12 @@ from hearth.models.films.mask_clip_model import TrainedSeenModel
 
 
 def named_in_films(trained: TrainedSeenModel, clips: Clips, learned: Sequence[Instruction]) -> list[Instruction]:
-    """The instruction that each clip is taken for, by the whole film.
+    """Return the instruction that each clip is taken for, by the whole film.
 
     Args:
         trained: the classifier, of single clips.
         clips: in the order of their films.
-        learned: what is done in the clips of training, of which classes have their shares.
+        learned: the instructions of the training clips, which give the shares of classes.
     """
     worth = ClassWorth.of(learned, 1 - trained.settings.balance)
     found: list[Instruction] = []
@@ -37,15 +37,15 @@ def named_in_films(trained: TrainedSeenModel, clips: Clips, learned: Sequence[In
 
 
 def posteriors(scores: Scores, moves: Moves) -> NDArray[np.float64]:
-    """(N, I) how probable each instruction is in each clip, given all clips of the film.
+    """Return (N, I) how probable each instruction is in each clip, given all clips of the film.
 
     Args:
         scores: (N, I) logarithms of how probable each is in a clip alone.
-        moves: (I + 1, I) what it costs to go from one to another, the last row from none; staying is free.
+        moves: (I + 1, I) costs of going from one to another, the last row for the first clip; staying is free.
     """
     change = -moves[:-1].astype(np.float64)
     np.fill_diagonal(change, 0)
-    before, after = np.empty(scores.shape), np.zeros(scores.shape)  # sums over what comes before, and after, a clip
+    before, after = np.empty(scores.shape), np.zeros(scores.shape)  # sums over the past and the future of a clip
     for number, row in enumerate(scores):
         before[number] = row + (_summed(before[number - 1][:, None] + change) if number else -moves[-1])
     for number in range(len(scores) - 2, -1, -1):
@@ -62,8 +62,9 @@ def _summed(logs: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 class ClassWorth(NamedTuple):
-    """What naming a class right adds to each mean accuracy over classes, in which few clips of a class count as much as
-    many.
+    """The gain of a right class in each mean accuracy over classes.
+
+    In these means, a class with few clips counts as much as a class with many.
 
     Attributes:
         counts: for each measured part of an instruction, clips of training of each class, to a power.
@@ -75,16 +76,16 @@ class ClassWorth(NamedTuple):
 
     @classmethod
     def of(cls, learned: Sequence[Instruction], power: float) -> ClassWorth:
-        """That of training clips.
+        """Return the gains of training clips.
 
         Args:
-            learned: what is done in them.
-            power: 1 where probabilities are those of clips; less by what training has already weighted its loss with.
+            learned: the instructions of these clips.
+            power: 1 if probabilities are those of clips; less by the weights that training has already given its loss.
         """
         return cls({name: Counter(map(part, learned)) for name, part in MEASURED.items()}, power)
 
     def gains(self, probable: NDArray[np.float64], instructions: Sequence[Instruction]) -> NDArray[np.float64]:
-        """(N, I) the mean accuracy that naming each instruction may be expected to add, up to a factor.
+        """Return (N, I) the mean accuracy that naming each instruction may be expected to add, up to a factor.
 
         Args:
             probable: (N, I) probabilities of instructions in clips.

@@ -1,4 +1,4 @@
-"""Table 4.6: programs from films, the thesis's figures beside ours beside yardsticks."""
+"""Table 4.6: programs from films, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ Way = Callable[[Reading, StepOrder, World], FilmProgram]
 
 
 def _repaired(program: FilmProgram, world: World) -> FilmProgram:
-    """A program that runs: repaired, and what no repair makes run left out; inserted steps have no clips."""
+    """Return a program that runs: repaired, without steps that no repair makes run; inserted steps have no clips."""
     done = complete(program.steps, world, world.home.knowledge)
     return FilmProgram(done.execution.program.steps, ())
 
@@ -92,14 +92,14 @@ WAYS: dict[str, Way] = {
         found.scores, found.instructions, world, found.moves(order)
     ),
 }
-"""From the reading of a film to a program."""
+"""The ways from the reading of a film to a program, by name."""
 
 
 def film_table(
     dataset: Dataset, models: Sequence[Path | str], seed: int = 0, part: str = "test", beam: int = 1,
     seen: Seen = unseen,
 ) -> list[FilmRow]:  # fmt: skip
-    """The rows of table 4.6, over the films of a part, each cut into clips whatever is done in it.
+    """Return the rows of table 4.6, over the films of a part, each cut into clips whatever is done in it.
 
     Args:
         dataset: with clips.
@@ -141,7 +141,7 @@ def film_table(
 def _by_writer(
     trained: TrainedFilmWriter, read: Sequence[ClipProbabilities], worlds: Sequence[World], beam: int
 ) -> Iterator[dict[str, Steps]]:
-    """What an encoder-decoder writes for each film, in each of its ways."""
+    """Yield the programs that an encoder-decoder writes for each film, by method."""
     for film, world in zip(read, worlds, strict=True):
         yield by_writer(trained, film, world, beam)
 
@@ -149,14 +149,14 @@ def _by_writer(
 def _classified(
     trained: TrainedSeenModel, test: Clips, worlds: Sequence[World], order: StepOrder
 ) -> Iterator[dict[str, Steps]]:
-    """What is read of each film by a classifier of clips, in each of the ways."""
+    """Yield the programs that a classifier of clips reads from each film, by method."""
     for masks, world in zip(test.films, worlds, strict=True):
         (found,) = trained.readings(cut(masks))
         yield {way: write(found, order, world).steps for way, write in WAYS.items()}
 
 
 def by_writer(trained: TrainedFilmWriter, film: ClipProbabilities, world: World, beam: int = 1) -> dict[str, Steps]:
-    """What an encoder-decoder writes for a film: freely, repaired, and with the engine in the loop where it can."""
+    """Return an encoder-decoder's programs for a film: free, repaired, and if possible with the engine in the loop."""
     (steps,) = trained.write([film], beam)
     found = {"free": steps, "free, repaired": _repaired(FilmProgram(steps, ()), world).steps}
     if not trained.closed:
@@ -168,7 +168,7 @@ def _rows(
     dataset: Dataset, method: str, of: str, test: Clips, films: Sequence[Shown], answers: Sequence[Sequence[Steps]],
     seed: int,
 ) -> Iterator[FilmRow]:  # fmt: skip
-    """A row for each kind of homes, of the answers of each seed."""
+    """Yield a row for each kind of homes, of the answers of each seed."""
     kinds = {clip.film: clip.kind for clip in test.clips}
     scores = [_scored(dataset, test.executions, films, each) for each in answers]
     for homes, wanted in HOMES.items():
@@ -182,7 +182,7 @@ def _rows(
 def _scored(
     dataset: Dataset, executions: Sequence[str], films: Sequence[Shown], answers: Sequence[Steps]
 ) -> list[dict[str, float | None]]:
-    """The columns of each film's answer."""
+    """Return the columns of each film's answer."""
     lcs = score_pairs([(by_class(answer, film.world), film.steps) for answer, film in zip(answers, films, strict=True)])
     ran = score_steps(dataset, zip(executions, answers, strict=True))
     more = ("executable", "goal", "goal_whole")

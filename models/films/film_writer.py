@@ -1,7 +1,7 @@
-"""The encoder-decoder over clips: what a classifier says of each is read, a program written (thesis 4.3.3).
+"""The encoder-decoder over clips: it reads a classifier's probabilities and writes a program (thesis 4.3.3).
 
 It is the network of texts with clips in the place of words: the encoder, the attention, the decoder and the heads are
-those of `models.text`. What each clip shows can be copied, as what a text mentions can.
+those of `models.text`. The network can copy the contents of a clip, as it copies words that a text mentions.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "films-mle"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 READER = "classifier."
 """Before the names of the classifier's weights in a checkpoint."""
@@ -85,7 +85,7 @@ class FilmWriter(Settings):
     passes: int = 4
 
     def fitting(self) -> None:
-        """The encoder has two directions."""
+        """Check that the encoder has two directions."""
         self.multiple("hidden", *WAYS)
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedFilmWriter:
@@ -113,7 +113,7 @@ class FilmWriter(Settings):
     def network(
         self, vocabulary: StepVocabulary, closed: Sequence[tuple[int, int, int]], reader: TrainedSeenModel
     ) -> Writer:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         traits = torch.from_numpy(traits_of(vocabulary, reader.table))
         embedding = StepEmbedding(vocabulary, self.vector, traits[1:])
         clips = ClipReader(len(reader.table.actions), traits, self.vector, self.unnamed)
@@ -126,7 +126,7 @@ class FilmWriter(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedFilmWriter:
-        """The model of a checkpoint, which has its classifier, too."""
+        """Return the model of a checkpoint, which has its classifier, too."""
         settings, content = cls.of(checkpoint.settings), checkpoint.content
         own = {name: value for name, value in checkpoint.weights.items() if not name.startswith(READER)}
         others = {name[len(READER) :]: value for name, value in checkpoint.weights.items() if name not in own}
@@ -150,12 +150,12 @@ class TrainedFilmWriter:
     trained: dict[str, Any] = field(default_factory=dict)
 
     def write(self, films: Sequence[ClipProbabilities], beam: int = 1) -> list[Steps]:
-        """The most probable program of each film, by greedy or beam search: it need not run."""
+        """Return the most probable program of each film, by greedy or beam search: it need not run."""
         found = written(self.writer, films, self.read, len, beam, self.settings.longest)
         return [self.program(numbers) for numbers in found]
 
     def followed(self, films: Sequence[ClipProbabilities], worlds: Sequence[World], beam: int = 1) -> list[Steps]:
-        """The program of each film with the engine in the loop: each runs in the world in which its film begins.
+        """Return the program of each film with the engine in the loop: each runs in the world in which its film begins.
 
         Raises:
             HearthError: BAD_ARGUMENT, if the model chooses steps of a closed list.
@@ -165,7 +165,7 @@ class TrainedFilmWriter:
         return [steps for share in shares for steps in decode(self.scorer(), share, search)]
 
     def read(self, films: Sequence[ClipProbabilities], noise: Random | None = None) -> InputBatch:
-        """What the encoder reads of films; with noise, if a generator is given."""
+        """Return the encoder's input for films; with noise, if a generator is given."""
         return clip_batch(films, self.rows, self.writer.device, noise)
 
     @cached_property
@@ -174,19 +174,19 @@ class TrainedFilmWriter:
         return rows_of(self.vocabulary, self.reader.table)
 
     def asked(self, examples: Sequence[FilmExample], random: Random) -> InputBatch:
-        """The films of examples in the second phase of training, with noise: the classifier knows them."""
+        """Return the films of examples in the second phase of training, with noise: the classifier knows them."""
         return self.read([each.clips for each in examples], random)
 
     def program(self, numbers: Numbers) -> Steps:
-        """The program of some numbers."""
+        """Return the program of some numbers."""
         return tuple(self.vocabulary.step(*each) for each in numbers)
 
     def score(self, examples: Sequence[FilmExample]) -> float:
-        """The mean LCS (of steps, actions and objects) of greedy programs for some films; 0 without any."""
+        """Return the mean LCS (of steps, actions and objects) of greedy programs for some films; 0 without any."""
         return mean_lcs(self.write([each.clips for each in examples]), [each.steps for each in examples])
 
     def scorer(self) -> TextScorer:
-        """The model for decoding with the engine in the loop; its inputs are films."""
+        """Return the model for decoding with the engine in the loop; its inputs are films."""
         return TextScorer(self.writer, self.vocabulary, self.read)
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
@@ -198,7 +198,7 @@ class TrainedFilmWriter:
         raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         reader = self.reader.checkpoint()
         weights = {name: value.detach().cpu().numpy() for name, value in self.writer.state_dict().items()}
         weights |= {READER + name: value for name, value in reader.weights.items()}
@@ -208,5 +208,5 @@ class TrainedFilmWriter:
 
 
 def _recorded(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """What is recorded of a classifier: what it was trained on, and its seed."""
+    """Return the recorded facts about a classifier: its training data and its seed."""
     return {name: facts[name] for name in ("digest", "clips", "seed") if name in facts}

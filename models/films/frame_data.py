@@ -1,4 +1,4 @@
-"""What a network of whole frames learns from: numbers of instructions, and pictures."""
+"""The training data of a network of whole frames: numbers of instructions, and pictures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Labels:
     Attributes:
         actions: sorted.
         objects: sorted; they get the numbers from 1, no object `NOTHING`.
-        instructions: those of training, sorted: what a clip can be taken for.
+        instructions: those of training, sorted: the possible predictions for a clip.
     """
 
     actions: tuple[str, ...]
@@ -29,7 +29,7 @@ class Labels:
 
     @classmethod
     def of(cls, clips: Clips) -> Labels:
-        """Those of training clips."""
+        """Return the labels of training clips."""
         done = {clip.done for clip in clips.clips}
         return cls(
             tuple(sorted({each.action for each in done})),
@@ -38,13 +38,13 @@ class Labels:
         )
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return the labels as JSON."""
         rows = [[each.action, *each.objects] for each in self.instructions]
         return {"actions": [*self.actions], "objects": [*self.objects], "instructions": rows}
 
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> Labels:
-        """Those of `document`, which may be a stranger's.
+        """Return the labels of `document`, which may be a stranger's.
 
         Raises:
             KeyError: a part is missing.
@@ -63,11 +63,11 @@ class Labels:
 
     @cached_property
     def rows(self) -> NDArray[np.int64]:
-        """(I, 3) the numbers of each instruction's action and objects."""
+        """Return (I, 3) the numbers of each instruction's action and objects."""
         return np.array([self.numbers(each) for each in self.instructions], np.int64)
 
     def numbers(self, done: Instruction) -> tuple[int, int, int]:
-        """The numbers of an instruction; -1 for an action, and for an object, that training never had."""
+        """Return the numbers of an instruction; -1 for an action, and for an object, that training never had."""
         names = [self._objects.get(name, -1) for name in done.objects]
         first, second = (*names, NOTHING, NOTHING)[:2]
         return self._actions.get(done.action, -1), first, second
@@ -82,14 +82,17 @@ class Labels:
 
 
 WIDTH = 64
-"""Of the pictures that a network of whole frames looks at."""
+"""Width of the pictures that a network of whole frames looks at, pixels."""
 
 Pictures = Sequence[NDArray[np.uint8]]
 """(T, H, W, 3) colours of each film's frames, `WIDTH` wide."""
 
 
 def pictures_of(clips: Clips) -> Pictures:
-    """The colours of films as a network of whole frames looks at them: of larger ones some pixels are left out."""
+    """Return the colours of films as a network of whole frames looks at them.
+
+    Of larger ones some pixels are left out.
+    """
     return [_picture(film) for film in clips.films]
 
 
@@ -99,7 +102,7 @@ def _picture(film: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def frames_of(clips: Clips, pictures: Pictures, which: Sequence[int], taken: Iterable[int]) -> NDArray[np.uint8]:
-    """(N, K, H, W, 3) colours of some frames of some clips."""
+    """Return (N, K, H, W, 3) colours of some frames of some clips."""
     places = list(taken)
     chosen = [clips.clips[number] for number in which]
     return np.stack([pictures[each.film][[each.first + n for n in places]] for each in chosen])

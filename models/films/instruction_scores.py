@@ -1,4 +1,4 @@
-"""What a film's clips may show: the instructions that some clip makes probable, each scored in every clip."""
+"""The possible instructions of a film's clips: each that some clip makes probable, scored in every clip."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ OF_A_CLIP = 8
 """Instructions that a clip adds."""
 
 TRUST = 0.5
-"""By which logarithms are multiplied: neighbouring clips share frames, and networks are surer than they are right."""
+"""Factor of logarithms: neighboring clips share frames, and networks are surer than they are right."""
 
 OBJECTS = 4
 """Objects of an action that are tried."""
 
 
 class Reading(NamedTuple):
-    """What a film's clips may show.
+    """The possible instructions of a film's clips.
 
     Attributes:
         instructions: sorted.
@@ -34,12 +34,15 @@ class Reading(NamedTuple):
     scores: Scores
 
     def moves(self, order: StepOrder, trust: float = 1.0) -> Moves:
-        """What it costs to go from one to another, and at the end from none, by the order of steps in programs."""
+        """Return the costs of changing from one instruction to another, by the order of steps in programs.
+
+        The last row has the costs of the first instruction.
+        """
         return -trust * order.logs([*self.instructions, START], self.instructions)
 
 
 def reading(actions: Scores, objects: Scores, table: ClassTable, trust: float = TRUST) -> Reading:
-    """The reading of a film.
+    """Return the reading of a film.
 
     Args:
         actions: (N, A) logarithms of the probabilities of actions in its clips.
@@ -59,7 +62,7 @@ def reading(actions: Scores, objects: Scores, table: ClassTable, trust: float = 
 
 
 def _probable(actions: Scores, objects: Scores, table: ClassTable) -> Iterable[tuple[int, int, int]]:
-    """The most probable instructions of a clip."""
+    """Return the most probable instructions of a clip."""
     found = sorted(_options(actions, objects, table), key=lambda option: (-option[0], option[1]))
     return [option for _, option in found[:OF_A_CLIP]]
 

@@ -1,4 +1,4 @@
-"""The classifier of clips that looks at each class of the masks: where it is, and what it does beside the person."""
+"""The classifier of clips that reads each class of the masks: its position, and its behavior near the person."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "clips-seen"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 AT_ONCE = 128
 """Clips that are classified at once."""
 
 
 class Scored(NamedTuple):
-    """What clips are taken for: logarithms of probabilities.
+    """The scores of a classifier for clips, as logarithms of probabilities.
 
     Attributes:
         actions: (N, A).
@@ -79,7 +79,7 @@ class SeenModel(Settings):
     masks: str = ""
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", HEADS, "the heads of the transformer share it")
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedSeenModel:
@@ -129,7 +129,7 @@ class SeenModel(Settings):
         return weights
 
     def network(self, table: ClassTable) -> SeenNetwork:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         named = torch.zeros(len(table) + 1, dtype=torch.bool)
         named[list(table.named)] = True
         tensors = torch.from_numpy(table.traits), torch.from_numpy(table.afforded), named
@@ -138,7 +138,7 @@ class SeenModel(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedSeenModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         settings, table = cls.of(checkpoint.settings), ClassTable.read(checkpoint.content["table"])
         network = filled(lambda: settings.network(table), checkpoint.weights).to(device())
         order = StepOrder.read(checkpoint.content["order"])
@@ -164,11 +164,14 @@ class TrainedSeenModel:
     facts: dict[str, Any] = field(default_factory=dict)
 
     def named(self, clips: Clips) -> list[Instruction]:
-        """The instruction that each clip is taken for."""
+        """Return the instruction that each clip is taken for."""
         return self.named_of(seen_clips(clips, self.table, self.settings.context))
 
     def named_of(self, shown: SeenClips) -> list[Instruction]:
-        """The same of what clips show: the most probable action, and its most probable objects."""
+        """Return the instructions predicted from features of clips.
+
+        The most probable action and its most probable objects.
+        """
         found = []
         for scores in self._scored(shown):
             actions = scores.actions.argmax(1)
@@ -183,12 +186,12 @@ class TrainedSeenModel:
         return Instruction(self.table.actions[action], names)
 
     def readings(self, clips: Clips) -> Iterator[Reading]:
-        """What the clips of each film may show, film by film."""
+        """Yield the possible instructions of the clips of each film, film by film."""
         for found in self.scored(clips):
             yield reading(found.actions, found.objects, self.table)
 
     def scored(self, clips: Clips) -> Iterator[Scored]:
-        """What the clips of each film are taken for, film by film."""
+        """Yield the scores of the clips of each film, film by film."""
         for part in clips.by_film():
             shown = seen_clips(part, self.table, self.settings.context)
             yield Scored(*(np.concatenate(columns) for columns in zip(*self._scored(shown), strict=True)))
@@ -215,7 +218,7 @@ class TrainedSeenModel:
         raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         content = {"table": self.table.document(), "order": self.order.document()}
         return Checkpoint(NAME, asdict(self.settings), content, weights, self.facts)

@@ -1,7 +1,7 @@
-"""A network that names the instruction of a clip by what is seen of each class, and points at the objects.
+"""A network that names the instruction of a clip by the features of each class, and points at the objects.
 
-A class that training never had as an object can be named: it is known by its properties and by what it does beside the
-person. Classes that no frame shows are named from a list.
+The network can name a class that was never an object in training. It knows such a class by its properties and by its
+behavior near the person. Classes that no frame shows are named from a list.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from hearth.models.films.mask_features import NUMBERS, PEOPLE
 
 FRAMES = 9
 LOOKED_AT = slice(0, FRAMES, 2)
-"""Frames in which the network looks at what is around the person: all would take twice as long."""
+"""Frames in which the network reads the area around the person: all frames would take twice as long."""
 
 HEADS = 4
-"""Of the attention among classes."""
+"""Heads of the attention among classes."""
 
 CHANNELS = (10, 24, 32)
-"""Of a class and of the convolutions around the person."""
+"""Channels of a class and of the convolutions around the person."""
 
 NEAR = 48
-"""Numbers of what is around the person in a frame."""
+"""Numbers in the vector of the area around the person in a frame."""
 
 NEVER = -12.0
 """Logarithm of how improbable an object is that the action does not afford."""
@@ -44,7 +44,7 @@ class SeenBatch(NamedTuple):
     crops: Tensor  # (B, FRAMES, CROP, CROP) long
 
     def mirrored(self, which: Tensor) -> SeenBatch:
-        """The batch with some clips, (B,) of bool, left and right exchanged."""
+        """Return the batch with some clips, (B,) of bool, left and right exchanged."""
         signs = torch.ones(NUMBERS, device=which.device)
         signs[list(MIRRORED)] = -1
         numbers = torch.where(which[:, None, None, None], self.numbers * signs, self.numbers)
@@ -57,7 +57,7 @@ class SeenBatch(NamedTuple):
 
 
 class PersonNetwork(nn.Module):
-    """The person in a clip, and what is around it.
+    """The network over the person in a clip and the area around the person.
 
     Args:
         traits: of a class.
@@ -79,7 +79,7 @@ class PersonNetwork(nn.Module):
                                   nn.Dropout(dropout), nn.Linear(2 * width, width))  # fmt: skip
 
     def forward(self, people: Tensor, crops: Tensor, traits: Tensor) -> Tensor:
-        """(B, T, PEOPLE), (B, FRAMES, CROP, CROP) and (rows, traits) -> (B, width)."""
+        """Map (B, T, PEOPLE), (B, FRAMES, CROP, CROP) and (rows, traits) to (B, width)."""
         seen = crops[:, LOOKED_AT]
         planes = self.colour(traits)[seen].permute(0, 1, 4, 2, 3)  # (B, looked at, zero, CROP, CROP)
         near = self.near(planes.flatten(0, 1)).unflatten(0, seen.shape[:2])
@@ -125,7 +125,7 @@ class SeenNetwork(nn.Module):
         self.listed = nn.ModuleList(nn.Linear(width, rows) for _ in range(PLACES))
 
     def read(self, batch: SeenBatch) -> tuple[Tensor, Tensor]:
-        """(B, width) the clip and (B, K, width) its classes."""
+        """Return (B, width) the clip and (B, K, width) its classes."""
         vectors = self.vector(batch.classes)
         if self.training:
             vectors = vectors * (torch.rand(*batch.classes.shape, 1, device=vectors.device) >= self.unnamed)
@@ -137,11 +137,11 @@ class SeenNetwork(nn.Module):
         return read[:, 0], read[:, 1:]
 
     def actions(self, clip: Tensor) -> Tensor:
-        """(B, width) -> (B, actions)."""
+        """Map (B, width) to (B, actions)."""
         return self.action(clip).log_softmax(-1)
 
     def objects(self, batch: SeenBatch, clip: Tensor, classes: Tensor, action: Tensor, place: int) -> Tensor:
-        """(B, A, rows) of an action's first or second object, for (B, A) actions."""
+        """Return (B, A, rows) of an action's first or second object, for (B, A) actions."""
         asked = self.asked[place](action)  # (B, A, width)
         points = torch.tanh(self.pointed[place](classes)[:, None] + (asked + clip[:, None])[:, :, None])
         points = self.worth[place](points).squeeze(-1)  # (B, A, K)
@@ -153,7 +153,7 @@ class SeenNetwork(nn.Module):
 
 
 def loss_of(network: SeenNetwork, batch: SeenBatch, wanted: Tensor, weights: Tensor) -> Tensor:
-    """Of the actions, and of their objects given them.
+    """Return the loss of the actions, and of their objects given the actions.
 
     Args:
         network: that is trained.

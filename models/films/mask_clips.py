@@ -1,4 +1,4 @@
-"""Clips as what is seen of each class in their frames: the arrays that `mask_clip_network` reads."""
+"""Clips as features of each class in their frames: the arrays that `mask_clip_network` reads."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CONTEXT = (6, 9, 12, 16, 20, 25, 30)
 
 
 class SeenClips(NamedTuple):
-    """What N clips of F frames show, with T frames of context: T is F where there is none.
+    """The features of N clips of F frames, with T frames of context: T is F where there is none.
 
     Attributes:
         classes: (N, K) rows of the class table; 0 fills up.
@@ -37,25 +37,25 @@ class SeenClips(NamedTuple):
     crops: NDArray[np.int16]
 
     def part(self, which: NDArray[np.int64] | slice) -> SeenClips:
-        """Some of the clips."""
+        """Return some of the clips."""
         return SeenClips(*(getattr(self, name)[which] for name in self._fields))
 
 
 def joined(parts: Sequence[SeenClips]) -> SeenClips:
-    """The clips of several parts, one after another."""
+    """Return the clips of several parts, one after another."""
     if len(parts) == 1:
         return parts[0]  # half a gigabyte is not copied
     return SeenClips(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 def offsets(frames: int, context: bool) -> NDArray[np.int64]:
-    """(T,) the frames of a clip and of its context, from the clip's first."""
+    """Return (T,) the frames of a clip and of its context, from the clip's first."""
     around = sorted([-each for each in CONTEXT] + [*CONTEXT]) if context else []
     return np.array([*range(frames), *(frames // 2 + each for each in around)], np.int64)
 
 
 def seen_clips(clips: Clips, table: ClassTable, context: bool = False, report: Seen = unseen) -> SeenClips:
-    """What clips show, in their order; each film is read once.
+    """Return the features of clips, in their order; each film is read once.
 
     Args:
         clips: in the order of their films.

@@ -1,4 +1,4 @@
-"""What masks show of each class and of the person, frame by frame, as numbers that do not depend on the picture's size.
+"""Features of each class and of the person in masks, frame by frame, as numbers independent of the picture's size.
 
 Lengths are heights of the person where they are about the person, halves of the picture where they are places in it.
 """
@@ -11,19 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 NUMBERS = 14
-"""Of a class in a frame, see `_numbers`."""
+"""Number of features of a class in a frame, see `_numbers`."""
 
 PEOPLE = 9
-"""Of the person in a frame, see `_person`."""
+"""Number of features of the person in a frame, see `_person`."""
 
 CROP = 20
-"""Width and height of what is around the person."""
+"""Width and height of the array of the area around the person, cells."""
 
 AROUND = 0.65
-"""Half the width of what is around the person, by the person's height or width, whichever is greater."""
+"""Half the width of the area around the person, as a multiple of the person's height or width (the greater)."""
 
 REACH = 0.03
-"""How far from the person what touches it is, by the picture's height."""
+"""Largest distance at which a pixel counts as touching the person, as a share of the picture's height."""
 
 
 class SeenFilm(NamedTuple):
@@ -43,7 +43,7 @@ class SeenFilm(NamedTuple):
 
 
 def seen_film(masks: NDArray[np.uint16], person: int) -> SeenFilm:
-    """What a film shows.
+    """Return the features of a film.
 
     Args:
         masks: (T, H, W) class numbers.
@@ -66,7 +66,10 @@ def seen_film(masks: NDArray[np.uint16], person: int) -> SeenFilm:
 
 
 def _person(body: NDArray[np.bool_], changed: float) -> NDArray[np.float64]:
-    """Of the person: seen, left, right, top, bottom, middle (x, y), share of the picture; how much of this changed."""
+    """Return the person's features.
+
+    Visible, left, right, top, bottom, middle (x, y), share of the picture; share that changed.
+    """
     height, width = body.shape
     found = np.zeros(PEOPLE)
     found[8] = changed
@@ -79,13 +82,13 @@ def _person(body: NDArray[np.bool_], changed: float) -> NDArray[np.float64]:
 
 
 def _size(who: NDArray[np.float64], shape: tuple[int, ...]) -> float:
-    """The person's height or width in pixels, whichever is greater."""
+    """Return the person's height or width in pixels, whichever is greater."""
     height, width = shape
     return max(float(who[4] - who[3]) * height / 2, float(who[2] - who[1]) * width / 2, 2.0)
 
 
 class _Frame(NamedTuple):
-    """A frame's pixels: their places in a list of classes, in what order those are sorted, and (x, y) of each."""
+    """A frame's pixels: their places in a list of classes, the order that sorts those places, and (x, y) of each."""
 
     classes: int
     flat: NDArray[np.int64]
@@ -102,11 +105,11 @@ class _Frame(NamedTuple):
         return cls(count, flat, order, xs, ys, np.bincount(flat, minlength=count).astype(np.float64))
 
     def sums(self, values: NDArray[Any]) -> NDArray[np.float64]:
-        """(count,) the sum over each class's pixels."""
+        """Return (count,) the sum over each class's pixels."""
         return np.bincount(self.flat, values, self.classes).astype(np.float64)
 
     def ends(self, values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """The least and the greatest over the pixels of each class that is there."""
+        """Return the least and the greatest over the pixels of each class that is there."""
         given = values[self.order]
         starts = (np.cumsum(self.area) - self.area).astype(np.int64)[self.area > 0]
         return np.minimum.reduceat(given, starts), np.maximum.reduceat(given, starts)
@@ -119,11 +122,12 @@ def _numbers(
     who: NDArray[np.float64],
     before: NDArray[np.int64] | None,
 ) -> NDArray[np.float64]:
-    """(count, NUMBERS) of each class in a frame of their places in a list.
+    """Return (count, NUMBERS) of each class in a frame of their places in a list.
 
-    Seen; root of its share of the picture; middle (x, y); width and height; from the person's middle (x, y); distance
-    from the person; root of what touches the person; where (x, y) on the person it is nearest; share that has changed;
-    how much larger than a frame ago.
+    The numbers are: whether the class is visible; the root of its share of the picture; its middle (x, y); its width
+    and height; its offset (x, y) from the person's middle; its distance from the person; the root of the area that
+    touches the person; the point (x, y) on the person where it is nearest; the share that has changed; and its growth
+    since the previous frame.
     """
     height, width = places.shape
     frame = _Frame.of(places, count)
@@ -150,7 +154,7 @@ def _numbers(
 def _beside(
     frame: _Frame, x: NDArray[np.float64], y: NDArray[np.float64], body: NDArray[np.bool_], who: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(count, 6) where each class, with its middle at (x, y), is beside the person."""
+    """Return (count, 6) positions of each class, with its middle at (x, y), relative to the person."""
     from scipy.ndimage import distance_transform_edt
 
     height, width = body.shape
@@ -168,7 +172,10 @@ def _beside(
 
 
 def _crop(mask: NDArray[np.uint16], who: NDArray[np.float64]) -> NDArray[np.uint16]:
-    """(CROP, CROP) class numbers around the person, the nearest of each cell's middle; 0 outside of the picture."""
+    """Return (CROP, CROP) class numbers around the person, the nearest of each cell's middle.
+
+    Cells outside of the picture are 0.
+    """
     if not who[0]:
         return np.zeros((CROP, CROP), np.uint16)
     height, width = mask.shape

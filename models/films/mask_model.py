@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
 NAME = "masks"
-"""Of its checkpoints."""
+"""Name of the model's checkpoints."""
 
 AT_ONCE = 16
 """Pictures that are read at once."""
 
 MOST_CLASSES = 255
-"""Classes that a palette has numbers for, beside 0."""
+"""Classes that a palette has numbers for, without 0."""
 
 CHECKED = 12
 """Frames of a validation film from one that is compared to the next one."""
@@ -85,7 +85,7 @@ class MaskModel(Settings):
     films: int = 0
 
     def fitting(self) -> None:
-        """The norms divide the width."""
+        """Check that the norms divide the width."""
         self.multiple("width", GROUPS, "the groups of its norms")
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedMaskModel:
@@ -121,14 +121,14 @@ class MaskModel(Settings):
         return model
 
     def _lit(self, pictures: NDArray[np.uint8], random: Random) -> torch.Tensor:
-        """(B, H, W, 3) pictures in another light, each in one of its own."""
+        """Return (B, H, W, 3) pictures in another light, each in one of its own."""
         draw = np.random.Generator(np.random.PCG64(random.getrandbits(64)))
         bright = 1 + self.light * draw.uniform(-1, 1, (len(pictures), 1, 1, 1))
         tint = 1 + self.light / 3 * draw.uniform(-1, 1, (len(pictures), 1, 1, 3))
         return torch.from_numpy(np.minimum(pictures * (bright * tint).astype(np.float32), 255))
 
     def _classes(self, masks: NDArray[np.uint16]) -> tuple[tuple[int, ...], torch.Tensor]:
-        """The classes that are learned, the commonest first, and the weights of the palette's numbers."""
+        """Return the classes that are learned, the commonest first, and the weights of the palette's numbers."""
         counts = np.zeros(np.iinfo(masks.dtype).max + 1, np.int64)
         for frame in masks:  # of all at once numpy would make a copy of eight bytes a pixel
             counts += np.bincount(frame.ravel(), minlength=len(counts))
@@ -138,19 +138,19 @@ class MaskModel(Settings):
         return classes, torch.tensor(shares**-self.balance, dtype=torch.float32)
 
     def network(self, classes: Sequence[int]) -> MaskNetwork:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         return MaskNetwork(len(classes) + 1, self.width)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedMaskModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         settings, classes = cls.of(checkpoint.settings), read_classes(checkpoint.content)
         network = filled(lambda: settings.network(classes), checkpoint.weights).to(device())
         return TrainedMaskModel(settings, classes, network, dict(checkpoint.trained))
 
 
 def read_classes(content: Mapping[str, Any]) -> tuple[int, ...]:
-    """The classes of a checkpoint, which may be a stranger's.
+    """Return the classes of a checkpoint, which may be a stranger's.
 
     Raises:
         KeyError: they lack.
@@ -165,7 +165,7 @@ def read_classes(content: Mapping[str, Any]) -> tuple[int, ...]:
 
 
 def mean_iou(wanted: NDArray[np.uint8], found: NDArray[np.uint8], classes: int) -> float:
-    """The mean over the classes that are there of what both have, by what one has."""
+    """Return the mean intersection over union of the classes that occur."""
     pairs = np.bincount(wanted.ravel().astype(np.int64) * classes + found.ravel(), minlength=classes * classes)
     table = pairs.reshape(classes, classes)
     both, one, other = table.diagonal(), table.sum(1), table.sum(0)
@@ -191,19 +191,19 @@ class TrainedMaskModel:
 
     @property
     def palette(self) -> NDArray[np.uint8]:
-        """(65536,) the number of each class; 0 for those that are not learned."""
+        """Return (65536,) the number of each class; 0 for those that are not learned."""
         found = np.zeros(1 << 16, np.uint8)
         found[list(self.classes)] = np.arange(1, len(self.classes) + 1, dtype=np.uint8)
         return found
 
     def masks(self, pictures: NDArray[np.uint8]) -> NDArray[np.uint16]:
-        """(T, H, W, 3) colours -> (T, H, W) class numbers as true masks have them."""
+        """Map (T, H, W, 3) colours to (T, H, W) class numbers as true masks have them."""
         classes = np.array([0, *self.classes], np.uint16)
         found: NDArray[np.uint16] = classes[np.concatenate([*self.numbers(pictures)])]
         return found
 
     def numbers(self, pictures: NDArray[np.uint8]) -> Iterator[NDArray[np.uint8]]:
-        """(T, H, W, 3) colours -> the palette's numbers, `AT_ONCE` frames at a time."""
+        """Map (T, H, W, 3) colours to the palette's numbers, `AT_ONCE` frames at a time."""
         self.network.eval()
         place = place_of(self.network)
         for start in range(0, len(pictures), AT_ONCE):
@@ -221,6 +221,6 @@ class TrainedMaskModel:
         raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.cpu().numpy() for name, value in self.network.state_dict().items()}
         return Checkpoint(NAME, asdict(self.settings), {"classes": [*self.classes]}, weights, self.facts)

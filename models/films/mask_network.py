@@ -1,7 +1,7 @@
 """A small network with dilated convolutions that predicts the class of each pixel of a picture (thesis 4.3.3).
 
-Its layers see a picture whole, at half and at a quarter of its size; those in the middle are dilated, and know the mean
-of the picture, which says what room it is. What they find is brought back to the whole size, where most things that are
+Its layers see a picture whole, at half and at a quarter of its size. Those in the middle are dilated, and know the mean
+of the picture, which identifies the room. Their output is brought back to the whole size, where most things that are
 grabbed are a few pixels.
 """
 
@@ -12,17 +12,17 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 DILATIONS = (1, 2, 4, 8, 1)
-"""Of the layers in the middle."""
+"""Dilations of the layers in the middle."""
 
 GROUPS = 8
-"""Of numbers that are normed together; every width is a multiple."""
+"""Groups of numbers that are normed together; every width is a multiple."""
 
 LARGE, MEDIUM = 24, 48
 """Numbers for a pixel at the whole size and at half of it."""
 
 
 def _layer(one: int, other: int, size: int = 3, *, stride: int = 1, dilation: int = 1) -> nn.Sequential:
-    """A convolution that keeps the middle of the picture, its norm and a ReLU."""
+    """Return a convolution that keeps the middle of the picture, its norm and a ReLU."""
     fill = dilation * (size // 2)
     convolution = nn.Conv2d(one, other, size, stride=stride, padding=fill, dilation=dilation, bias=False)
     return nn.Sequential(convolution, nn.GroupNorm(GROUPS, other), nn.ReLU())
@@ -48,7 +48,7 @@ class MaskNetwork(nn.Module):
         self.scores = nn.Conv2d(LARGE, classes, 1)
 
     def forward(self, pictures: Tensor) -> Tensor:
-        """(B, H, W, 3) colours from 0 to 255 -> (B, classes, H, W)."""
+        """Map (B, H, W, 3) colours from 0 to 255 to (B, classes, H, W)."""
         large = self.large(pictures.permute(0, 3, 1, 2).float() / 128 - 1)
         medium = self.medium(large)
         found = self.small(medium)
@@ -62,5 +62,5 @@ class MaskNetwork(nn.Module):
 
 
 def _enlarged(small: Tensor, large: Tensor) -> Tensor:
-    """(B, C, h, w) as large as another."""
+    """Return (B, C, h, w) as large as another."""
     return functional.interpolate(small, large.shape[-2:], mode="bilinear", align_corners=False)

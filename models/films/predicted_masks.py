@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def mask_predictor(model: str) -> TrainedMaskModel:
-    """A trained network that predicts masks.
+    """Return a trained network that predicts masks.
 
     Args:
         model: a checkpoint of `masks`: its folder, or the name of one that comes with Hearth.
@@ -38,7 +38,7 @@ def mask_predictor(model: str) -> TrainedMaskModel:
 
 
 def predicted(model: str, dataset: Dataset, part: str, most: int = 0) -> Clips:
-    """The clips of a part's coloured films as a network predicts their masks.
+    """Return the clips of a part's coloured films as a network predicts their masks.
 
     Args:
         model: as of `mask_predictor`.

@@ -1,4 +1,4 @@
-"""Which step follows which in programs: by their actions, and by what their objects have to do with each other."""
+"""The order of steps in programs: by their actions, and by the relations between their objects."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hearth.models.films.clip_data import Clips, Instruction
 
 TRUST = 8.0
-"""Examples of an action after which what follows it counts more than what follows any."""
+"""Number of examples of an action above which its own successors count more than those of all actions."""
 
 START = Instruction("", ())
 """Before the first step."""
@@ -23,7 +23,7 @@ START = Instruction("", ())
 
 @dataclass(frozen=True)
 class StepOrder:
-    """How often steps follow each other.
+    """Counts of steps that follow each other.
 
     Attributes:
         counts: action -> (next action, for each object of the next step its place among the step's objects, or -1)
@@ -34,7 +34,7 @@ class StepOrder:
 
     @classmethod
     def of(cls, programs: Iterable[Sequence[Instruction]]) -> StepOrder:
-        """That of programs."""
+        """Return the order of steps in programs."""
         counts: defaultdict[str, Counter[tuple[str, tuple[int, ...]]]] = defaultdict(Counter)
         for program in programs:
             for one, other in pairwise([START, *program]):
@@ -42,7 +42,7 @@ class StepOrder:
         return cls({action: dict(found) for action, found in counts.items()})
 
     def document(self) -> list[Any]:
-        """As JSON."""
+        """Return the order as JSON."""
         return sorted(
             [one, other, [*places], count]
             for one, found in self.counts.items()
@@ -51,7 +51,7 @@ class StepOrder:
 
     @classmethod
     def read(cls, document: Any) -> StepOrder:
-        """That of `document`, which may be a stranger's.
+        """Return the order of `document`, which may be a stranger's.
 
         Raises:
             TypeError, ValueError: it is not one.
@@ -64,7 +64,7 @@ class StepOrder:
         return cls(dict(counts))
 
     def logs(self, before: Sequence[Instruction], after: Sequence[Instruction]) -> NDArray[np.float32]:
-        """(B, A) logarithms of how probable it is that a step of `after` follows one of `before`."""
+        """Return (B, A) logarithms of how probable it is that a step of `after` follows one of `before`."""
         return np.array([[self._log(one, other) for other in after] for one in before], np.float32)
 
     def _log(self, one: Instruction, other: Instruction) -> float:
@@ -86,7 +86,7 @@ def _kind(one: Instruction, other: Instruction) -> tuple[str, tuple[int, ...]]:
 
 
 def programs_of(clips: Clips) -> list[list[Instruction]]:
-    """What is done in each film, by its clips: steps without a clip lack."""
+    """Return the steps of each film, by its clips: steps without a clip are missing."""
     found: list[list[Instruction]] = [[] for _ in clips.executions]
     last: tuple[int, int] | None = None
     for clip in clips.clips:

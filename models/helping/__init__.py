@@ -1,1 +1,1 @@
-"""What to do for somebody else's goal, and how: the learned policies of Hybrid and HRL (thesis 6.5.2, B.3)."""
+"""The choice of a subgoal and of actions for another person's goal: policies of Hybrid and HRL (thesis 6.5.2, B.3)."""

@@ -15,7 +15,7 @@ VALUE, ENTROPY, CLOSE = 0.25, 0.01, 0.1
 
 
 def discounted(rewards: Sequence[float], ticks: Sequence[int], discount: float) -> list[float]:
-    """The returns from some ticks on.
+    """Return the returns from some ticks on.
 
     Args:
         rewards: of each tick.
@@ -29,7 +29,7 @@ def discounted(rewards: Sequence[float], ticks: Sequence[int], discount: float) 
 
 
 def imitation(network: nn.Module, batch: Batch) -> Tensor:
-    """Minus the mean logarithm of the probability of what was chosen; returns are learnt beside it."""
+    """Return the mean negative log probability of the choices made, plus the loss of predicted returns."""
     seen: Outlook = network(batch)
     there = torch.as_tensor(batch.there)
     loss = -_chosen(seen, batch)[there].mean()
@@ -37,7 +37,10 @@ def imitation(network: nn.Module, batch: Batch) -> Tensor:
 
 
 def actor_critic(network: nn.Module, batch: Batch) -> Tensor:
-    """The loss of A2C over whole episodes that the network has just played; advantages are brought to one scale."""
+    """Return the loss of A2C over whole episodes that the network has just played.
+
+    Advantages are brought to one scale.
+    """
     seen: Outlook = network(batch)
     there = torch.as_tensor(batch.there)
     advantage = (torch.as_tensor(batch.returns) - seen.value.detach())[there]
@@ -47,14 +50,14 @@ def actor_critic(network: nn.Module, batch: Batch) -> Tensor:
 
 
 def entropy(seen: Outlook) -> Tensor:
-    """Of both choices together, (B, T)."""
+    """Return the entropy of both choices together, (B, T)."""
     first, second = seen.first.exp(), seen.second.exp()
     of_second = -(second * seen.second.clamp(min=-1e3)).sum(-1)
     return -(first * seen.first.clamp(min=-1e3)).sum(-1) + (first * of_second).sum(-1)
 
 
 def _chosen(seen: Outlook, batch: Batch) -> Tensor:
-    """The logarithm of the probability of what was chosen, (B, T)."""
+    """Return the log probabilities of the choices made, (B, T)."""
     first, second = torch.as_tensor(batch.choices).unbind(-1)
     of_second = seen.second.gather(2, first[..., None, None].expand(-1, -1, 1, seen.second.shape[-1]))[:, :, 0]
     return seen.first.gather(-1, first[..., None])[..., 0] + of_second.gather(-1, second[..., None])[..., 0]
@@ -65,7 +68,7 @@ def _value_error(seen: Outlook, batch: Batch, there: Tensor) -> Tensor:
 
 
 def _close_error(seen: Outlook, batch: Batch, there: Tensor) -> Tensor | float:
-    """Return how well the low-level policy knows what is within its reach (B.3.4)."""
+    """Return the loss of the low-level policy's predictions of the nodes within its reach (B.3.4)."""
     if seen.close is None:
         return 0.0
     nodes = there[..., None] & (torch.as_tensor(batch.classes) > 0)

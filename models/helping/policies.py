@@ -1,4 +1,4 @@
-"""Policies over subgoals and over actions: their settings, what they choose, their checkpoints."""
+"""Policies over subgoals and over actions: their settings, their choices, their checkpoints."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hearth.models.helping.policy_networks import State
 
 NAMES = {"subgoals": "helping-subgoals", "actions": "helping-actions"}
-"""The models of the registry, by what they choose."""
+"""The models of the registry, by the kind of their choices."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +38,11 @@ class HelpingPolicy(Settings):
     heads: int = 4
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", self.heads, "its `heads` share it")
 
     def network(self, words: Words) -> nn.Module:
-        """A network that has learnt nothing."""
+        """Return a network that has learnt nothing."""
         from hearth.models.helping import policy_networks
 
         made = policy_networks.SubgoalNetwork if self.chooses == "subgoals" else policy_networks.ActionNetwork
@@ -50,7 +50,7 @@ class HelpingPolicy(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedPolicy:
-        """The trained policy of a checkpoint."""
+        """Return the trained policy of a checkpoint."""
         from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
@@ -67,7 +67,7 @@ class TrainedPolicy:
 
     Attributes:
         settings: its own.
-        words: what its subgoals are about.
+        words: the vocabulary of its subgoals.
         network: with its weights.
         facts: how it was trained.
     """
@@ -78,7 +78,7 @@ class TrainedPolicy:
     facts: Mapping[str, Any] = field(default_factory=dict)
 
     def choose(self, scene: Scene, state: State | None, chooser: Random) -> tuple[Pair, State]:
-        """What is drawn by the policy's probabilities, and the state with which the next choice is made."""
+        """Draw a choice by the policy's probabilities, and return it with the state for the next choice."""
         import torch
 
         with torch.no_grad():
@@ -88,11 +88,11 @@ class TrainedPolicy:
         return (first, second), seen.state
 
     def with_facts(self, facts: Mapping[str, Any]) -> TrainedPolicy:
-        """The same, with how it was trained."""
+        """Return the same policy with facts about its training."""
         return replace(self, facts=facts)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         from hearth.models.checkpoint import Checkpoint
 
         weights = {name: value.detach().numpy() for name, value in self.network.state_dict().items()}
@@ -101,7 +101,7 @@ class TrainedPolicy:
 
 
 def untrained(chooses: str, words: Words, seed: int) -> TrainedPolicy:
-    """A policy whose network has learnt nothing; equal for equal seeds."""
+    """Return a policy whose network has learnt nothing; equal for equal seeds."""
     import torch
 
     from hearth.models.devices import device
@@ -113,7 +113,7 @@ def untrained(chooses: str, words: Words, seed: int) -> TrainedPolicy:
 
 
 def _drawn(probabilities: np.ndarray, chooser: Random) -> int:
-    """A number drawn by probabilities."""
+    """Return a number drawn by probabilities."""
     import numpy as np
 
     total = np.cumsum(probabilities)
@@ -122,11 +122,11 @@ def _drawn(probabilities: np.ndarray, chooser: Random) -> int:
 
 @lru_cache(maxsize=8)
 def restored(model: str, chooses: str) -> TrainedPolicy:
-    """A trained policy; read once.
+    """Return a trained policy; read once.
 
     Args:
         model: a checkpoint's folder, or the name of one that comes with Hearth.
-        chooses: what it is to choose.
+        chooses: the kind of its choices.
 
     Raises:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; BAD_ARGUMENT: it chooses something

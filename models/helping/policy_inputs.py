@@ -1,4 +1,4 @@
-"""What a policy is shown when it is to choose, as numbers, and sequences of that as padded arrays."""
+"""The input of a policy at each choice, as numbers, and sequences of inputs as padded arrays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 FEATURES = (
     "open", "closed", "held", "held_by_other", "same_room", "looked_into", "wanted", "target", "dx", "dz", "metres",
 )  # fmt: skip
-"""What is known of a node beside its class; the last three are tens of metres from the agent."""
+"""Features of a node in addition to its class; the last three are tens of meters from the agent."""
 
 KINDS = ("walk", "open", "close", "grab", "put")
 """The kinds of actions of the low-level policy (B.3.4), but for `follow`, which the challenge's actions lack."""
@@ -24,13 +24,13 @@ Pair = tuple[int, int]
 
 
 class Words(NamedTuple):
-    """What subgoals are about: classes of things, and of the furniture or character that they are brought to."""
+    """The vocabulary of subgoals: classes of things, and of the furniture or character that they are brought to."""
 
     things: tuple[str, ...]
     places: tuple[str, ...]
 
     def number(self, thing: str, place: str) -> Pair | None:
-        """A subgoal's numbers; None where one of its words is not known."""
+        """Return a subgoal's numbers; None where one of its words is not known."""
         known = thing in self.things and place in self.places
         return (self.things.index(thing), self.places.index(place)) if known else None
 
@@ -42,8 +42,8 @@ class Scene(NamedTuple):
         classes: numbers of the classes of N visible nodes.
         features: (N, FEATURES).
         wanted: (thing, place, how many are missing) of each part of the goal, or of the subgoal alone.
-        legal: (KINDS, N), what could be done; empty where subgoals are chosen.
-        close: (N,), what is within reach: what the low-level policy is also to predict.
+        legal: (KINDS, N), the possible actions; empty where subgoals are chosen.
+        close: (N,), the nodes within reach, which the low-level policy is also to predict.
     """
 
     classes: tuple[int, ...]
@@ -54,7 +54,7 @@ class Scene(NamedTuple):
 
 
 class Trace(NamedTuple):
-    """What was chosen one after the other, and what came of it: the discounted rewards from each choice to the end."""
+    """A sequence of choices and their returns: the discounted rewards from each choice to the end."""
 
     scenes: tuple[Scene, ...]
     choices: tuple[Pair, ...]

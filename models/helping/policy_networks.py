@@ -1,8 +1,8 @@
 """The networks of Hybrid and HRL (figures B-7, B-8): a transformer over visible nodes, attention by goals, an LSTM.
 
-They differ from the figures in this: what is chosen second depends on what was chosen first; the LSTM is also given
-the encoding of the goal; parts of the goal count as often as they are missing by belief, not as often as they were
-wanted at first; and actions that can't be done have no probability.
+They differ from the figures in four points. The second choice depends on the first. The LSTM also receives the encoding
+of the goal. A part of the goal counts as often as it is missing by belief, not as often as it was wanted at first.
+Impossible actions have no probability.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from torch import Tensor, nn
 from hearth.models.helping.policy_inputs import FEATURES, KINDS, MOST_CLASSES, Batch
 
 State = tuple[Tensor, Tensor]
-"""Of the LSTM."""
+"""State of the LSTM."""
 
 
 class Outlook(NamedTuple):
-    """What a network makes of B sequences of T scenes.
+    """The output of a network for B sequences of T scenes.
 
     Attributes:
-        first: (B, T, A), logarithms of the probabilities of what is chosen first.
-        second: (B, T, A, M), of what is chosen second, by what was chosen first.
+        first: (B, T, A), logarithms of the probabilities of the first choice.
+        second: (B, T, A, M), of the second choice, given the first choice.
         value: (B, T), the return that is expected.
         state: of the LSTM after the last scene.
         close: (B, T, N), scores of nodes' being within reach; None where that is not predicted.
@@ -37,7 +37,7 @@ class Outlook(NamedTuple):
 
 
 class SceneEncoder(nn.Module):
-    """Visible nodes and what they are together.
+    """An encoder of visible nodes, and of a scene as a whole.
 
     Args:
         width: of every vector.
@@ -52,7 +52,7 @@ class SceneEncoder(nn.Module):
         self.together = nn.TransformerEncoder(layer, 1, enable_nested_tensor=False)
 
     def forward(self, batch: Batch) -> tuple[Tensor, Tensor]:
-        """Of each node a vector, (B, T, N, width), and their mean, (B, T, width); zeros where there is no scene."""
+        """Return vectors of nodes, (B, T, N, width), and their mean, (B, T, width); zeros where there is no scene."""
         at = torch.as_tensor(batch.there)
         classes, features = torch.as_tensor(batch.classes)[at], torch.as_tensor(batch.features)[at]  # (scenes, N)
         nodes = self.node(torch.cat([self.classes(classes), features], -1))
@@ -65,7 +65,7 @@ class SceneEncoder(nn.Module):
 
 
 def _spread(found: Tensor, at: Tensor) -> Tensor:
-    """What belongs to the scenes that there are, with zeros for the others."""
+    """Return the values of the existing scenes at their places, with zeros for the others."""
     return found.new_zeros(*at.shape, *found.shape[1:]).index_put((at,), found)
 
 
@@ -79,17 +79,17 @@ class GoalEncoder(nn.Module):
         self.part = nn.Linear(2 * width, width)
 
     def forward(self, wanted: Tensor) -> Tensor:
-        """(B, T, G, 3) to (B, T, width)."""
+        """Map (B, T, G, 3) to (B, T, width)."""
         words = torch.cat([self.thing(wanted[..., 0]), self.place(wanted[..., 1])], -1)
         return (torch.relu(self.part(words)) * wanted[..., 2:]).sum(-2)
 
 
 class Seen(NamedTuple):
-    """What both networks make of B sequences of T scenes before they choose.
+    """The common part of both networks for B sequences of T scenes, before they choose.
 
     Attributes:
         nodes: (B, T, N, width), of each visible node.
-        goal: (B, T, width), of what is missing.
+        goal: (B, T, width), of the missing parts of the goal.
         latent: (B, T, width), of all that was seen until then.
         state: of the LSTM after the last scene.
     """
@@ -117,7 +117,7 @@ class Trunk(nn.Module):
         self.value = nn.Linear(width, 1)
 
     def seen(self, batch: Batch, attention: nn.Linear, state: State | None) -> Seen:
-        """Remember scenes, with attention to what the goal lacks."""
+        """Remember scenes, with attention to the missing parts of the goal."""
         nodes, context = self.encoder(batch)
         goal = self.goal(torch.as_tensor(batch.wanted))
         context = context * torch.sigmoid(attention(goal))
@@ -167,5 +167,5 @@ class ActionNetwork(Trunk):
 
 
 def _masked(scores: Tensor, allowed: Tensor) -> Tensor:
-    """The logarithms of probabilities, where what is not allowed has next to none."""
+    """Return the logarithms of probabilities, with next to no probability for forbidden choices."""
     return scores.masked_fill(~allowed, -1e9).log_softmax(-1)

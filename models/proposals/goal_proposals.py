@@ -1,4 +1,4 @@
-"""Training the goal proposal network on episodes of somebody alone, and asking it (thesis 7.3.3, C.3.2)."""
+"""Training of the goal proposal network on episodes of an agent alone, and its use (thesis 7.3.3, C.3.2)."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ VALIDATION = 10
 """One of how many episodes is for validation."""
 
 Increases = tuple[int, ...]
-"""By how much the count of each predicate has grown since the start."""
+"""The growth of each predicate's count since the start."""
 
 
 class Episode(NamedTuple):
-    """What is learnt from.
+    """An episode of the training data.
 
     Attributes:
         states: the increases at each tick.
@@ -63,16 +63,18 @@ class GoalProposals(Settings):
     batch: int = 256
 
     def network(self) -> ProposalNetwork:
-        """A network that has learnt nothing."""
+        """Return a network that has learnt nothing."""
         from hearth.models.proposals.proposal_network import ProposalNetwork
 
         return ProposalNetwork(self.inputs, self.outputs, self.counts, self.d, self.h)
 
     def fit(self, episodes: Sequence[Episode], how: Training, seen: Seen = unseen) -> TrainedGoalProposals:
-        """The network trained on one state of each episode in each pass, drawn uniformly; a tenth is for validation.
+        """Return the network trained on one state of each episode in each pass, drawn uniformly.
+
+        A tenth is for validation.
 
         Args:
-            episodes: of somebody alone.
+            episodes: of an agent alone.
             how: long and how.
             seen: reports progress.
         """
@@ -110,7 +112,7 @@ class GoalProposals(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGoalProposals:
-        """The trained network of a checkpoint."""
+        """Return the trained network of a checkpoint."""
         from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
@@ -133,7 +135,7 @@ class TrainedGoalProposals:
     facts: Mapping[str, Any] = field(default_factory=dict)
 
     def probabilities(self, increases: Increases) -> np.ndarray:
-        """(P, c): how probably each predicate of goals is wanted 0, 1, ... times, each by itself."""
+        """Return (P, c): how probably each predicate of goals is wanted 0, 1, ... times, each by itself."""
         import torch
 
         with torch.no_grad():
@@ -142,7 +144,7 @@ class TrainedGoalProposals:
         return found
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs; weights as numbers of 16 bits, which is half the file."""
+        """Return all that `restored` needs; weights as numbers of 16 bits, which is half the file."""
         import numpy as np
 
         from hearth.models.checkpoint import Checkpoint
@@ -151,13 +153,13 @@ class TrainedGoalProposals:
         return Checkpoint(NAME, asdict(self.settings), {}, weights, self.facts)
 
     def about(self, facts: Mapping[str, Any]) -> TrainedGoalProposals:
-        """The same with what else is known of its training."""
+        """Return the same model with more facts about its training."""
         return replace(self, facts={**facts, **self.facts})
 
 
 @lru_cache(maxsize=4)
 def restored(model: str) -> TrainedGoalProposals:
-    """A trained network; read once.
+    """Return a trained network; read once.
 
     Args:
         model: a checkpoint's folder, or the name of one that comes with Hearth.

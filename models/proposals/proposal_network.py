@@ -7,7 +7,7 @@ from torch import Tensor, nn
 
 
 class ProposalNetwork(nn.Module):
-    """From the increase of each predicate's count since the start to the counts that are wanted.
+    """A network from the increase of each predicate's count since the start to the wanted counts.
 
     Each increase, a one-hot vector, goes through one layer of d units; all of them together through an MLP to h units
     for each predicate of goals; those through an MLP to the counts. Only predicates that goals have are predicted: the

@@ -19,7 +19,7 @@ class Candidate(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """A choice: what all its candidates share, the candidates, and which of them is right (-1 if unknown).
+    """A choice: the common features of its candidates, the candidates, and the index of the right one (-1 if unknown).
 
     Attributes:
         names: numbers of names, each with a meaning of its own.
@@ -65,7 +65,7 @@ class Packed(NamedTuple):
         return len(self.right)
 
     def part(self, places: Sequence[int] | np.ndarray) -> Packed:
-        """Some of the choices."""
+        """Return some of the choices."""
         chosen = np.asarray(places, dtype=np.int64)
         counts = (self.starts[1:] - self.starts[:-1])[chosen]
         starts = np.concatenate([[0], np.cumsum(counts)])

@@ -49,7 +49,7 @@ class Ranker(nn.Module):
         nn.init.zeros_(self.product.weight)
 
     def forward(self, batch: Packed) -> Tensor:
-        """The scores of all candidates, (C,)."""
+        """Return the scores of all candidates, (C,)."""
         columns = batch.names, batch.bag, batch.text, batch.candidate_names
         names, bag, text, c_names = (torch.as_tensor(column).long() for column in columns)
         numbers, c_numbers = (torch.as_tensor(column).float() for column in (batch[2], batch[4]))
@@ -65,12 +65,12 @@ class Ranker(nn.Module):
         return self.rest(hidden).squeeze(1) + alike
 
     def _mean(self, bag: Tensor) -> Tensor:
-        """The mean embedding of each bag, (D, width)."""
+        """Return the mean embedding of each bag, (D, width)."""
         return self.embedding(bag).sum(1) / (bag > 0).sum(1, keepdim=True).clamp(min=1)
 
 
 def log_probabilities(scores: Tensor, starts: Tensor) -> Tensor:
-    """The logarithms of the probabilities of candidates, (C,): a softmax over those of each choice."""
+    """Return the logarithms of the probabilities of candidates, (C,): a softmax over those of each choice."""
     counts = starts[1:] - starts[:-1]
     of = torch.repeat_interleave(torch.arange(len(counts)), counts)
     highest = torch.full((len(counts),), -torch.inf).scatter_reduce(0, of, scores.detach(), "amax")
@@ -80,12 +80,12 @@ def log_probabilities(scores: Tensor, starts: Tensor) -> Tensor:
 
 
 def loss_of(ranker: Ranker, batch: Packed) -> Tensor:
-    """The mean negative logarithm of the probability of the right candidates."""
+    """Return the mean negative logarithm of the probability of the right candidates."""
     starts = torch.as_tensor(batch.starts)
     return -log_probabilities(ranker(batch), starts)[starts[:-1] + torch.as_tensor(batch.right)].mean()
 
 
 def best(scores: Tensor, starts: Tensor) -> list[int]:
-    """The index of the best candidate of each choice; of equal ones the first."""
+    """Return the index of the best candidate of each choice; of equal ones the first."""
     found, places = scores.detach().numpy(), starts.tolist()
     return [best_places(found[a:b])[0] for a, b in pairwise(places)]

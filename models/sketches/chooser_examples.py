@@ -1,4 +1,4 @@
-"""What the chooser learns from: objects of sketches with their nodes, and steps with what could have come instead.
+"""The training data of the chooser: objects of sketches with their nodes, and steps with their alternatives.
 
 Nodes and steps before a choice are those of the program; only the choice is predicted.
 """
@@ -22,7 +22,7 @@ from hearth.simulation.engine import act
 
 
 def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]:
-    """The choice of a node for each object of each sketch that has several candidates, the right one among them."""
+    """Yield the choice of a node for each object of each sketch with several candidates, the right one among them."""
     for each in examples:
         places = Places(each.world, each.sketch, words)
         index = each.world.home.index
@@ -39,11 +39,11 @@ def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]
 def step_choices(
     examples: Iterable[Grounded], habits: Habits, words: Words, *, text: bool = False, most: int = 24
 ) -> Iterator[Choice]:
-    """The choice of each step of each program, and of its end; those that are not offered are left out.
+    """Yield the choice of each step of each program, and of its end; those that are not offered are left out.
 
     Args:
         examples: programs with their sketches.
-        habits: what programs do beside their sketches.
+        habits: the steps of programs that their sketches leave out.
         words: numbers of names.
         text: whether the title and the description are looked at.
         most: candidates of a choice, the right one and random others.

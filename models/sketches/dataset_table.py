@@ -1,4 +1,4 @@
-"""Table 5.1: how many programs, how long, in graphs of how many nodes and edges; the thesis's beside a dataset's."""
+"""Table 5.1: numbers and lengths of programs, nodes and edges of graphs; the thesis's figures and a dataset's."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _KINDS = {"Executable": "executable", "Augmented": "augmented", "All executable"
 
 
 def dataset_table(dataset: Dataset) -> list[DatasetRow]:
-    """The rows of table 5.1; `hearth augmented` prints the same numbers."""
+    """Return the rows of table 5.1; `hearth augmented` prints the same numbers."""
     query = "SELECT count(*), round(avg(len(steps)), 2) FROM programs WHERE parent_id IS NULL"
     ((count, length),) = dataset.rows(query)[1]
     original = DatasetRow("Original", "ours", count, length, None, None)

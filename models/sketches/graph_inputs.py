@@ -1,6 +1,7 @@
 """Graphs of environments for graph networks: only nodes that matter to a sketch, with their labels and edges (5.4.1).
 
-Of 450 nodes some 40 matter: the character, the rooms, what the sketch may mean, what bears and holds it, what is on it.
+Of 450 nodes some 40 matter: the character, the rooms, the candidates of the sketch, the nodes that bear and hold these,
+and the nodes on them.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class GraphInput(NamedTuple):
 
 
 def graph_input(sketch: Steps, world: World, words: Words, most: int = MOST) -> GraphInput:
-    """The graph that matters to a sketch, whose nodes are not looked at.
+    """Return the graph that matters to a sketch, whose nodes are not looked at.
 
     Args:
         sketch: names alone count.
@@ -75,7 +76,7 @@ def graph_input(sketch: Steps, world: World, words: Words, most: int = MOST) -> 
 
 
 def _chosen(places: Places, world: World, most: int) -> tuple[int, ...]:
-    """The character, the rooms, then by how much they matter."""
+    """Return the character, the rooms, then by how much they matter."""
     home = world.home
     meant = [node for nodes in places.candidates.values() for node in nodes]
     around = [i for node in meant for i in indices(rows.on(world, node) | rows.inside(world, node) & ~home.rooms)]
@@ -102,7 +103,7 @@ def _edges(world: World, place: dict[int, int]) -> list[tuple[int, int, int]]:
 
 
 class Batch(NamedTuple):
-    """B graphs and sketches, filled up to the longest; masks say what is real.
+    """B graphs and sketches, padded to the longest; masks mark the real entries.
 
     Attributes:
         classes: (B, N). labels: (B, N, LABELS). real: (B, N) bool.
@@ -121,7 +122,7 @@ class Batch(NamedTuple):
 
 
 def batched(inputs: Sequence[GraphInput], steps: Sequence[np.ndarray] = ()) -> Batch:
-    """Inputs as one batch, with the steps that are to be predicted, if they are known."""
+    """Return inputs as one batch, with the steps that are to be predicted, if they are known."""
     count, nodes = len(inputs), max(len(each.nodes) for each in inputs)
     longest = max(len(each.sketch) for each in inputs)
     classes, real = np.zeros((count, nodes), np.int64), np.zeros((count, nodes), bool)
@@ -140,13 +141,14 @@ def batched(inputs: Sequence[GraphInput], steps: Sequence[np.ndarray] = ()) -> B
 
 
 PAD, NO_NODE, END = -3, -1, -2
-"""In place of a position: nothing to be predicted; a step without objects, or an object that the graph leaves out; the
-program's end.
+"""Numbers in place of a position: nothing to predict; a step without a node in the graph; the program's end.
+
+A step of the second kind has no object, or an object that the graph leaves out.
 """
 
 
 def targets(steps: Steps, given: GraphInput, world: World, actions: Sequence[str]) -> np.ndarray:
-    """The steps of a program as positions of action, first and second object, and its end; (T + 1, 3).
+    """Return the steps of a program as positions of action, first and second object, and its end; (T + 1, 3).
 
     An object that the reduced graph leaves out is PAD: nothing is learned from it.
     """

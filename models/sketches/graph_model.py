@@ -40,7 +40,7 @@ class GraphModel(Settings):
         hidden: of encoder and decoder.
         batch: programs at a time.
         programs: that are learned from, at most.
-        constrained: whether only what can be done is written; the thesis's models are free.
+        constrained: whether only possible steps are written; the thesis's models are free.
     """
 
     change: Change = "residual"
@@ -84,12 +84,12 @@ class GraphModel(Settings):
             yield given, targets(each.steps, given, each.world, actions)
 
     def network(self, words: Words, actions: Sequence[str]) -> GraphNetwork:
-        """The network, with random weights."""
+        """Return the network, with random weights."""
         return GraphNetwork(words.size, len(actions), self.size, self.hidden, self.rounds, self.change)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGraphModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         device()
         settings, content = cls.of(checkpoint.settings), checkpoint.content
         classes, actions, written = (texts(content[name]) for name in ("classes", "actions", "written"))
@@ -118,7 +118,7 @@ class TrainedGraphModel:
     learned: dict[str, Any] = field(default_factory=dict)
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """A program for each request with a sketch and a world; without a world none."""
+        """Return a program for each request with a sketch and a world; without a world none."""
         asked = [each for each in requests if each.world is not None]
         starts = [Start(each.world, each.sketch, rules=each.rules) for each in asked if each.world is not None]
         search = Search(beam=beam, constrained=self.settings.constrained)
@@ -126,15 +126,15 @@ class TrainedGraphModel:
         return [found.get(each.id, ()) for each in requests]
 
     def free(self) -> TrainedGraphModel:
-        """The same model without the mask, as the thesis has it."""
+        """Return the same model without the mask, as the thesis has it."""
         return replace(self, settings=replace(self.settings, constrained=False))
 
     def scorer(self) -> GraphScorer:
-        """The model as a scorer of the parts of steps."""
+        """Return the model as a scorer of the parts of steps."""
         return GraphScorer(self.network, self.words, self.actions)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.detach().cpu().numpy() for name, value in self.network.state_dict().items()}
         content = {"classes": self.words.classes, "actions": self.words.actions, "written": self.actions}
         lists = {name: list(values) for name, values in content.items()}
@@ -159,7 +159,7 @@ class GraphScorer:
 
     @torch.no_grad()  # type: ignore[untyped-decorator]
     def begin(self, worlds: Sequence[World], inputs: Sequence[Steps]) -> list[_State]:
-        """The memory before the first step of each sketch."""
+        """Return the memory before the first step of each sketch."""
         given = [graph_input(sketch, world, self.words) for world, sketch in zip(worlds, inputs, strict=True)]
         if not given:
             return []
@@ -169,7 +169,7 @@ class GraphScorer:
 
     @torch.no_grad()  # type: ignore[untyped-decorator]
     def score(self, asked: Sequence[Asked], part: Part) -> list[Scores]:
-        """The scores of nodes or actions; -inf for nodes that the graph leaves out."""
+        """Return the scores of nodes or actions; -inf for nodes that the graph leaves out."""
         memory = _many([each.state.memory for each in asked])
         first = torch.tensor([self._place(each, each.chosen.first) for each in asked])
         if part is Part.FIRST:
@@ -194,7 +194,7 @@ class GraphScorer:
 
     @torch.no_grad()  # type: ignore[untyped-decorator]
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> list[_State]:
-        """The memory after a step of each program."""
+        """Return the memory after a step of each program."""
         if not asked:
             return []
         places = []

@@ -1,7 +1,8 @@
 """The networks of chapter 5: a graph network over nodes, a sketch encoder, a decoder of steps (eq. 5.4-5.8, table 5.2).
 
-First the first object, then the action given it, then the second object given both. `change` is what a step does to the
-states of the character and of its objects: nothing (Graph, Unaries), or by a residual, a layer or a recurrent cell.
+The network chooses the first object, then the action given it, then the second object given both. `change` is the
+effect of a step on the states of the character and of its objects: nothing (Graph, Unaries), or a residual, a layer or
+a recurrent cell.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ SUBJECT, FIRST, SECOND = 0, 1, 2
 
 
 class Memory(NamedTuple):
-    """What is known of B programs after some steps.
+    """The state of B programs after some steps.
 
     Attributes:
         nodes: (B, N, H), states of nodes.
@@ -105,18 +106,18 @@ class GraphNetwork(nn.Module):
         return Memory(nodes, real, found, self.decoder(start, found))
 
     def scores_first(self, memory: Memory) -> Tensor:
-        """Of each node, of no object, and of the end, (B, N + 2)."""
+        """Return the scores of each node, of no object, and of the end, (B, N + 2)."""
         query = self.first(torch.cat([memory.hidden, memory.sketch], 1))  # (B, H)
         nodes = torch.einsum("bnh,bh->bn", memory.nodes, query).masked_fill(~memory.real, -torch.inf)
         return functional.log_softmax(torch.cat([nodes, query @ self.special.T], 1), 1)
 
     def scores_action(self, memory: Memory, first: Tensor) -> Tensor:
-        """Of each action given the first object, (B, A)."""
+        """Return the scores of each action given the first object, (B, A)."""
         given = torch.cat([memory.hidden, memory.sketch, self._at(memory, first)], 1)
         return functional.log_softmax(self.act(given), 1)
 
     def scores_second(self, memory: Memory, first: Tensor, action: Tensor) -> Tensor:
-        """Of each node given action and first object, (B, N)."""
+        """Return the scores of each node given action and first object, (B, N)."""
         given = [memory.hidden, memory.sketch, self._at(memory, first), self.action(action.clamp(min=0))]
         nodes = torch.einsum("bnh,bh->bn", memory.nodes, self.second(torch.cat(given, 1)))
         return functional.log_softmax(nodes.masked_fill(~memory.real, -torch.inf), 1)
@@ -147,13 +148,13 @@ class GraphNetwork(nn.Module):
         return nodes.index_put((rows, place.clamp(min=0)), kept)
 
     def _at(self, memory: Memory, place: Tensor) -> Tensor:
-        """The states of nodes at positions, (B, H); that of no object below 0."""
+        """Return the states of nodes at positions, (B, H); that of no object below 0."""
         found = memory.nodes[torch.arange(len(place)), place.clamp(min=0)]
         return torch.where((place >= 0)[:, None], found, self.special[0].expand_as(found))
 
 
 def loss_of(network: GraphNetwork, batch: Batch) -> Tensor:
-    """The mean negative logarithm of the probability of each part, given those before it (teacher forcing)."""
+    """Return the mean negative logarithm of the probability of each part, given those before it (teacher forcing)."""
     memory, steps = network.begin(batch), torch.as_tensor(batch.steps)
     total, count = torch.zeros(()), 0
     for number in range(steps.shape[1]):
@@ -173,5 +174,5 @@ def loss_of(network: GraphNetwork, batch: Batch) -> Tensor:
 
 
 def _position(first: Tensor, nodes: int) -> Tensor:
-    """The position of a first object among the scores: a node's, that of no object, or that of the end."""
+    """Return the position of a first object among the scores: a node's, that of no object, or that of the end."""
     return torch.where(first == NO_NODE, nodes, torch.where(first == END, nodes + 1, first))

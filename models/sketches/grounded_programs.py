@@ -44,7 +44,7 @@ class Grounded:
 def grounded(
     dataset: Dataset, examples: Sequence[Example], most: int = 0, seed: int = 0, own: str = ""
 ) -> Iterator[Grounded]:
-    """The executions of examples with a sketch, in the dataset's order.
+    """Yield the executions of examples with a sketch, in the dataset's order.
 
     Args:
         dataset: with the executions.

@@ -8,7 +8,7 @@ from functools import cached_property
 from hearth.kb.knowledge import Knowledge
 
 CODES = 64
-"""Numbers beside those of names, for counts and kinds."""
+"""Numbers reserved for counts and kinds, before those of names."""
 
 
 class Words:
@@ -28,7 +28,7 @@ class Words:
 
     @classmethod
     def of(cls, knowledge: Knowledge, words: Sequence[str] = ()) -> Words:
-        """The classes and actions that are known, and some words."""
+        """Return the classes and actions that are known, and some words."""
         return cls(sorted(knowledge.objects), sorted(knowledge.actions), words)
 
     @cached_property
@@ -37,17 +37,17 @@ class Words:
         return CODES + len(self.classes) + len(self.actions) + len(self.words)
 
     def thing(self, name: str) -> int:
-        """The number of a class."""
+        """Return the number of a class."""
         return self._class.get(name, 0)
 
     def action(self, name: str) -> int:
-        """The number of an action."""
+        """Return the number of an action."""
         return self._action.get(name, 0)
 
     def word(self, name: str) -> int:
-        """The number of a word of texts."""
+        """Return the number of a word of texts."""
         return self._word.get(name, 0)
 
     def code(self, number: int) -> int:
-        """The number for a count or a kind, from 0; great ones are cut."""
+        """Return the number for a count or a kind, from 0; great ones are cut."""
         return min(number, CODES - 2) + 1

@@ -1,7 +1,7 @@
 """The steps that may come next: those of plan and sketch, and optional ones about nodes that play a role.
 
-The exact planner makes a program run; optional steps are what people and repairs do besides: walk to the room first,
-find, look, put back, close. Their choice is learned.
+The exact planner makes a program run. Optional steps are the additional steps of people and repairs: walk to the room
+first, find, look, put back, close. Their choice is learned.
 """
 
 from __future__ import annotations
@@ -20,31 +20,31 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 
 ROLES = 19
-"""What a node may be to the step that comes next; see `NextSteps.roles`."""
+"""Roles of a node for the next step; see `NextSteps.roles`."""
 
 STYLE = 9
 """Habitual actions, the commonest, whose counts so far show how a program is written."""
 
 SHOWN = 3
-"""Things of one kind whose steps are offered: what is held, is done before, comes later."""
+"""Largest number of things of one kind whose steps are offered: held things, things of earlier and of later steps."""
 
 TOOLS = 5
-"""Classes beside the sketch's of which things are offered."""
+"""Largest number of classes outside the sketch whose things are offered."""
 
 FEWEST, OFTEN = 5, 0.08
-"""How often something is done at least to be a habit: in programs, and in how many of those with the class."""
+"""Smallest frequency of a habit: a number of programs, and a share of the programs with the class."""
 
 Deed = tuple[str, int, int]
 """A step as an action and the indices of its nodes; -1 for none."""
 
 
 class Habits(NamedTuple):
-    """What programs do beside their sketches, as counted in training programs.
+    """The steps of programs that their sketches leave out, as counted in training programs.
 
     Attributes:
         actions: those of steps that sketches leave out.
         style: the commonest of them.
-        tools: classes that programs use beside a class or an action of the sketch, the commonest first.
+        tools: classes that programs use with a class or an action of the sketch, the commonest first.
     """
 
     actions: frozenset[str]
@@ -75,12 +75,12 @@ class Habits(NamedTuple):
 
 
 def _commonest(found: Counter[str]) -> list[tuple[str, int]]:
-    """The first `TOOLS` classes and their counts; of those counted as often, the first by name."""
+    """Return the first `TOOLS` classes and their counts; of those counted as often, the first by name."""
     return sorted(found.items(), key=lambda each: (-each[1], each[0]))[:TOOLS]
 
 
 def _named(sketch: Sequence[Step]) -> dict[str, None]:
-    """The classes and the actions of a sketch."""
+    """Return the classes and the actions of a sketch."""
     return dict.fromkeys([*(ref.name for step in sketch for ref in step.objects), *(step.action for step in sketch)])
 
 
@@ -89,8 +89,8 @@ class NextSteps:
 
     Args:
         progress: so far.
-        options: what can be done now.
-        habits: what programs do beside their sketches.
+        options: the possible steps now.
+        habits: the steps of programs that their sketches leave out.
     """
 
     def __init__(self, progress: Progress, options: Options, habits: Habits) -> None:
@@ -101,16 +101,16 @@ class NextSteps:
         self.steps: dict[Deed, Step] = dict(self._found(habits.actions))
 
     def nodes(self, step: Step) -> list[int]:
-        """The indices of a step's nodes."""
+        """Return the indices of a step's nodes."""
         return [self.home.index[ref.node] for ref in step.objects if ref.node is not None]
 
     def deed(self, step: Step) -> Deed:
-        """A step as its action and nodes."""
+        """Return a step as its action and nodes."""
         first, second = (*self.nodes(step), -1, -1)[:2]
         return step.action, first, second
 
     def _found(self, optional: frozenset[str]) -> Iterator[tuple[Deed, Step]]:
-        """The next steps of plan and sketch, if they can be done, and optional ones about nodes that play a role."""
+        """Yield the next steps of plan and sketch, if possible, and optional ones about nodes that play a role."""
         for step in (self.coming, self.proposed):
             if step is not None and self.options.allows(step.action, self.nodes(step)):
                 yield self.deed(step), step
@@ -130,7 +130,7 @@ class NextSteps:
 
     @cached_property
     def roles(self) -> Mapping[int, list[float]]:
-        """The nodes that steps are offered about, and their roles."""
+        """Return the nodes that steps are offered about, and their roles."""
         found: dict[int, list[float]] = {}
         for role, nodes in enumerate(self._by_role()):
             for node in nodes:

@@ -1,4 +1,4 @@
-"""What the chooser knows of a node that an object of a sketch may be: where it is, how it is, and what else is there.
+"""The chooser's features of a node for an object of a sketch: its place, its states, and the other candidates.
 
 Ids are not among it: those of things that were added to a home for a program are the highest.
 """
@@ -22,11 +22,11 @@ MOST = 32
 """Candidates of one object; of more, the nearest."""
 
 KINDS = 6
-"""Numbers of names for a node: its class, its room's, what it is ON, what it is INSIDE, and two of what is CLOSE."""
+"""Numbers of names for a node: its class, its room's, that of the ON and INSIDE neighbor, and two of CLOSE ones."""
 
 
 class Use(NamedTuple):
-    """An object of a sketch, and what the sketch does with it.
+    """An object of a sketch, and its uses in the sketch.
 
     Attributes:
         key: its name and instance.
@@ -38,7 +38,7 @@ class Use(NamedTuple):
 
 
 def used(sketch: Sequence[Step]) -> tuple[Use, ...]:
-    """The objects of a sketch in the order of their first mention."""
+    """Return the objects of a sketch in the order of their first mention."""
     found: dict[Key, list[tuple[str, int]]] = {}
     for step in sketch:
         for place, ref in enumerate(step.objects):
@@ -61,7 +61,10 @@ class Places:
         }
 
     def _candidates(self, use: Use) -> list[int]:
-        """Indices of the nodes that an object may be, the nearest first: of its class, and fit for all its uses."""
+        """Return indices of the nodes that an object may be, the nearest first.
+
+        Of its class, and fit for all its uses.
+        """
         home, world = self.home, self.world
         able = home.everything & ~self.me.bit
         for action, place in use.uses:
@@ -76,7 +79,7 @@ class Places:
         return sorted(rank, key=rank.__getitem__)[:MOST]
 
     def features(self, use: Use, node: int, bound: Mapping[Key, int]) -> tuple[list[int], list[float]]:
-        """A candidate's names, and its numbers: its own, and those beside the nodes chosen so far.
+        """Return a candidate's names and numbers: its own, and those relative to the nodes chosen so far.
 
         Args:
             use: the object.
@@ -108,7 +111,7 @@ class Places:
         return bool((rows.on(self.world, node) | rows.inside(self.world, node)) & here)
 
     def _node(self, node: int) -> tuple[list[int], list[float]]:
-        """What is so of a node whatever is chosen: names and numbers."""
+        """Return the names and numbers of a node that do not depend on other choices."""
         known = self._nodes.get(node)
         if known is None:
             known = self._nodes[node] = self._names(node), self._numbers(node)
@@ -141,7 +144,7 @@ NUMBERS = 10 + 3 + 4 + 1 + 10
 
 
 def node_choice(places: Places, use: Use, bound: Mapping[Key, int], right: int | None = None) -> Choice:
-    """The choice of a node for an object of a sketch; `right` is the index of the right node in the home."""
+    """Return the choice of a node for an object of a sketch; `right` is the index of the right node in the home."""
     words, nodes = places.words, places.candidates[use.key]
     actions = [words.action(action) for action, _ in use.uses]
     names = [words.thing(use.key[0]), *[*actions, 0, 0][:2], words.code(use.uses[0][1])]

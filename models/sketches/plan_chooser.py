@@ -1,6 +1,6 @@
 """The learned chooser on the exact planner: it chooses nodes for a sketch, and steps that the plan may do without.
 
-The planner and the mask see to it that each program runs; the network sees to what people would do.
+The planner and the mask ensure that each program runs. The network makes it similar to people's programs.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Chooser(Settings):
         batch: choices at a time.
         nodes: whether nodes are chosen, or the nearest are taken.
         style: whether optional steps are chosen, or the plan is taken.
-        text: whether the title and the description are looked at, beside the sketch.
+        text: whether the title and the description are read, in addition to the sketch.
     """
 
     programs: int = 2_500
@@ -128,13 +128,13 @@ class Chooser(Settings):
         return ranker, outcome
 
     def ranker(self, words: Words, sizes: Sequence[int]) -> Ranker:
-        """A network for choices with these numbers of names and numbers, of the choice and of a candidate."""
+        """Return a network for choices with these numbers of names and numbers, of the choice and of a candidate."""
         names, numbers, more, values = sizes
         return Ranker(words.size, names, numbers, more, values, self.width, self.hidden, self.dropout)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedChooser:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         device()
         settings, content = cls.of(dict(checkpoint.settings)), checkpoint.content
         words = Words(content["classes"], content["actions"], content["words"])
@@ -169,7 +169,7 @@ class TrainedChooser:
     learned: Mapping[str, Any]
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """A program for each request with a sketch and a world; it runs there."""
+        """Return a program for each request with a sketch and a world; it runs there."""
         worlds = [_world(request) for request in requests]
         sketches = self.bound([request.sketch for request in requests], worlds)
         clues = [self._clues(request, world) for request, world in zip(requests, worlds, strict=True)]
@@ -186,7 +186,7 @@ class TrainedChooser:
         return Clues.of(request, world.home.knowledge) if self.settings.text else NO_CLUES
 
     def scorer(self) -> PlanScorer:
-        """The model as a scorer of steps; its input is the bound sketch, what the text says, and the rules."""
+        """Return the model as a scorer of steps; its input is the bound sketch, the text's clues, and the rules."""
         return PlanScorer(self.rankers.get("steps"), self.habits if self.settings.style else NO_HABITS, self.words)
 
     def bound(self, sketches: Sequence[Steps], worlds: Sequence[World]) -> list[Steps]:
@@ -207,7 +207,7 @@ class TrainedChooser:
         return [_bound(sketch, found, world) for sketch, found, world in zip(free, nodes, worlds, strict=True)]
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {
             f"{name}.{key}": value.detach().cpu().numpy()
             for name, ranker in self.rankers.items()
@@ -244,7 +244,7 @@ def _bound(sketch: Steps, nodes: Mapping[tuple[str, int], int], world: World) ->
 
 
 def _named(steps: Steps, sketch: Steps, known: Knowledge) -> Steps:
-    """A program that calls nodes as the sketch does, where that name affords all that is done to the node.
+    """Return a program that calls nodes as the sketch does, where that name affords all that is done to the node.
 
     A kitchen may serve as the sketch's dining room; a box of cereal that is opened is not called food.
     """
@@ -261,7 +261,10 @@ def _named(steps: Steps, sketch: Steps, known: Knowledge) -> Steps:
 
 
 class PlanScorer:
-    """Scores of whole steps beside the plan. Without a network the plan's own step is the best: the planner."""
+    """A scorer of whole steps that the sketch and the plan offer.
+
+    Without a network the plan's own step is the best: the planner.
+    """
 
     order = (Part.STEP,)
     actions: Sequence[str] = ()
@@ -270,16 +273,16 @@ class PlanScorer:
         self.ranker, self.habits, self.words = ranker, habits, words
 
     def begin(self, worlds: Sequence[World], inputs: Sequence[tuple[Steps, Clues, Rules]]) -> list[Progress]:
-        """The progress before the first step of each bound sketch."""
+        """Return the progress before the first step of each bound sketch."""
         given = zip(worlds, inputs, strict=True)
         return [Progress.start(sketch, world, rules, clues) for world, (sketch, clues, rules) in given]
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> list[Progress]:
-        """The progress after each step."""
+        """Return the progress after each step."""
         return [each.state.after(step, each.world) for each, step in zip(asked, steps, strict=True)]
 
     def score(self, asked: Sequence[Asked], part: Part) -> list[Scores]:
-        """The scores of the offered steps; the end has one only where nothing of the sketch is left."""
+        """Return the scores of the offered steps; the end has one only where nothing of the sketch is left."""
         offers = [self._offer(each) for each in asked]
         if self.ranker is None:
             return [_as_planned(offer) for offer in offers]
@@ -295,7 +298,7 @@ class PlanScorer:
         return found
 
     def _offer(self, asked: Asked) -> Offer:
-        assert asked.options is not None, "a plan is for what can be done"
+        assert asked.options is not None, "a plan is made of possible steps"
         return Offer(asked.state, asked.options, self.habits, self.words)
 
 

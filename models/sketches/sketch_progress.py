@@ -1,4 +1,4 @@
-"""How far a program has come with its sketch: what is to be done next, and the plan for it."""
+"""The progress of a program through its sketch: the next step of the sketch, and the plan for it."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Progress:
         sketch: bound to nodes.
         world: as it is now.
         next: the number of the sketch's step that comes next.
-        plan: what the planner would do from here.
+        plan: the planner's steps from here.
         steps: done so far.
         since: how many of them since the last step of the sketch.
         rules: of the engine.
-        clues: what the text says.
+        clues: the clues of the text.
     """
 
     sketch: Steps
@@ -47,7 +47,7 @@ class Progress:
 
     @property
     def coming(self) -> Step | None:
-        """The sketch's next step; None at its end, or if nothing makes the rest possible."""
+        """Return the sketch's next step; None at its end, or if nothing makes the rest possible."""
         number = self._coming
         return None if number is None else self.sketch[number]
 
@@ -56,7 +56,10 @@ class Progress:
         return next((self.next + each.source for each in self.plan if each.source >= 0), None)
 
     def _number(self, step: Step) -> int:
-        """The number of the sketch's step that a step is: the next one, or the next that the plan does; else -1."""
+        """Return the number of the sketch's step that a step is.
+
+        The next one, or the next that the plan does; else -1.
+        """
         for number in (self.next, self._coming):
             if number is not None and self.sketch[number : number + 1] == (step,):
                 return number
@@ -64,7 +67,7 @@ class Progress:
 
     @property
     def proposed(self) -> Step | None:
-        """The planner's next step."""
+        """Return the planner's next step."""
         return self.plan[0].step if self.plan else None
 
     def after(self, step: Step, world: World) -> Progress:
@@ -83,6 +86,6 @@ class Progress:
 
 
 def plain(step: Step, home: Home) -> Step:
-    """A bound step as the search writes it: a node has the name of its class, and no number."""
+    """Return a bound step as the search writes it: a node has the name of its class, and no number."""
     nodes = [home.index[ref.node] for ref in step.objects if ref.node is not None]
     return Step(step.action, tuple(ObjectRef(home.classes[node], 1, home.ids[node]) for node in nodes))

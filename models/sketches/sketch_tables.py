@@ -1,4 +1,4 @@
-"""Tables 5.2 to 5.5: programs from sketches and graphs, the thesis's figures beside ours beside yardsticks."""
+"""Tables 5.2 to 5.5: programs from sketches and graphs, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ Writer = Callable[[Sequence[Request]], Sequence[Steps]]
 
 
 class Method(NamedTuple):
-    """What answers requests.
+    """A method that answers requests.
 
     Attributes:
         name: of its row; methods of one name are seeds of one.
@@ -76,7 +76,7 @@ def table(
     seed: int = 0,
     seen: Seen = unseen,
 ) -> list[Row]:
-    """The rows of a table over the test parts of a split.
+    """Return the rows of a table over the test parts of a split.
 
     Args:
         number: 5.2 and 5.3, from given sketches, over originals and augmented programs; 5.4, from sketches that models
@@ -129,7 +129,7 @@ def table(
 def _answers(
     dataset: Dataset, names: Sequence[str], methods: Sequence[Method], sketches: str, seen: Seen
 ) -> list[list[Steps]]:
-    """The programs of each method, in the order of names; worlds are read once for all."""
+    """Return the programs of each method, in the order of names; worlds are read once for all."""
     found: list[dict[str, Steps]] = [{} for _ in methods]
     done = 0
     for share in requests(dataset, names, worlds=True, sketches=sketches):
@@ -164,7 +164,7 @@ def _activities(dataset: Dataset, names: Sequence[str]) -> list[str]:
 def _with_sketches(
     row: Row, methods: Sequence[Method], names: Sequence[str], true: Sequence[Steps], groups: Sequence[str], seed: int
 ) -> Row:
-    """A row with the likeness of its sketches to the true ones, where models wrote them."""
+    """Return a row with the likeness of its sketches to the true ones, where models wrote them."""
     own = [each.sketches for each in methods if each.name == row.method and each.sketches is not None]
     if not own:
         return row
@@ -176,7 +176,7 @@ def _with_sketches(
 def _other_person(
     test: Sequence[baselines.Example], every: Sequence[baselines.Example], groups: Sequence[str], seed: int
 ) -> Row:
-    """Return how alike the sketches of two people are who had the same text: a bound for what a model can write."""
+    """Return the similarity of two people's sketches for the same text: a bound for the sketches of a model."""
     others = [next((one for one in every if one.text == each.text and one is not each), None) for each in test]
     pairs = [(other.sketch, each.sketch) for each, other in zip(test, others, strict=True) if other]
     scores = iter(score_pairs(pairs))
@@ -194,7 +194,7 @@ def _of_thesis(number: str) -> Iterator[Row]:
 
 
 def _yardsticks(train: Sequence[baselines.Example], test: Sequence[baselines.Example], seed: int) -> Iterator[Method]:
-    """The nearest sketch of the original training programs, and what needs no training."""
+    """Yield the nearest sketch of the original training programs, and the methods without training."""
 
     def nearest(asked: Sequence[Request]) -> list[Steps]:
         known = {each.execution_id: each for each in test}
@@ -223,7 +223,7 @@ def _started(name: str, start: baselines.Starting, train: Sequence[baselines.Exa
 
 
 def _trained(models: Sequence[Path | str], beam: int) -> Iterator[Method]:
-    """The models of sketches; those that can be decoded without the engine, both ways."""
+    """Yield the models of sketches; those that can be decoded without the engine, both ways."""
     for name, trained, minutes in _restored(models):
         if MODELS[name].input == "sketch":
             rounds = getattr(getattr(trained, "settings", None), "rounds", None)
@@ -247,7 +247,7 @@ def _predicted(trained: Any, beam: int, asked: Sequence[Request]) -> Sequence[St
 def _texts(
     models: Sequence[Path | str], beam: int, dataset: Dataset, names: Sequence[str]
 ) -> list[tuple[str, Mapping[str, Steps]]]:
-    """The models that write sketches, and their sketches by execution."""
+    """Return the models that write sketches, and their sketches by execution."""
     made: list[tuple[str, Mapping[str, Steps]]] = []
     for name, trained, _ in _restored(models):
         if MODELS[name].output == "sketch" and MODELS[name].input == "text":
@@ -260,7 +260,7 @@ def _texts(
 
 
 def _after(texts: Sequence[tuple[str, Mapping[str, Steps]]], methods: Sequence[Method]) -> list[Method]:
-    """Each model after each model of sketches, and the planner, which has the given sketches, too."""
+    """Return each model after each model of sketches, and the planner, which has the given sketches, too."""
     planner = next(each for each in methods if each.name == "planner")
     writers = [planner, *(each for each in methods if each.of == "ours")]
     made = [planner._replace(name="planner, given sketches")]

@@ -1,4 +1,4 @@
-"""What the chooser knows of the steps that may come next, as numbers."""
+"""The chooser's features of the possible next steps, as numbers."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Offer:
 
     Args:
         progress: so far.
-        options: what can be done now.
-        habits: what programs do beside their sketches.
+        options: the possible steps now.
+        habits: the steps of programs that their sketches leave out.
         words: numbers of names.
     """
 
@@ -46,11 +46,11 @@ class Offer:
             self.candidates.append(None)
 
     def choice(self) -> Choice:
-        """The choice as features."""
+        """Return the choice as features."""
         return self._choice(range(len(self.candidates)), -1)
 
     def known_choice(self, right: Step | None, most: int, random: Random) -> Choice | None:
-        """The choice whose right step is known, with some random others; None if the right one is not offered.
+        """Return the choice whose right step is known, with random others; None if the right step is not offered.
 
         Against random candidates a network learns the same order as against all, and in a third of the time.
         """
@@ -71,7 +71,7 @@ class Offer:
         return Candidate([self.words.code(0), *[0] * (2 + AROUND)], [1.0, *NOTHING[1:]])
 
     def _names(self) -> list[int]:
-        """Three actions before, what the sketch and the plan want next, how far it is, and where the character is."""
+        """Return the last three actions, the next steps of sketch and plan, the progress, and the character's place."""
         word, progress = self.words, self.progress
         before = [step.action for step in progress.steps[:-4:-1]] + ["", "", ""]
         classes = [ref.name for ref in (self.coming.objects if self.coming else ())] + ["", ""]
@@ -151,7 +151,7 @@ class Offer:
 
     @cached_property
     def _next(self) -> tuple[Deed | None, Deed | None]:
-        """What the sketch and the plan want next."""
+        """Return the next steps of the sketch and of the plan."""
         coming, proposed = (
             None if step is None else self._next_steps.deed(step) for step in (self.coming, self.proposed)
         )
@@ -175,14 +175,14 @@ class Offer:
         return Candidate([self.words.action(action), here.number, other.number, *here.around], numbers)
 
     def _of(self, node: int) -> _OfNode:
-        """What is so of all steps about a node."""
+        """Return the features that all steps about a node share."""
         known = self._known.get(node)
         if known is None:
             known = self._known[node] = self._looked(node) if node >= 0 else NO_NODE
         return known
 
     def _looked(self, node: int) -> _OfNode:
-        """Its class and the words about its mention; its roles, where it is, its states, where the text mentions it."""
+        """Return a node's class, the words about its mention, its roles, place, states, and place in the text."""
         clues, name = self.progress.clues, self.home.classes[node]
         states = [float(state >> node & 1) for state in self.world.states]
         place = clues.place(name)
@@ -204,7 +204,7 @@ NO_ROLES = [0.0] * ROLES
 
 
 class Past:
-    """What a program has done so far, counted once for all candidates.
+    """The steps of a program so far, counted once for all candidates.
 
     Args:
         deeds: so far.

@@ -1,6 +1,6 @@
-"""What a text says about the things of a home: which classes it mentions, where, and with which words before them.
+"""Mentions of a home's things in a text: the classes, their positions, and the words before them.
 
-Sketches leave out much that their texts say: who sits down to type, and switches the computer on before.
+Sketches leave out much that their texts say: that a person sits down to type, and first switches the computer on.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MOST = 6
 
 
 class Clues:
-    """A text as it is looked at beside a sketch; without a text nothing is mentioned.
+    """A text that is read in addition to a sketch; without a text nothing is mentioned.
 
     Args:
         words: of the text, in lower case.
@@ -40,12 +40,12 @@ class Clues:
 
     @classmethod
     def of(cls, request: Request, knowledge: Knowledge) -> Clues:
-        """Those of a request's title and description."""
+        """Return the clues of a request's title and description."""
         return cls(words_of(request), _spelt(knowledge))
 
     @cached_property
     def places(self) -> dict[str, int]:
-        """The mentioned classes in the order of their first mention, and its place."""
+        """Return the mentioned classes in the order of their first mention, and its place."""
         found: dict[str, int] = {}
         for place, name in mentions(self.words, self._spelt) if self.words else ():
             found.setdefault(name, place)
@@ -57,7 +57,7 @@ class Clues:
         return place / len(self.words) if place >= 0 else -1.0
 
     def around(self, name: str, numbers: Words) -> list[int]:
-        """The numbers of the words about the first mention of a class."""
+        """Return the numbers of the words about the first mention of a class."""
         place = self.places.get(name, -1)
         if place < 0:
             return [0] * AROUND
@@ -65,7 +65,7 @@ class Clues:
         return [numbers.word(word) for word in words]
 
     def bag(self, numbers: Words) -> list[int]:
-        """The numbers of the known words, each once."""
+        """Return the numbers of the known words, each once."""
         return list(dict.fromkeys(number for word in self.words if (number := numbers.word(word))))
 
 
@@ -78,7 +78,7 @@ def _spelt(knowledge: Knowledge) -> dict[str, str]:
 
 
 class TextState(NamedTuple):
-    """How far a program has come with its text.
+    """The progress of a program through its text.
 
     Attributes:
         place: of the mention that the last step is about, from 0 to 1.
@@ -97,6 +97,6 @@ class TextState(NamedTuple):
 
 
 def frequent(requests: Iterable[Request]) -> tuple[str, ...]:
-    """The words that some training texts have, sorted."""
+    """Return the words that some training texts have, sorted."""
     counts = Counter(word for request in requests for word in {*words_of(request)})
     return tuple(sorted(word for word, count in counts.items() if count >= FEWEST))

@@ -1,8 +1,8 @@
 """The program on which a network and the neighbours of a text agree most (ours).
 
-The score of a program is its mean LCS with what people write. The most probable program of a network is not the one
-with the best expected score: of the programs that it draws, and those of the most similar texts, edited, the answer is
-the one that is most like all of them (the least Bayes risk; Kumar and Byrne 2004).
+The score of a program is its mean LCS with people's programs. The most probable program of a network does not have the
+best expected score. The candidates are the programs that the network draws, and the edited programs of the most similar
+texts. The answer is the candidate most similar to all of them (the least Bayes risk; Kumar and Byrne 2004).
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Consensus(Settings):
-    """How programs are weighed.
+    """Settings for weighing programs.
 
     Attributes:
         start: a trained `mle-composed`, or `desc2sketch` for sketches, its folder or its name; if empty, one is trained
             here, too.
-        draws: programs that the network draws for a text, beside its best one.
+        draws: programs that the network draws for a text, in addition to its best one.
         share: of the weight that the neighbours' programs have; the network's have the rest.
     """
 
@@ -52,7 +52,7 @@ class Consensus(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedConsensus:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         writer, neighbours = (
             replace(checkpoint, settings=part["settings"], content=part["content"])
             for part in (checkpoint.content["writer"], checkpoint.content["neighbours"])
@@ -70,7 +70,7 @@ class TrainedConsensus:
     neighbours: TrainedRetrieveEdit
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """For each text the program that is most like all that were drawn or found for it."""
+        """Return for each text the program most similar to all that were drawn or found for it."""
         best = self.writer.predict(requests, beam)
         found = self.neighbours.candidates(requests)
         return [self._answer(*each) for each in zip(requests, best, found, strict=True)]
@@ -82,11 +82,11 @@ class TrainedConsensus:
         return consensus([*written, *programs], [own] * len(written) + [weight * others for weight in weights])
 
     def scorer(self) -> TextScorer:
-        """The network alone, for decoding with the engine in the loop."""
+        """Return the network alone, for decoding with the engine in the loop."""
         return self.writer.scorer()
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         writer, neighbours = self.writer.checkpoint(), self.neighbours.checkpoint()
         content = {
             name: {"settings": dict(part.settings), "content": dict(part.content)}

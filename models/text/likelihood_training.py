@@ -1,4 +1,4 @@
-"""What all writers of programs share: the first phase of training, and writing programs batch by batch."""
+"""The common part of all writers of programs: the first phase of training, and writing programs batch by batch."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ TOGETHER = 20
 """Batches whose examples are put in the order of their lengths."""
 
 Asked = TypeVar("Asked")
-"""What a program is written for: a text, or what is seen in a film."""
+"""The input that a program is written for: a text, or the contents of a film."""
 
 Read = Callable[[Sequence[Asked], Random | None], InputBatch]
-"""Makes a batch of what is asked; with noise, if a generator is given."""
+"""A function that makes a batch of inputs; with noise, if a generator is given."""
 
 
 def likelihood(
@@ -33,7 +33,7 @@ def likelihood(
 
     Args:
         writer: that is trained.
-        data: what is asked, and the numbers of its program's steps.
+        data: inputs, and the numbers of their programs' steps.
         read: see `Read`.
         batch: examples in a batch.
         longest: steps of the longest program.
@@ -67,13 +67,13 @@ def alike(lengths: Sequence[int], batch: int, random: Random) -> list[list[int]]
 def written(
     writer: Writer, asked: Sequence[Asked], read: Read[Asked], length: Callable[[Asked], int], width: int, longest: int
 ) -> list[Numbers]:
-    """The most probable program for each, by greedy or beam search; no answer depends on another.
+    """Return the most probable program for each, by greedy or beam search; no answer depends on another.
 
     Args:
         writer: trained.
-        asked: what programs are written for.
+        asked: the inputs that programs are written for.
         read: see `Read`; without noise here.
-        length: of what is asked: alike ones are read together.
+        length: of an input: inputs of similar length are read together.
         width: programs followed at once; 1 is greedy.
         longest: steps at most.
     """

@@ -1,4 +1,4 @@
-"""Which classes of objects a text mentions, and at which words: what a model may copy into a program."""
+"""Classes of objects that a text mentions, and the words that mention them: a model may copy these classes."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ LONGEST = 3
 """Words of the longest name that is looked for."""
 
 _ENDINGS = (("ies", "y"), ("ves", "f"), ("ves", "fe"), ("es", ""), ("s", ""))
-"""Endings of plurals, and what stands in the singular instead."""
+"""Endings of plurals, and the ending of the singular."""
 
 
 def spellings(knowledge: Knowledge, classes: Sequence[str]) -> dict[str, str]:
-    """Every spelling of the classes, as `key_of` gives it, and the class; `food_salt` is spelt `salt`, too."""
+    """Return every spelling of the classes, as `key_of` gives it, and the class; `food_salt` is spelt `salt`, too."""
     known = set(classes)
     found = {key: name for key, name in knowledge.object_spellings.items() if name in known}
     for name in classes:
@@ -25,7 +25,7 @@ def spellings(knowledge: Knowledge, classes: Sequence[str]) -> dict[str, str]:
 
 
 def mentions(words: Sequence[str], known: Mapping[str, str]) -> list[tuple[int, str]]:
-    """The places of mentioned classes in a text: of the first word of each, the longest names first.
+    """Return the places of mentioned classes in a text: of the first word of each, the longest names first.
 
     Args:
         words: of the text, in lower case.
@@ -42,7 +42,7 @@ def mentions(words: Sequence[str], known: Mapping[str, str]) -> list[tuple[int, 
 
 
 def _class(words: Sequence[str], known: Mapping[str, str]) -> str:
-    """The class that some words name, or ""."""
+    """Return the class that some words name, or ""."""
     key = "".join(words)
     singular = (key.removesuffix(old) + new for old, new in _ENDINGS if key.endswith(old) and len(key) > len(old) + 2)
     return next((known[each] for each in (key, *singular) if each in known), "")

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from hearth.models.text_examples import Corpus
 
 STARTS = {"program": ("programs", "mle-composed"), "sketch": ("sketches", "desc2sketch")}
-"""What is learned to be written, and the usual model to go on from."""
+"""The plural name of each kind of output, and the usual model to go on from."""
 
 
 def first_phase(start: str, corpus: Corpus) -> TrainedTextModel:
-    """A trained network of texts.
+    """Return a trained network of texts.
 
     Args:
         start: a checkpoint's folder, or the name of one that comes with Hearth.

@@ -31,7 +31,7 @@ class Draft(NamedTuple):
     used: torch.Tensor
 
     def rows(self, chosen: torch.Tensor) -> Draft:
-        """Some of the programs."""
+        """Return some of the programs."""
         return Draft(
             self.memory.rows(chosen), tuple(part[chosen] for part in self.state), self.last[chosen], self.used[chosen]
         )
@@ -41,7 +41,7 @@ class Writer(nn.Module):
     """A body and a head.
 
     A body reads texts (`encode`), and decodes: `start`, `step` and `unroll`, as those of `Seq2SeqBody`; `features` is
-    the size of what it gives to the head.
+    the size of the head's input.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Writer(nn.Module):
         return self.embedding.actions.weight.device
 
     def log_probabilities(self, texts: InputBatch, programs: StepBatch) -> torch.Tensor:
-        """(B, T) the logarithm of the probability of each step, given the true steps before; 0 past the end."""
+        """Return (B, T) the logarithm of the probability of each step, given the true steps before; 0 past the end."""
         memory = self.body.encode(texts)
         shifted = functional.pad(programs.steps[:, :-1], (0, 0, 1, 0))  # (B, T, 3)
         shifted[:, 0, 0] = self.beginning
@@ -75,7 +75,7 @@ class Writer(nn.Module):
         return torch.zeros_like(programs.weights).masked_scatter(real, found)
 
     def loss(self, texts: InputBatch, programs: StepBatch) -> torch.Tensor:
-        """The mean over steps of minus the logarithm of the probability."""
+        """Return the mean over steps of minus the logarithm of the probability."""
         return -self.log_probabilities(texts, programs).sum() / programs.weights.sum()
 
     def begin(self, texts: InputBatch) -> Draft:
@@ -87,7 +87,7 @@ class Writer(nn.Module):
         return Draft(memory, self.body.start(memory), last, torch.zeros(count, self.classes, device=self.device))
 
     def look(self, draft: Draft) -> tuple[Draft, Context]:
-        """Programs with the decoder one step on, and what the head needs to score the next step."""
+        """Return programs with the decoder one step on, and the head's input for scoring the next step."""
         state, features, attention = self.body.step(draft.memory, draft.state, self.embedding(draft.last))
         mentioned = draft.memory.mentioned
         attended = torch.einsum("nl,nlc->nc", attention, mentioned)
@@ -102,7 +102,7 @@ class Writer(nn.Module):
 
 
 def beam(writer: Writer, texts: InputBatch, width: int, longest: int) -> list[Numbers]:
-    """The best program for each text by beam search: greedy for a width of 1.
+    """Return the best program for each text by beam search: greedy for a width of 1.
 
     A program's score is the mean logarithm of the probability of its steps, its end included.
 
@@ -149,7 +149,7 @@ def _numbers(steps: torch.Tensor) -> Numbers:
 
 
 def sample(writer: Writer, texts: InputBatch, longest: int, generator: torch.Generator) -> list[Numbers]:
-    """A program for each text, drawn step by step."""
+    """Return a program for each text, drawn step by step."""
     draft = writer.begin(texts)
     rows: list[list[tuple[int, int, int]]] = [[] for _ in range(len(texts.inputs))]
     going = list(range(len(rows)))

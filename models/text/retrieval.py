@@ -35,12 +35,12 @@ class Memory:
 
     @classmethod
     def of(cls, corpus: Corpus) -> Memory:
-        """The memory of a corpus."""
+        """Return the memory of a corpus."""
         pairs = dict.fromkeys((text_of(each.title, each.description), each.steps) for each in corpus.train)
         return cls(tuple(text for text, _ in pairs), tuple(steps for _, steps in pairs))
 
     def document(self) -> dict[str, Any]:
-        """The memory as JSON; each step is stored once."""
+        """Return the memory as JSON; each step is stored once."""
         lines = {print_step(step): step for steps in self.programs for step in steps}
         number = {step: place for place, step in enumerate(lines.values())}
         return {
@@ -51,7 +51,7 @@ class Memory:
 
     @classmethod
     def read(cls, document: dict[str, Any]) -> Memory:
-        """The memory of `document`.
+        """Return the memory of `document`.
 
         Raises:
             KeyError: a part is missing.
@@ -71,7 +71,7 @@ class Memory:
 
 
 def text_of(title: str, description: str) -> str:
-    """The title and the description in one."""
+    """Return the title and the description in one."""
     return f"{title}. {description}" if title else description
 
 
@@ -85,7 +85,7 @@ class RandomRetrieval(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedRandomRetrieval:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         content = checkpoint.content
         return TrainedRandomRetrieval(cls.of(checkpoint.settings), Memory.read(content["memory"]), content["seed"])
 
@@ -99,12 +99,12 @@ class TrainedRandomRetrieval:
     seed: int
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """A program for each request, drawn from its text: the same whatever else is asked."""
+        """Return a program for each request, drawn from its text: the same whatever else is asked."""
         drawn = (rng(self.seed, "random retrieval", each.title, each.description) for each in requests)
         return [each.choice(self.memory.programs) for each in drawn]
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         content = {"memory": self.memory.document(), "seed": self.seed}
         return Checkpoint("random-retrieval", asdict(self.settings), content, {})
 
@@ -125,7 +125,7 @@ class Nearest(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedNearest:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         found = TrainedNearest(cls.of(checkpoint.settings), Memory.read(checkpoint.content["memory"]))
         found.similarity  # noqa: B018  (texts without a word are refused now, not when it is asked)
         return found
@@ -139,12 +139,12 @@ class TrainedNearest:
     memory: Memory
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """The program of the most similar text for each request; of equal ones the first."""
+        """Return the program of the most similar text for each request; of equal ones the first."""
         nearest = self.similarity.nearest([text_of(each.title, each.description) for each in requests], 1)
         return [self.memory.programs[places[0]] for places, _ in nearest]
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs; the weights are made again from the texts."""
+        """Return all that `restored` needs; the weights are made again from the texts."""
         name = "nearest-svd" if self.settings.singular else "nearest"
         return Checkpoint(name, asdict(self.settings), {"memory": self.memory.document()}, {})
 
@@ -171,7 +171,7 @@ class Similarity:
         self.known = self._projected(known)
 
     def nearest(self, texts: Sequence[str], count: int) -> list[tuple[list[int], list[float]]]:
-        """The places of the most similar known texts for each text, best first, and their similarities."""
+        """Return the places of the most similar known texts for each text, best first, and their similarities."""
         if not texts:
             return []
         alike = self._projected(self.weights.transform(texts)) @ self.known.T
@@ -189,6 +189,6 @@ class Similarity:
 
 
 def _terms(text: str) -> list[str]:
-    """The words of a text, and its pairs of neighbours."""
+    """Return the words of a text, and its pairs of neighbours."""
     found = words(text)
     return [*found, *(f"{one} {other}" for one, other in pairwise(found))]

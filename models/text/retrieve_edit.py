@@ -1,8 +1,9 @@
 """Retrieve and edit: the programs of the most similar texts, with the objects that the new text asks for (ours).
 
-Each retrieved program is edited: an object that its own text mentions, and the new one does not, gives way to one that
-the new text alone mentions, if every action done with it takes that, too. Of the edited programs the answer is the one
-most like the others by LCS, each weighted by the similarity of its text: what one neighbour alone does is left out.
+Each retrieved program is edited. An object that its own text mentions, and the new text does not, is replaced by one
+that the new text alone mentions, if every action done with it takes that, too. The answer is the edited program most
+similar to the others by LCS, each weighted by the similarity of its text. A step of one neighbor alone is thus left
+out.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ class RetrieveEdit(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedRetrieveEdit:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         content = checkpoint.content
         vocabulary, memory = StepVocabulary.read(content["vocabulary"]), Memory.read(content["memory"])
         if unknown := [step for steps in memory.programs for step in steps if vocabulary.numbers(step) is None]:
@@ -69,11 +70,11 @@ class TrainedRetrieveEdit:
     vocabulary: StepVocabulary
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """For each text the edited program that is most like the others."""
+        """Return for each text the edited program most similar to the others."""
         return [consensus(*each) for each in self.candidates(requests)]
 
     def candidates(self, requests: Sequence[Request]) -> list[tuple[list[Steps], list[float]]]:
-        """For each text the edited programs of its neighbours, and how much each counts."""
+        """Return for each text the edited programs of its neighbors, and their weights."""
         texts = [text_of(each.title, each.description) for each in requests]
         found = self.similarity.nearest(texts, self.settings.neighbours)
         return [self._edits(text, *neighbours) for text, neighbours in zip(texts, found, strict=True)]
@@ -87,7 +88,7 @@ class TrainedRetrieveEdit:
         return programs, [max(one, 1e-3) ** self.settings.sharpness for one in alike]
 
     def _mentioned(self, text: str) -> dict[str, int]:
-        """The classes that a text mentions, in order of their first mention, and the places of these."""
+        """Return the classes that a text mentions, in order of their first mention, and the places of these."""
         found: dict[str, int] = {}
         for place, name in mentions(words(text), self.vocabulary.spelt):
             found.setdefault(name, place)
@@ -110,7 +111,7 @@ class TrainedRetrieveEdit:
         return all(number in known.takes[known.action_numbers[action] - 1][place] for action, place in uses)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs; the weights of words are made again from the texts."""
+        """Return all that `restored` needs; the weights of words are made again from the texts."""
         content = {"memory": self.memory.document(), "vocabulary": self.vocabulary.document()}
         return Checkpoint("retrieve-edit", asdict(self.settings), content, {})
 
@@ -121,7 +122,7 @@ class TrainedRetrieveEdit:
 
 
 def renamed(program: Steps, swaps: Mapping[str, str]) -> Steps:
-    """A program with other classes in place of some."""
+    """Return a program with other classes in place of some."""
     return tuple(_renamed(step, swaps) for step in program)
 
 
@@ -130,7 +131,10 @@ def _renamed(step: Step, swaps: Mapping[str, str]) -> Step:
 
 
 def consensus(programs: Sequence[Steps], weights: Sequence[float]) -> Steps:
-    """The program with the highest weighted mean LCS (of steps, actions, objects) with all; of equal ones the first."""
+    """Return the program with the highest weighted mean LCS (of steps, actions, objects) with all.
+
+    Of equal ones the first is taken.
+    """
     if not programs:
         return ()
     shares: dict[Steps, float] = {}

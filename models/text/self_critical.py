@@ -39,25 +39,25 @@ class Learner(Protocol):
 
     @property
     def settings(self) -> Any:
-        """With `longest`, the steps of its longest program."""
+        """Return its settings; `longest` has the steps of its longest program."""
 
     @property
     def writer(self) -> Writer:
-        """The network."""
+        """Return the network."""
 
     @property
     def trained(self) -> dict[str, Any]:
-        """What it records of its training."""
+        """Return the record of its training."""
 
     def asked(self, examples: Sequence[Any], random: Random) -> InputBatch:
-        """What programs of examples are written for; drawn from `random` where there is noise."""
+        """Return the inputs of examples; drawn from `random` where there is noise."""
 
     def program(self, numbers: Numbers) -> Steps:
-        """The program of some numbers."""
+        """Return the program of some numbers."""
 
 
 class Drawn(NamedTuple):
-    """A batch: examples, and the seed of what is drawn for them."""
+    """A batch: examples, and the seed for drawing their programs."""
 
     examples: list[Any]
     seed: int
@@ -97,7 +97,7 @@ class SelfCritical(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedTextModel:
-        """The model of a checkpoint, which has the settings of the network."""
+        """Return the model of a checkpoint, which has the settings of the network."""
         return TextModel.restored(checkpoint)
 
 
@@ -123,16 +123,16 @@ def rewarding(
 
 
 def go_on(model: Learner, task: Task[Drawn], how: Training, seen: Seen) -> None:
-    """Train a model on, at a tenth of the rate; what it records of its training is kept as its first phase."""
+    """Train a model on, at a tenth of the rate; the record of its former training is kept as its first phase."""
     before = {"first_phase": dict(model.trained)}
     model.trained.clear()
     model.trained.update({**train(task, replace(how, rate=how.rate / 10), seen).record(), **before})
 
 
 def surrogate(model: Learner, batch: Drawn, rewarded: Reward) -> torch.Tensor:
-    """A number whose gradient is that of minus the expected reward: eq. 4.8 with one sample for each example.
+    """Return a number whose gradient is that of minus the expected reward: eq. 4.8 with one sample for each example.
 
-    Without dropout: what is drawn and what is rewarded are programs of the same policy.
+    There is no dropout, so that the drawn programs and the rewarded programs come from the same policy.
     """
     writer = model.writer
     writer.eval()
@@ -152,13 +152,13 @@ def _rewards(model: Learner, batch: Drawn, programs: Sequence[Numbers], rewarded
 
 
 def lcs_reward(examples: Sequence[Any], programs: Sequence[Steps]) -> list[float]:
-    """The LCS of whole steps, from 0 to 1 (eq. 4.1)."""
+    """Return the LCS of whole steps, from 0 to 1 (eq. 4.1)."""
     pairs = ((program, example.steps) for example, program in zip(examples, programs, strict=True))
     return [score.step for score in score_pairs(pairs)]
 
 
 def sim_reward(corpus: Corpus) -> Reward:
-    """The LCS, and `SIM` for programs that run in the environment of the first execution of their example."""
+    """Return the LCS, and `SIM` for programs that run in the environment of the first execution of their example."""
 
     def rewards(examples: Sequence[Any], programs: Sequence[Steps]) -> list[float]:
         names = [example.executions[0] for example in examples]

@@ -31,15 +31,15 @@ class Memory(NamedTuple):
     mentioned: torch.Tensor
 
     def rows(self, chosen: torch.Tensor) -> Memory:
-        """Some of the texts."""
+        """Return some of the texts."""
         return Memory(*(part[chosen] for part in self))
 
 
 WAYS = 2, "two directions share it"
-"""What the hidden state is a multiple of, and why."""
+"""The number that the hidden state is a multiple of, and the reason."""
 
 State = tuple[torch.Tensor, ...]
-"""What a decoder knows of programs so far; the rows of each tensor are the programs."""
+"""The state of a decoder after the programs so far; the rows of each tensor are the programs."""
 
 
 def word_embedding(vectors: torch.Tensor) -> nn.Embedding:
@@ -48,7 +48,7 @@ def word_embedding(vectors: torch.Tensor) -> nn.Embedding:
 
 
 def both_ways(lstm: nn.LSTM, inputs: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
-    """What a bidirectional LSTM of one layer makes of sequences that end before the padding; 0 past their ends.
+    """Return the outputs of a one-layer bidirectional LSTM for padded sequences; 0 past their ends.
 
     The same as of packed sequences, in a third of the time: each direction is one call, the second on sequences that
     were turned round within their lengths.
@@ -72,7 +72,7 @@ def both_ways(lstm: nn.LSTM, inputs: torch.Tensor, lengths: torch.Tensor) -> tor
 
 
 def _one_way(inputs: torch.Tensor, weights: list[torch.Tensor]) -> torch.Tensor:
-    """(B, L, H / 2) the states of one direction, from the first place on.
+    """Return (B, L, H / 2) the states of one direction, from the first place on.
 
     It has no dropout, so that training says nothing but whether there will be gradients: a GPU refuses those of
     `training=False`, and policy gradient has them with the network in `eval` mode.
@@ -84,7 +84,7 @@ def _one_way(inputs: torch.Tensor, weights: list[torch.Tensor]) -> torch.Tensor:
 
 
 class Seq2SeqBody(nn.Module):
-    """The encoder, and the decoder without its head; `features` is the size of what it gives to the head."""
+    """The encoder, and the decoder without its head; `features` is the size of the head's input."""
 
     def __init__(self, words: nn.Module, width: int, hidden: int, size: int, dropout: float) -> None:
         """`words` makes of a batch's inputs (B, L, width) vectors, such as `word_embedding`."""
@@ -106,7 +106,7 @@ class Seq2SeqBody(nn.Module):
         return Memory(states, self.of_encoder(states), batch.mask, batch.mentioned)
 
     def start(self, memory: Memory) -> State:
-        """The state before the first step: from the mean of the words; nothing attended to."""
+        """Return the state before the first step: from the mean of the words; nothing attended to."""
         weights = memory.mask[..., None].to(memory.states.dtype)
         mean = (memory.states * weights).sum(1) / weights.sum(1)  # (B, H)
         hidden, cell = self.bridge(mean).tanh().chunk(2, -1)
@@ -126,7 +126,7 @@ class Seq2SeqBody(nn.Module):
         return (hidden, cell, attended), torch.cat((hidden, attended), -1), attention
 
     def unroll(self, memory: Memory, previous: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """All steps of known programs: (B, T, E), the vectors of the steps before each.
+        """Return all steps of known programs: (B, T, E), the vectors of the steps before each.
 
         Returns:
             (B, T, 2 H) features and (B, T, L) attention.

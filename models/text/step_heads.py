@@ -1,4 +1,4 @@
-"""From what a decoder knows at a step to probabilities of steps: whole ones of a list, or composed of their parts."""
+"""The heads of decoders, from a state to probabilities of steps: whole ones of a list, or composed of their parts."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 NEVER = -1e9
-"""Score of what is never chosen."""
+"""Score of a choice that is never made."""
 
 
 class Context(NamedTuple):
-    """What a decoder knows at N places of programs; D features, C classes and one.
+    """The decoder's state at N places of programs; D features, C classes and one.
 
     Attributes:
         features: (N, D) of the decoder and of the words attended to.
@@ -48,11 +48,11 @@ class StepEmbedding(nn.Module):
         nn.init.normal_(self.classes.weight, std=0.1)
 
     def of_classes(self) -> torch.Tensor:
-        """(C, E) the vectors of all classes; 0 for no object."""
+        """Return (C, E) the vectors of all classes; 0 for no object."""
         return self.classes.weight + self.names(self.of_names)
 
     def forward(self, steps: torch.Tensor) -> torch.Tensor:
-        """(..., 3) numbers -> (..., E): the mean of the vectors of a step's parts, v of eq. 4.3."""
+        """Map (..., 3) numbers to (..., E): the mean of the vectors of a step's parts, v of eq. 4.3."""
         objects = functional.embedding(steps[..., 1:], self.of_classes())  # (..., 2, E)
         count = 1 + (steps[..., 1:] > 0).sum(-1, keepdim=True)  # (..., 1)
         mean: torch.Tensor = (self.actions(steps[..., 0]) + objects.sum(-2)) / count
@@ -92,11 +92,11 @@ class ComposedHead(nn.Module):
         self.register_buffer("arity", torch.tensor([0, *vocabulary.arity]), persistent=False)
 
     def actions(self, context: Context) -> torch.Tensor:
-        """(N, A + 1) logarithms of the probabilities of the end and of each action."""
+        """Return (N, A + 1) logarithms of the probabilities of the end and of each action."""
         return self.action(context.features).log_softmax(-1)
 
     def objects(self, context: Context, place: int, action: torch.Tensor, first: torch.Tensor) -> torch.Tensor:
-        """(N, C) logarithms of the probabilities of each class as an argument.
+        """Return (N, C) logarithms of the probabilities of each class as an argument.
 
         Args:
             context: N places.
@@ -117,12 +117,12 @@ class ComposedHead(nn.Module):
         return scores.masked_fill(~allowed, NEVER).log_softmax(-1)
 
     def _facts(self, context: Context) -> torch.Tensor:
-        """(N, 4, C), each about 0 to 3, so that no weight has to be large."""
+        """Return (N, 4, C), each about 0 to 3, so that no weight has to be large."""
         last = functional.one_hot(context.last, context.used.shape[1]).to(context.used.dtype)
         return torch.stack((context.mentioned, context.attended, context.used.clamp(max=1), last), 1) * 3
 
     def log_probability(self, context: Context, steps: torch.Tensor) -> torch.Tensor:
-        """(N,) the logarithm of the probability of each of N steps, (N, 3); of the end for the number 0."""
+        """Return (N,) the logarithm of the probability of each of N steps, (N, 3); of the end for the number 0."""
         action, first, second = steps.unbind(-1)
         total = self.actions(context).gather(1, action[:, None])[:, 0]
         for place, number in enumerate((first, second)):
@@ -136,7 +136,7 @@ class ComposedHead(nn.Module):
         return total
 
     def best(self, context: Context, width: int) -> tuple[torch.Tensor, torch.Tensor]:
-        """The `width` best steps of each place, by the best actions and their best objects.
+        """Return the `width` best steps of each place, by the best actions and their best objects.
 
         Returns:
             (N, width) logarithms of probabilities, best first, and (N, width, 3) steps.
@@ -161,7 +161,7 @@ class ComposedHead(nn.Module):
         return scores, steps
 
     def sample(self, context: Context, generator: torch.Generator) -> torch.Tensor:
-        """(N, 3) a step for each place, drawn from the probabilities."""
+        """Return (N, 3) a step for each place, drawn from the probabilities."""
         action = _drawn(self.actions(context), generator)
         steps = [action]
         for place in range(2):
@@ -186,13 +186,13 @@ class ClosedHead(nn.Module):
         self.places = {row: number for number, row in enumerate(steps)}
 
     def every(self, context: Context) -> torch.Tensor:
-        """(N, I + 1) logarithms of the probabilities of the end and of each step of the list."""
+        """Return (N, I + 1) logarithms of the probabilities of the end and of each step of the list."""
         vectors = functional.normalize(self.embedding(self.steps), dim=-1)  # v / |v|, (I + 1, E)
         scores = self.project(context.features) @ vectors.T * (3 + self.scale).exp()
         return scores.log_softmax(-1)
 
     def log_probability(self, context: Context, steps: torch.Tensor) -> torch.Tensor:
-        """(N,) as of `ComposedHead`; steps that the list lacks get `NEVER`."""
+        """Return (N,) as of `ComposedHead`; steps that the list lacks get `NEVER`."""
         found = self.every(context)
         places = [self.places.get(tuple(row), -1) for row in steps.tolist()]
         numbers = torch.tensor(places, device=found.device)
@@ -200,17 +200,17 @@ class ClosedHead(nn.Module):
         return scores.masked_fill(numbers < 0, NEVER)
 
     def best(self, context: Context, width: int) -> tuple[torch.Tensor, torch.Tensor]:
-        """As of `ComposedHead`."""
+        """Return the most probable steps, as `ComposedHead` does."""
         scores, numbers = self.every(context).topk(min(width, len(self.steps)))
         return scores, self.steps[numbers]
 
     def sample(self, context: Context, generator: torch.Generator) -> torch.Tensor:
-        """As of `ComposedHead`."""
+        """Return drawn steps, as `ComposedHead` does."""
         return self.steps[_drawn(self.every(context), generator)]
 
 
 def _drawn(scores: torch.Tensor, generator: torch.Generator) -> torch.Tensor:
-    """(N,) a number for each row of logarithms, drawn on the processor: the same on every device."""
+    """Return (N,) a number for each row of logarithms, drawn on the processor: the same on every device."""
     probabilities = scores.detach().exp().cpu()
     if not probabilities.isfinite().all():  # of weights so large that their products are no numbers
         message = "the network's probabilities are not numbers"
@@ -224,5 +224,5 @@ def _rows(context: Context, chosen: torch.Tensor) -> Context:
 
 
 def _repeated(context: Context, times: int) -> Context:
-    """Each place `times` times, one after another."""
+    """Return each place `times` times, one after another."""
     return Context(*(part.repeat_interleave(times, 0) for part in context)) if times > 1 else context

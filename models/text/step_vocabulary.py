@@ -1,4 +1,4 @@
-"""What a model of texts knows by number: words, actions, classes of objects, and which action takes which class."""
+"""The numbered vocabulary of a model of texts: words, actions, classes of objects, and the classes of each action."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class StepVocabulary:
         words: of the training texts that occur at least twice, sorted.
         actions: those that are executed or occur in training, sorted.
         arity: of each action.
-        classes: all of the knowledge and of training, sorted: what no training program has can be copied from a text.
+        classes: all of the knowledge and of training, sorted: a text can give a class that no training program has.
         takes: for each action and argument, the numbers of the classes that it takes by the grammar, or in training.
         spelt: spelling -> class.
     """
@@ -43,7 +43,7 @@ class StepVocabulary:
 
     @classmethod
     def of(cls, examples: Iterable[tuple[Request, Steps]], knowledge: Knowledge) -> StepVocabulary:
-        """The vocabulary of training examples."""
+        """Return the vocabulary of training examples."""
         pairs = list(examples)
         counts = Counter(word for request, _ in pairs for word in set(words_of(request)))
         used = {(step.action, place, ref.name) for _, steps in pairs for step in steps
@@ -71,7 +71,7 @@ class StepVocabulary:
 
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> StepVocabulary:
-        """The vocabulary of `document`, which may be a stranger's.
+        """Return the vocabulary of `document`, which may be a stranger's.
 
         Raises:
             KeyError: a part is missing.
@@ -85,7 +85,7 @@ class StepVocabulary:
         return found
 
     def read_closed(self, document: Iterable[Iterable[Any]]) -> tuple[tuple[int, int, int], ...]:
-        """A closed list of steps as numbers, which may be a stranger's.
+        """Return a closed list of steps as numbers, which may be a stranger's.
 
         Raises:
             TypeError, ValueError: a row is not a step of this vocabulary.
@@ -100,7 +100,7 @@ class StepVocabulary:
         return found
 
     def _fits(self) -> dict[str, bool]:
-        """Return whether each part is what the others need it to be."""
+        """Return whether each part fits the others."""
         last = len(self.classes)
         return {
             "words": _names(self.words),
@@ -113,19 +113,22 @@ class StepVocabulary:
         }
 
     def document(self) -> dict[str, Any]:
-        """The vocabulary as JSON."""
+        """Return the vocabulary as JSON."""
         return asdict(self)
 
     def read_words(self, words: Sequence[str]) -> list[int]:
-        """The numbers of words; `UNKNOWN` for others."""
+        """Return the numbers of words; `UNKNOWN` for others."""
         return [self._words.get(word, UNKNOWN) for word in words]
 
     def mentioned(self, words: Sequence[str]) -> list[tuple[int, int]]:
-        """The places of the classes that a text mentions, and their numbers."""
+        """Return the places of the classes that a text mentions, and their numbers."""
         return [(place, self.class_numbers[name]) for place, name in mentions(words, self.spelt)]
 
     def numbers(self, step: Step) -> tuple[int, int, int] | None:
-        """A step as the numbers of its action and two classes, 0 for none; None if the vocabulary lacks a part."""
+        """Return a step as the numbers of its action and two classes, 0 for none.
+
+        The result is None if the vocabulary lacks a part.
+        """
         names = [ref.name for ref in step.objects]
         action = self.action_numbers.get(step.action)
         classes = [self.class_numbers.get(name) for name in names]
@@ -135,7 +138,7 @@ class StepVocabulary:
         return action, first, second
 
     def step(self, action: int, first: int, second: int) -> Step:
-        """The step of some numbers; objects have number 1 of their class."""
+        """Return the step of some numbers; objects have number 1 of their class."""
         names = [self.classes[number - 1] for number in (first, second)[: self.arity[action - 1]]]
         return Step(self.actions[action - 1], tuple(ObjectRef(name) for name in names))
 

@@ -29,7 +29,7 @@ class InputBatch(NamedTuple):
 
     @property
     def mask(self) -> torch.Tensor:
-        """(B, L) bool: whether there is a word."""
+        """Return (B, L) bool: whether there is a word."""
         device = self.inputs.device
         return torch.arange(self.inputs.shape[1], device=device) < self.lengths.to(device)[:, None]
 
@@ -48,10 +48,10 @@ class StepBatch(NamedTuple):
 
 @dataclass(frozen=True)
 class Noise:
-    """What is left out of training texts, so that a model does not rely on it.
+    """The parts of training texts to leave out, so that a model does not rely on them.
 
     Attributes:
-        title: the share of texts without their title: what people ask has none.
+        title: the share of texts without their title: people's requests have none.
         word: the share of words that count as unknown.
     """
 
@@ -62,7 +62,7 @@ class Noise:
 def text_batch(
     requests: Sequence[Request], vocabulary: StepVocabulary, device: torch.device, noise: Random | None = None
 ) -> InputBatch:
-    """The texts of some requests; with noise, if a generator is given."""
+    """Return the texts of some requests; with noise, if a generator is given."""
     texts = [words_of(request) or [BREAK] for request in requests]
     shares = Noise()
     if noise is not None:
@@ -82,7 +82,7 @@ def text_batch(
 
 
 def _without_title(words: list[str]) -> list[str]:
-    """The words after the break, or all if nothing follows it."""
+    """Return the words after the break, or all if nothing follows it."""
     return words[words.index(BREAK) + 1 :] or words if BREAK in words else words
 
 
@@ -99,6 +99,9 @@ def step_batch(programs: Sequence[Sequence[tuple[int, int, int]]], device: torch
 
 
 def encoded(steps: Steps, vocabulary: StepVocabulary, longest: int) -> list[tuple[int, int, int]]:
-    """A program as numbers; steps that the vocabulary lacks are left out, and those after the longest program's end."""
+    """Return a program as numbers.
+
+    Steps that the vocabulary lacks are left out, and those after the longest program's end.
+    """
     found = (vocabulary.numbers(step) for step in steps[:longest])
     return [numbers for numbers in found if numbers is not None]

@@ -60,7 +60,7 @@ class TextModel(Settings):
     longest: int = 40
 
     def fitting(self) -> None:
-        """The encoder has two directions, or the transformer its heads, which share the hidden state."""
+        """Check that the encoder has two directions, or the transformer its heads, which share the hidden state."""
         if self.body == "lstm":
             self.multiple("hidden", *WAYS)
         else:
@@ -88,7 +88,7 @@ class TextModel(Settings):
     def network(
         self, vocabulary: StepVocabulary, closed: Sequence[tuple[int, int, int]], vectors: np.ndarray | None
     ) -> Writer:
-        """The network before training; vectors of words and of names, if given, are where they begin."""
+        """Return the network before training; vectors of words and of names, if given, are where they begin."""
         count = len(vocabulary.words) + UNKNOWN + 1
         given = torch.zeros(count + len(vocabulary.classes), self.vector) if vectors is None else torch.tensor(vectors)
         embedding = StepEmbedding(vocabulary, self.vector, given[count:])
@@ -106,7 +106,7 @@ class TextModel(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedTextModel:
-        """The model of a checkpoint."""
+        """Return the model of a checkpoint."""
         settings = cls.of(checkpoint.settings)
         vocabulary = StepVocabulary.read(checkpoint.content["vocabulary"])
         closed = vocabulary.read_closed(checkpoint.content["closed"])
@@ -125,19 +125,19 @@ class TrainedTextModel:
     trained: dict[str, Any]
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """The most probable program for each text, by greedy or beam search."""
+        """Return the most probable program for each text, by greedy or beam search."""
         return [self.program(numbers) for numbers in self.numbers(requests, beam)]
 
     def numbers(self, requests: Sequence[Request], width: int = 1) -> list[Numbers]:
-        """The programs as numbers of the vocabulary."""
+        """Return the programs as numbers of the vocabulary."""
         return written(self.writer, requests, self.read, lambda each: len(words_of(each)), width, self.settings.longest)
 
     def read(self, requests: Sequence[Request], noise: Random | None = None) -> InputBatch:
-        """The texts of requests; with noise, if a generator is given."""
+        """Return the texts of requests; with noise, if a generator is given."""
         return text_batch(requests, self.vocabulary, self.writer.device, noise)
 
     def asked(self, examples: Sequence[Example], random: Random) -> InputBatch:
-        """The texts of examples in the second phase of training, without noise."""
+        """Return the texts of examples in the second phase of training, without noise."""
         return self.read([each.request for each in examples])
 
     def drawn(self, request: Request, count: int) -> list[Steps]:
@@ -149,29 +149,29 @@ class TrainedTextModel:
             return [self.program(numbers) for numbers in sample(self.writer, texts, self.settings.longest, generator)]
 
     def program(self, numbers: Numbers) -> Steps:
-        """The program of some numbers."""
+        """Return the program of some numbers."""
         return tuple(self.vocabulary.step(*each) for each in numbers)
 
     def score(self, examples: Sequence[Example]) -> float:
-        """The mean LCS (of steps, actions and objects) of greedy programs for some examples; 0 without any."""
+        """Return the mean LCS (of steps, actions and objects) of greedy programs for some examples; 0 without any."""
         texts = {(each.title, each.description): each.request for each in examples}
         known = dict(zip(texts, self.predict(list(texts.values())), strict=True))
         predicted = [known[each.title, each.description] for each in examples]
         return mean_lcs(predicted, [each.steps for each in examples])
 
     def scorer(self) -> TextScorer:
-        """The model for decoding with the engine in the loop."""
+        """Return the model for decoding with the engine in the loop."""
         return TextScorer(self.writer, self.vocabulary, self.read)
 
     def checkpoint(self) -> Checkpoint:
-        """All that `restored` needs."""
+        """Return all that `restored` needs."""
         weights = {name: value.detach().cpu().numpy() for name, value in self.writer.state_dict().items()}
         content = {"vocabulary": self.vocabulary.document(), "closed": [list(each) for each in self.closed]}
         return Checkpoint("", asdict(self.settings), content, weights, self.trained)
 
 
 def mean_lcs(predicted: Sequence[Steps], references: Sequence[Steps]) -> float:
-    """The mean over programs of the mean LCS of steps, actions and objects; 0 without programs."""
+    """Return the mean over programs of the mean LCS of steps, actions and objects; 0 without programs."""
     scores = score_pairs(zip(predicted, references, strict=True))
     return sum(score.mean for score in scores) / len(scores) if scores else 0.0
 
@@ -179,12 +179,12 @@ def mean_lcs(predicted: Sequence[Steps], references: Sequence[Steps]) -> float:
 def listed(
     pairs: Sequence[tuple[Request, Steps]], vocabulary: StepVocabulary, longest: int
 ) -> tuple[tuple[int, int, int], ...]:
-    """Every step of the training programs once, sorted."""
+    """Return every step of the training programs once, sorted."""
     return tuple(sorted({numbers for _, steps in pairs for numbers in encoded(steps, vocabulary, longest)}))
 
 
 def _vectors(pairs: Sequence[tuple[Request, Steps]], vocabulary: StepVocabulary, size: int) -> np.ndarray:
-    """(words and classes, size): no word, the unknown word, the words, and the names of the classes."""
+    """Return (words and classes, size): no word, the unknown word, the words, and the names of the classes."""
     names = [words(name.replace("_", " ")) for name in vocabulary.classes]
     documents = (
         (

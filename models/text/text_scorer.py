@@ -22,14 +22,15 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.world import World
 
 STAND_IN = 0.5
-"""What a node loses in score if its class is not the named one but one that serves as it."""
+"""Penalty of a node whose class is not the named one but one that can replace it, in score."""
 
 AWAY = 0.25
-"""What a node loses that is not at hand, as the nearest is meant; twice as much if the program uses another one."""
+"""Penalty of a node that is not close to the agent, in score; twice as much if the program uses another of its class.
+"""
 
 
 class Place(NamedTuple):
-    """A program so far, and what the head sees there; each has one row."""
+    """A program so far, and the head's input after it; each has one row."""
 
     draft: Draft
     context: Context
@@ -41,7 +42,7 @@ class TextScorer:
     order = (Part.ACTION, Part.FIRST, Part.SECOND)
 
     def __init__(self, writer: Writer, vocabulary: StepVocabulary, read: Callable[[Sequence[Any]], InputBatch]) -> None:
-        """`read` makes a batch of what programs are written for.
+        """`read` makes a batch of the inputs of programs.
 
         Raises HearthError, BAD_ARGUMENT: the model chooses whole steps of a list.
         """
@@ -53,12 +54,15 @@ class TextScorer:
         self._nodes: dict[int, dict[str, list[tuple[int, float]]]] = {}
 
     def begin(self, worlds: Sequence[World], inputs: Sequence[Any]) -> list[Place]:
-        """The places before the first steps; the inputs are what `read` reads: requests, of films their clips."""
+        """Return the places before the first steps.
+
+        The inputs are those that `read` reads: requests, of films their clips.
+        """
         with torch.no_grad():
             return self._places(self.writer.begin(self.read(inputs)))
 
     def score(self, asked: Sequence[Asked], part: Part) -> list[Scores]:
-        """The logarithms of the probabilities of actions and of the end, or the scores of nodes."""
+        """Return the logarithms of the probabilities of actions and of the end, or the scores of nodes."""
         context = Context(*(torch.cat(found) for found in zip(*(each.state.context for each in asked), strict=True)))
         with torch.no_grad():
             if part is Part.ACTION:
@@ -73,7 +77,7 @@ class TextScorer:
         ]
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> list[Place]:
-        """The places after steps."""
+        """Return the places after steps."""
         if not steps:
             return []
         numbers = [self._numbers(each.world, step) for each, step in zip(asked, steps, strict=True)]
@@ -92,7 +96,7 @@ class TextScorer:
         return self.vocabulary.action_numbers[step.action], first, second
 
     def _class(self, world: World, node: int | None) -> int:
-        """The number of a node's class, 0 for none."""
+        """Return the number of a node's class, 0 for none."""
         if node is None or node < 0:
             return 0
         found = self._classes(world.home.knowledge).get(world.home.classes[node])
@@ -117,7 +121,7 @@ class TextScorer:
         return found
 
     def _classes(self, knowledge: Knowledge) -> dict[str, list[tuple[int, float]]]:
-        """For each class of nodes, the classes that it may stand for, and what that costs; itself first."""
+        """Return for each class of nodes the classes that it may stand for, and the cost of each; itself first."""
         known = self._nodes.get(id(knowledge))
         if known is None:
             known = self._nodes[id(knowledge)] = {}

@@ -1,4 +1,4 @@
-"""Tables 4.4 and 4.5: programs from descriptions, the thesis's figures beside ours beside yardsticks."""
+"""Tables 4.4 and 4.5: programs from descriptions, with the thesis's figures, ours and yardsticks."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def table(
     repaired: bool = False,
     seed: int = 0,
 ) -> list[Row]:
-    """The rows of a table, over the original programs of all test parts of a split.
+    """Return the rows of a table, over the original programs of all test parts of a split.
 
     Args:
         number: 4.4 or 4.5.
@@ -75,7 +75,7 @@ def _of_thesis(number: str) -> Iterator[Row]:
 
 
 def _yardsticks(dataset: Dataset, split: str, test: Sequence[Example], seed: int) -> Iterator[Entrant]:
-    """What needs no training, and another person's program for the same text, where there is one."""
+    """Yield the methods without training, and another person's program for the same text, where there is one."""
     train = examples(dataset, split, "train", originals=True)
     yield Entrant("Empty program", "yardstick", [[()] * len(test)])
     given, asked = ([_plain(each) for each in part] for part in (train, test))
@@ -91,7 +91,7 @@ def _plain(each: Example) -> baselines.Example:
 
 
 def _sibling(one: Example, test: Sequence[Example]) -> Steps | None:
-    """The program of another example with the same text."""
+    """Return the program of another example with the same text."""
     found = (each.steps for each in test if each is not one and _text(each) == _text(one))
     return next(found, None)
 

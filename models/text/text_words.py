@@ -16,11 +16,14 @@ BREAK = "|"
 
 
 def words(text: str) -> list[str]:
-    """The words of a text in lower case, without punctuation (thesis 4.3.2): `Don't TURN it` is don't, turn, it."""
+    """Return the words of a text in lower case, without punctuation (thesis 4.3.2).
+
+    `Don't TURN it` is don't, turn, it.
+    """
     return [found.group().lower() for found in _WORD.finditer(text[: LONGEST * 20])]
 
 
 def words_of(request: Request) -> list[str]:
-    """The words of the title, a break, and the words of the description, at most `LONGEST` of them."""
+    """Return the words of the title, a break, and the words of the description, at most `LONGEST` of them."""
     title, description = words(request.title), words(request.description)
     return [*title, BREAK, *description][:LONGEST] if title else description[:LONGEST]

@@ -15,11 +15,11 @@ from hearth.models.text.seq2seq import Memory, State
 from hearth.models.text.text_batches import InputBatch
 
 HEADS = 4
-"""Of its attention."""
+"""Heads of its attention."""
 
 
 class TransformerBody(nn.Module):
-    """Layers of attention over words, and over steps and words; `features` is the size of what goes to the head."""
+    """Layers of attention over words, and over steps and words; `features` is the size of the head's input."""
 
     def __init__(self, words: nn.Module, width: int, hidden: int, size: int, dropout: float, layers: int) -> None:
         """`words` makes of a batch's inputs (B, L, width) vectors."""
@@ -42,7 +42,7 @@ class TransformerBody(nn.Module):
         return Memory(states, self.key(states), batch.mask, batch.mentioned)
 
     def start(self, memory: Memory) -> State:
-        """The state before the first step: (B, 0, H), the steps so far."""
+        """Return the state before the first step: (B, 0, H), the steps so far."""
         return (memory.states[:, :0],)
 
     def step(self, memory: Memory, state: State, previous: torch.Tensor) -> tuple[State, torch.Tensor, torch.Tensor]:
@@ -52,11 +52,11 @@ class TransformerBody(nn.Module):
         return (steps,), features[:, -1], attention[:, -1]
 
     def unroll(self, memory: Memory, previous: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """All steps of known programs; as of `Seq2SeqBody`."""
+        """Return all steps of known programs; as of `Seq2SeqBody`."""
         return self._read(memory, self.of_steps(previous))
 
     def _read(self, memory: Memory, steps: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """(B, T, H) steps -> (B, T, 2 H) features and (B, T, L) attention."""
+        """Map (B, T, H) steps to (B, T, 2 H) features and (B, T, L) attention."""
         later = torch.ones(steps.shape[1], steps.shape[1], dtype=torch.bool, device=steps.device).triu(1)
         found = self.decoder(
             self.dropout(_placed(steps)), memory.states, tgt_mask=later, memory_key_padding_mask=~memory.mask
@@ -67,7 +67,7 @@ class TransformerBody(nn.Module):
 
 
 def _placed(vectors: torch.Tensor) -> torch.Tensor:
-    """(B, T, H) vectors with waves of their places added, as in the first transformer."""
+    """Return (B, T, H) vectors with waves of their places added, as in the first transformer."""
     count, size = vectors.shape[1:]
     place = torch.arange(count, device=vectors.device)[:, None]
     rate = torch.exp(torch.arange(0, size, 2, device=vectors.device) * (-math.log(10_000) / size))

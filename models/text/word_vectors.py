@@ -20,7 +20,7 @@ WINDOW = 4
 def word_vectors(
     documents: Iterable[tuple[Sequence[str], Sequence[str]]], vocabulary: Sequence[str], size: int
 ) -> np.ndarray:
-    """A vector for each word of the vocabulary, of length 1; of words that no document has, 0.
+    """Return a vector for each word of the vocabulary, of length 1; of words that no document has, 0.
 
     Args:
         documents: the words of a text, and those of the names in its program.

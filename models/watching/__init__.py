@@ -1,1 +1,1 @@
-"""What somebody wants, inferred from what was seen of what they did (thesis 6.4, B.3.1)."""
+"""A person's goal, inferred from observations of their actions (thesis 6.4, B.3.1)."""

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 Counts = tuple[int, ...]
-"""How often each predicate is wanted."""
+"""The number of times that each predicate is wanted."""
 
 MOST_PLACES = 12
 """Places of a thing that are read: of more, the last ones."""
@@ -24,7 +24,7 @@ class Watched:
     """A demonstration with its goal.
 
     Attributes:
-        things: what was seen (see `object_sightings`).
+        things: the observed things (see `object_sightings`).
         counts: of the goal.
     """
 
@@ -73,7 +73,7 @@ def packed(examples: Sequence[Watched], predicates: int) -> Packed:
 
 @dataclass(frozen=True)
 class Joining:
-    """Makes one demonstration of two, as if somebody had had both goals.
+    """A function that joins two demonstrations into one, as if one person had had both goals.
 
     A network that has only seen single activities takes whatever belongs to another for a distraction.
 
@@ -88,11 +88,11 @@ class Joining:
     forbidden: frozenset[Counts]
 
     def goal_set(self, example: Watched) -> int:
-        """The goal set of a demonstration of one."""
+        """Return the goal set of a demonstration of one."""
         return next((self.set_of[i] for i, count in enumerate(example.counts) if count), -1)
 
     def __call__(self, one: Watched, other: Watched, chooser: Random) -> Watched | None:
-        """Both at once, each in a part of the time; None where both are of one set, or the goal is forbidden.
+        """Return both at once, each in a part of the time; None where both are of one set, or the goal is forbidden.
 
         Things that were left where only the other goal wants such things would be in the way: they are left out, and so
         are all distractions of the second demonstration.
@@ -117,14 +117,14 @@ class Joining:
 
 
 def _within(things: Sequence[Seen], chooser: Random) -> list[Seen]:
-    """The same in a part of the time: of two activities one begins later, or ends earlier."""
+    """Return the things in a part of the time: of two activities one begins later, or ends earlier."""
     length = chooser.uniform(0.5, 1.0)
     start = chooser.uniform(0.0, 1.0 - length)
     return [thing._replace(times=tuple(start + length * time for time in thing.times)) for thing in things]
 
 
 def epoch(examples: Sequence[Watched], joining: Joining, share: float, chooser: Random) -> list[Watched]:
-    """All demonstrations in an order that is drawn; some share of them is joined with another one."""
+    """Return all demonstrations in an order that is drawn; some share of them is joined with another one."""
     found = []
     for each in chooser.sample(examples, len(examples)):
         both = joining(each, chooser.choice(examples), chooser) if chooser.random() < share else None

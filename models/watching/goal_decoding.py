@@ -30,7 +30,7 @@ class PossibleGoals:
 
     @cached_property
     def set_of(self) -> tuple[int, ...]:
-        """For each predicate the number of its goal set; predicates of one goal are of one set."""
+        """Return for each predicate the number of its goal set; predicates of one goal are of one set."""
         found = list(range(len(self.goals[0])))
         for goal in self.goals:
             joined = {found[i] for i, count in enumerate(goal) if count}
@@ -45,7 +45,7 @@ class PossibleGoals:
         return np.array(self.goals), np.array(sets)
 
     def best(self, logs: np.ndarray) -> Counts:
-        """The most probable goal.
+        """Return the most probable goal.
 
         Args:
             logs: (P, K), the logarithm of the probability of each count of each of P predicates.
@@ -79,5 +79,5 @@ def counts_of(goal: Goal, predicates: Sequence[str]) -> Counts:
 
 @lru_cache(maxsize=4)
 def possible_goals(goals: tuple[Goal, ...], predicates: tuple[str, ...]) -> PossibleGoals:
-    """The goals that there are, as counts of predicates."""
+    """Return the goals that there are, as counts of predicates."""
     return PossibleGoals(tuple(counts_of(goal, predicates) for goal in goals))

@@ -1,4 +1,4 @@
-"""Goal inference from states (thesis 6.4, B.3.1): what somebody wants, from where things were seen."""
+"""Goal inference from states (thesis 6.4, B.3.1): a person's goal, from the observed places of things."""
 
 from __future__ import annotations
 
@@ -52,11 +52,11 @@ class GoalInference(Settings):
     shape: str = "things"
 
     def fitting(self) -> None:
-        """The heads divide the width."""
+        """Check that the heads divide the width."""
         self.multiple("width", self.heads, "its `heads` share it")
 
     def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:
-        """A network that has learnt nothing."""
+        """Return a network that has learnt nothing."""
         from hearth.models.watching.object_network import ThingNetwork
         from hearth.models.watching.state_network import MomentNetwork
 
@@ -73,7 +73,7 @@ class GoalInference(Settings):
         how: Training,
         seen: Seen = unseen,
     ) -> TrainedGoalInference:
-        """The network trained on demonstrations.
+        """Return the network trained on demonstrations.
 
         Args:
             examples: of single goal sets.
@@ -113,7 +113,7 @@ class GoalInference(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGoalInference:
-        """The trained network of a checkpoint."""
+        """Return the trained network of a checkpoint."""
         from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
@@ -127,7 +127,10 @@ class GoalInference(Settings):
 
 
 def _parted(examples: Sequence[Watched]) -> tuple[list[Watched], list[Watched]]:
-    """What is learnt from, and the demonstrations of other goals, for validation; none where there are few goals."""
+    """Split examples into those to train on and those for validation, which have other goals.
+
+    There is no validation where there are few goals.
+    """
     goals = list(dict.fromkeys(each.counts for each in examples))
     chosen = set(rng(0, "validation goals").sample(goals, len(goals) // VALIDATION))
     return [e for e in examples if e.counts not in chosen], [e for e in examples if e.counts in chosen]
@@ -152,7 +155,7 @@ class TrainedGoalInference:
     facts: Mapping[str, Any] = field(default_factory=dict)
 
     def counts(self, demonstrations: Sequence[Watched], possible: PossibleGoals) -> list[Counts]:
-        """The most probable goals of demonstrations, whose own goals are not looked at."""
+        """Return the most probable goals of demonstrations, whose own goals are not looked at."""
         import torch
 
         found = []
@@ -173,10 +176,10 @@ class TrainedGoalInference:
         return 2 * sum(map(min, pairs)) / max(1, sum(map(sum, pairs)))
 
     def infer(self, ticks: Sequence[Tick], predicates: Sequence[Predicate], goals: tuple[Goal, ...]) -> Goal:
-        """The goal of a demonstration.
+        """Return the goal of a demonstration.
 
         Args:
-            ticks: what happened.
+            ticks: of a demonstration.
             predicates: in the network's order, with the nodes of the demonstration's home; the goal is made of them.
             goals: all of single goal sets that there are, with the names of furniture.
 
@@ -203,7 +206,7 @@ class TrainedGoalInference:
 
 @lru_cache(maxsize=4)
 def restored(model: str) -> TrainedGoalInference:
-    """A trained network; read once.
+    """Return a trained network; read once.
 
     Args:
         model: a checkpoint's folder, or the name of one that comes with Hearth.

@@ -18,7 +18,7 @@ LEAST = 1e-4
 
 
 class ThingNetwork(nn.Module):
-    """How often each predicate is wanted.
+    """A network that predicts how often each predicate is wanted.
 
     Args:
         layout: of P predicates.
@@ -53,7 +53,7 @@ class ThingNetwork(nn.Module):
         self.register_buffer("cells", torch.tensor(layout.cells), persistent=False)
 
     def things(self, batch: Packed) -> Tensor:
-        """The probability that each thing counts for each place, (D, T, places); the first is for none."""
+        """Return the probability that each thing counts for each place, (D, T, places); the first is for none."""
         kinds, places = torch.as_tensor(batch.kinds), torch.as_tensor(batch.places)
         times = torch.as_tensor(batch.times)
         since = torch.diff(times, dim=2, prepend=times[:, :, :1])
@@ -69,7 +69,10 @@ class ThingNetwork(nn.Module):
         return scores.softmax(2)
 
     def forward(self, batch: Packed) -> Tensor:
-        """The logarithms of the probabilities of each predicate's counts, (D, P, most + 1); things are independent."""
+        """Return the logarithms of the probabilities of each predicate's counts, (D, P, most + 1).
+
+        Things are independent.
+        """
         kinds = torch.as_tensor(batch.kinds)
         chance = self.things(batch)[:, :, self.cells[:, 1]]  # (D, T, P)
         chance = chance * (kinds[:, :, None] == self.cells[:, 0] + 1)
@@ -83,7 +86,7 @@ class ThingNetwork(nn.Module):
 
 
 def loss_of(network: nn.Module, batch: Packed) -> Tensor:
-    """The mean of minus the logarithm of the probability of goals, their predicates being independent."""
+    """Return the mean of minus the logarithm of the probability of goals, their predicates being independent."""
     found: Tensor = network(batch)
     wanted = torch.as_tensor(batch.counts).clamp(max=found.shape[2] - 1)
     return -found.gather(2, wanted[:, :, None]).sum((1, 2)).mean()

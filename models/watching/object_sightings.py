@@ -1,7 +1,7 @@
 """A demonstration as states show it: where each thing that goals are about was seen, one place after the other.
 
-Only what the watcher sees counts: it goes where the character goes, and sees what is in its room and not inside
-something closed. Instructions and failures are never read.
+Only things in the watcher's view count. The watcher goes where the character goes, and sees the things in its room that
+are not inside a closed container. Instructions and failures are never read.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What predicates are about, whatever the home.
+    """The terms of predicates, independent of the home.
 
     Attributes:
         kinds: number of classes of things.
@@ -59,7 +59,7 @@ class Layout:
 
     @classmethod
     def of(cls, predicates: Sequence[Predicate]) -> Layout:
-        """The layout of predicates with names, as a grammar writes them, or with nodes: both are equal."""
+        """Return the layout of predicates with names, as a grammar writes them, or with nodes: both are equal."""
         kinds: dict[Name | None, int] = {}
         places: dict[tuple[str, Name | None], int] = {}
         cells = []
@@ -71,24 +71,24 @@ class Layout:
 
 
 def _parts(predicate: Predicate) -> tuple[Name | None, tuple[str, Name | None]]:
-    """The thing that a predicate counts, and its place; of a character's, the thing that it holds or uses."""
+    """Return the thing that a predicate counts, and its place; of a character's, the thing that it holds or uses."""
     subject, target = predicate.subject, predicate.target
     return (target, (predicate.name, subject)) if _mine(predicate) else (subject, (predicate.name, target))
 
 
 def _mine(predicate: Predicate) -> bool:
-    """Return whether it is about what a character holds or uses."""
+    """Return whether a predicate is about a thing that a character holds or uses."""
     subject = predicate.subject
     return isinstance(subject, str) and subject.partition(":")[0] == AGENT
 
 
 def sightings(ticks: Sequence[Tick], predicates: Sequence[Predicate], agent: int = 0) -> tuple[Seen, ...]:
-    """The things that were seen to change their places while a character acted, in the order of their nodes.
+    """Return the things that were seen to change their places while a character acted, in the order of their nodes.
 
     Args:
         ticks: of a demonstration.
         predicates: with the nodes of furniture of its home.
-        agent: the character; the watcher stands beside it.
+        agent: the character; the watcher stands next to it.
 
     Returns:
         Of each thing its kind and its places (see `Layout`).
@@ -115,7 +115,7 @@ def sightings(ticks: Sequence[Tick], predicates: Sequence[Predicate], agent: int
 
 
 def _kinds(predicates: Sequence[Predicate], home: Home) -> list[int]:
-    """The nodes of each kind."""
+    """Return the nodes of each kind."""
     found: dict[Name | None, int] = {}
     for each in predicates:
         thing = _parts(each)[0]
@@ -124,7 +124,7 @@ def _kinds(predicates: Sequence[Predicate], home: Home) -> list[int]:
 
 
 def _sites(predicates: Sequence[Predicate], home: Home) -> list[Site]:
-    """What is at each place."""
+    """Return for each place a function that gives the nodes at that place."""
     found: dict[tuple[str, Name | None], Site] = {}
     for each in predicates:
         if each.name != HOLDS:

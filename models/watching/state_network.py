@@ -1,7 +1,8 @@
 """The thesis's network that infers goals (figure B-6): a transformer over the things of a moment, an LSTM over time,
 and a classifier for each predicate's count.
 
-`object_network` asks of each thing whether it counts instead. `challenge learn wah --what goals-moments` trains it.
+`object_network` classifies each thing instead: whether it counts. `challenge learn wah --what goals-moments` trains
+this network.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ RARE = 4.0
 
 
 class MomentNetwork(nn.Module):
-    """How often each predicate is wanted.
+    """A network that predicts how often each predicate is wanted.
 
     Args:
         layout: of P predicates.
@@ -51,7 +52,7 @@ class MomentNetwork(nn.Module):
         nn.init.constant_(self.count.bias.data.unflatten(0, (self.predicates, most + 1))[:, 0], RARE)
 
     def forward(self, batch: Packed) -> Tensor:
-        """The logarithms of the probabilities of each predicate's counts, (D, P, most + 1)."""
+        """Return the logarithms of the probabilities of each predicate's counts, (D, P, most + 1)."""
         kinds, places = torch.as_tensor(batch.kinds), torch.as_tensor(batch.places)
         there = _places_at(places, torch.as_tensor(batch.times))  # (D, M, T)
         kind = self.kind(kinds)[:, None].expand(-1, MOMENTS, -1, -1)
@@ -66,7 +67,7 @@ class MomentNetwork(nn.Module):
 
 
 def _places_at(places: Tensor, times: Tensor) -> Tensor:
-    """The place in which each thing was last seen at each moment, (D, M, T); 0 before it is seen."""
+    """Return the place in which each thing was last seen at each moment, (D, M, T); 0 before it is seen."""
     moments = torch.linspace(0.0, 1.0, MOMENTS)
     before = (times[:, None] <= moments[None, :, None, None] + 1e-6) & (places[:, None] > 0)  # (D, M, T, E)
     last = before.sum(3) - 1

@@ -16,7 +16,7 @@ SURE = 0.75
 """Similarity by edit distance from which the nearest name replaces a misspelt one."""
 
 MARGIN = 0.1
-"""By how much it must be more similar than any other."""
+"""Least lead of a suggestion's similarity over any other."""
 
 _PASSES = 8
 _NO_INSTANCE = re.compile(r"<[^<>\[\]]*>(?!\s*\()(?!\s*\[)\s*(?:\d+(?=\s|$))?")
@@ -26,7 +26,7 @@ Edit = tuple[int, int, list[str]]
 
 
 def fixed(text: str, known: Knowledge) -> str:
-    """The text with every safe correction made, pass by pass until none is left.
+    """Return the text with every safe correction made, pass by pass until none is left.
 
     Corrected are: a misspelt name that is similar to only one known name; a missing instance; a step that repeats a
     state change; a missing Walk; a Special block that the reviewed file replaces.
@@ -43,7 +43,7 @@ def fixed(text: str, known: Knowledge) -> str:
 
 
 def difference(before: str, after: str, file: str) -> str:
-    """A unified diff; empty if nothing changed."""
+    """Return a unified diff; empty if nothing changed."""
     lines = unified_diff(before.split("\n"), after.split("\n"), file, f"{file} (fixed)", lineterm="")
     return "".join(f"{line}\n" for line in lines)
 
@@ -73,7 +73,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
 
 
 def _written(fault: Diagnostic, line: str) -> list[str] | None:
-    """The lines that replace a line which is not a step."""
+    """Return the lines that replace a line which is not a step."""
     if fault.code is Code.SPECIAL_BLOCK:
         expanded = special_blocks.expand(line, 0).text
         return expanded.split("\n") if expanded != line else None
@@ -102,7 +102,7 @@ def _respelt(fault: Diagnostic, line: str, known: Knowledge) -> str | None:
 
 
 def only_near(name: str, spellings: Mapping[str, str]) -> str | None:
-    """The only known name that is similar to a misspelt one, or None."""
+    """Return the only known name that is similar to a misspelt one, or None."""
     from rapidfuzz import process
     from rapidfuzz.distance import OSA
 

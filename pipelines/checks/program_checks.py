@@ -66,7 +66,7 @@ def met_at_start(
 
 
 def _held(start: GraphRow, bindings: list[BindingRow]) -> frozenset[tuple[str, int, str]]:
-    """The states of a program's objects in the start graph of a grounding, as (name, instance, state)."""
+    """Return the states of a program's objects in the start graph of a grounding, as (name, instance, state)."""
     states = {node["id"]: node["states"] for node in start["nodes"]}
     return frozenset(
         (bound["name"], bound["instance"], state) for bound in bindings for state in states.get(bound["node"]) or ()
@@ -132,7 +132,7 @@ def _associated(known: Knowledge, one: str, other: str) -> bool:
 
 
 def without_effect(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """A program that only walks and looks, unless its title names one of these actions."""
+    """Yield a program that only walks and looks, unless its title names one of these actions."""
     passing = known.group("goes") | known.group("idle")
     if not program.steps or any(step.action not in passing for step in program.steps):
         return
@@ -182,7 +182,7 @@ def never_executed(program: Program, known: Knowledge) -> Iterator[Finding]:
 
 
 def diagnostic(finding: Finding, program: Program, place: str, source: Sequence[str] = ()) -> Diagnostic:
-    """A finding as a diagnostic with its place.
+    """Return a finding as a diagnostic with its place.
 
     Args:
         finding: one of the program's.
@@ -200,7 +200,7 @@ def diagnostic(finding: Finding, program: Program, place: str, source: Sequence[
 
 
 def findings(program: Program, known: Knowledge) -> Iterable[Finding]:
-    """The warnings of a program by itself."""
+    """Return the warnings of a program by itself."""
     yield from not_close(program, known)
     yield from without_effect(program, known)
     yield from topics.off_topic(program, known)

@@ -22,17 +22,20 @@ class Expanded(NamedTuple):
     """The lines of the replaced blocks, with their text."""
 
     def original(self, line: int) -> int:
-        """The line that a line of the expanded text came from."""
+        """Return the line that a line of the expanded text came from."""
         return self.lines[line - 1] if 0 < line <= len(self.lines) else line
 
     def placed(self, fault: Diagnostic) -> Diagnostic:
-        """A fault of the expanded text, moved to its original line; a fault of the whole text, to the first line."""
+        """Return a fault of the expanded text, moved to its original line.
+
+        A fault of the whole text moves to the first line.
+        """
         return replace(fault, line=self.original(fault.line or 1))
 
 
 @cache
 def blocks() -> dict[str, tuple[str, ...]]:
-    """The steps that replace each free text, which is in lower case with single spaces."""
+    """Return the steps that replace each free text, which is in lower case with single spaces."""
     data = packaged("hearth", FILE) or {}
     return {_normal(block["text"]): tuple(block["steps"]) for block in data.get("blocks") or ()}
 

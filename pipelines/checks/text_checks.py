@@ -1,4 +1,4 @@
-"""The faults and warnings of program text: what `check` prints, and what annotators see while they write."""
+"""The faults and warnings of program text: the output of `check`, which annotators see while they write."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def check_text(
 def check_program(
     program: Program, knowledge: Knowledge, file: str, source: list[str], *, affordances: bool, lint: bool
 ) -> tuple[list[Diagnostic], list[Diagnostic]]:
-    """The faults of a program as parsed, and, if names and arity are right, its warnings.
+    """Return the faults of a program as parsed, and, if names and arity are right, its warnings.
 
     Args:
         program: with the lines of its steps.

@@ -17,7 +17,7 @@ ALIKE_WORDS = 0.8
 """Similarity of the words of two descriptions from which they are near-duplicates."""
 
 ALIKE_STEPS = 0.85
-"""The same for the steps of two programs by one worker for one description."""
+"""Least similarity of the steps of two programs by one worker for one description that count as copies."""
 
 PASTED = 3
 """Number of descriptions from which one program by one worker counts as pasted."""
@@ -45,7 +45,7 @@ class Copies:
         self._programs = _Recent(recent)
 
     def checked(self, item: Item) -> Item:
-        """The item, or its refusal as a copy."""
+        """Return the item, or its refusal as a copy."""
         if item.reader != crowd.NAME:
             return item
         cells = item.value["cells"]
@@ -145,7 +145,7 @@ def pasted(items: Iterable[Item]) -> frozenset[int]:
 
 
 def program_digest(cells: dict[str, Any]) -> int:
-    """A digest of a worker and their program, ignoring spaces and case; 0 for a program of very few steps."""
+    """Return a digest of a worker and their program, ignoring spaces and case; 0 for a program of very few steps."""
     steps = _steps(cells)
     return digest([cells["WorkerId"].strip(), *steps]) if len(steps) >= _FEWEST_STEPS else 0
 
@@ -165,5 +165,5 @@ def _alike(one: Sequence[int], other: Sequence[int]) -> float:
 
 
 def hash_of(text: str) -> int:
-    """A hash of a text of 32 bits, the same in every process, unlike `hash`."""
+    """Return a hash of a text of 32 bits, the same in every process, unlike `hash`."""
     return int.from_bytes(blake2b(text.encode("utf-8", "surrogatepass"), digest_size=4).digest(), "little")

@@ -16,14 +16,14 @@ class Described:
         self._ids = SeenSet()
 
     def noted(self, items: Iterable[Item]) -> Iterator[Item]:
-        """The same items; the ids of the first stage are stored."""
+        """Yield the same items, and store the ids of the first stage."""
         for item in items:
             if item.reader == crowd.NAME and item.value["stage"] == 1:
                 self._ids.add(digest(item.value["cells"]["HITId"].strip()))
             yield item
 
     def checked(self, item: Item) -> Item:
-        """The item, or its refusal if its description is unknown."""
+        """Return the item, or its refusal if its description is unknown."""
         if item.reader != crowd.NAME or item.value["stage"] == 1 or not len(self._ids):
             return item
         name = item.value["cells"]["Input.description_id"].strip()

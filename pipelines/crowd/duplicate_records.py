@@ -27,7 +27,7 @@ class Repeated:
         self._texts: dict[str, SeenSet] = {}
 
     def first(self, items: Iterable[Item], reader: str, place: str) -> Iterator[Item]:
-        """The items of a file, copies as refusals."""
+        """Yield the items of a file, copies as refusals."""
         items = self._new_texts(items, place)
         if reader != text.NAME or self._likely:
             yield from map(self._checked, items)
@@ -38,7 +38,7 @@ class Repeated:
         self._numbered[f"{text.NAME}:{place}"] = count
 
     def _new_texts(self, items: Iterable[Item], place: str) -> Iterator[Item]:
-        """The items; those whose text was in a folder or archive other than this file's, as refusals."""
+        """Yield the items; those whose text was in a folder or archive other than this file's, as refusals."""
         archive = _ARCHIVE.match(place)
         mine = archive[0] if archive else ""
         for item in items:
@@ -79,7 +79,7 @@ def _copy(what: str, item: Item) -> Item:
 
 
 def _text_key(item: Item) -> int | None:
-    """A digest of text whose id is only its place, which differs between a folder and an archive of it."""
+    """Return a digest of text whose id is only its place, which differs between a folder and an archive of it."""
     if item.reader not in (text.NAME, ours.NAME) or not item.record_id.startswith(f"{item.reader}:"):
         return None
     try:

@@ -40,7 +40,7 @@ class SeenSet:
         return self._used
 
     def _slot(self, key: int) -> int:
-        """The slot of a key, or the free slot for it."""
+        """Return the slot of a key, or the free slot for it."""
         keys, counts, mask = self._keys, self._counts, self._mask
         slot = key & mask
         while counts[slot] and keys[slot] != key:
@@ -57,7 +57,7 @@ class SeenSet:
 
 
 def digest(value: Any) -> int:
-    """A digest of a JSON value of 64 bits, the same in every process."""
+    """Return a digest of a JSON value of 64 bits, the same in every process."""
     try:
         data = orjson.dumps(value, option=orjson.OPT_SORT_KEYS)
     except TypeError:

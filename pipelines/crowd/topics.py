@@ -29,7 +29,7 @@ _ENOUGH = 2
 
 
 def off_topic(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """A text that mentions none of the objects that the program uses, nor anything related to them.
+    """Yield a text that mentions none of the objects that the program uses, nor anything related to them.
 
     Related are: another name, a kind of the object, an object of the same kind, a stand-in, and its usual container.
     """
@@ -62,7 +62,7 @@ def _related(name: str, things: set[str], known: Knowledge) -> bool:
 
 
 def mentioned(text: str, known: Knowledge) -> set[str]:
-    """The classes, without rooms, that a text names in one or two words."""
+    """Return the classes, without rooms, that a text names in one or two words."""
     words = re.findall(r"[a-z]+", text.lower())
     found: set[str] = set()
     for name in (*words, *("_".join(pair) for pair in pairwise(words))):
@@ -96,12 +96,12 @@ _ENDINGS = ((re.compile("sses$"), "ss"), (re.compile("(?<=[^s])s$"), ""), (re.co
 
 
 def stem(word: str) -> str:
-    """A word without its plural or common verb endings: `dish` for `dishes`, `read` for `reading`."""
+    """Return a word without its plural or common verb endings: `dish` for `dishes`, `read` for `reading`."""
     for ending, instead in _ENDINGS:
         word = ending.sub(instead, word)
     return word
 
 
 def stems(text: str) -> Iterator[str]:
-    """The stems of a text's words."""
+    """Yield the stems of a text's words."""
     return map(stem, re.findall(r"[a-z]+", text.lower()))

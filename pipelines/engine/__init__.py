@@ -1,1 +1,1 @@
-"""What all stages share: the loop, workers, progress, settings."""
+"""The common parts of all stages: the loop, workers, progress, settings."""

@@ -75,7 +75,7 @@ class Activities:
                 self._programs[place] += 1
 
     def _described(self) -> Iterator[DescriptionRow]:
-        """The descriptions in the order of their ids, without the number of their programs."""
+        """Yield the descriptions in the order of their ids, without the number of their programs."""
         for start in range(0, len(self._order), _BATCH):  # a sorted copy of all would be as large again
             yield from self._words.take(pa.array(self._order[start : start + _BATCH])).to_pylist()
 
@@ -88,7 +88,7 @@ class Activities:
             activity.scenes.add(row["scene"])
 
     def activity_rows(self) -> Iterator[ActivityRow]:
-        """The activities in the order of their ids."""
+        """Yield the activities in the order of their ids."""
         for name, activity in sorted(self._activities.items()):
             title = min(activity.titles, key=lambda title: (-activity.titles[title], title))
             yield {
@@ -100,7 +100,7 @@ class Activities:
             }
 
     def description_rows(self) -> Iterator[DescriptionRow]:
-        """The descriptions in the order of their ids."""
+        """Yield the descriptions in the order of their ids."""
         for row, programs in zip(self._described(), self._programs.data, strict=True):
             yield {**row, "activity_id": activity_id(row["title"]), "programs": programs}
 
@@ -127,7 +127,7 @@ def _descriptions(ingested: Iterable[IngestedRow]) -> tuple[Texts, NDArray[np.in
 
 
 def _words(ingested: Iterable[IngestedRow], numbers: NDArray[np.int64]) -> pa.Table:
-    """The words of the ingested rows of some numbers, which are in order."""
+    """Return the words of the ingested rows of some numbers, which are in order."""
     schema = pa.schema([TABLES["descriptions"].field(name) for name in _WORDS])
     kept: list[pa.RecordBatch] = []
     rows = _numbered(ingested, numbers)
@@ -137,7 +137,7 @@ def _words(ingested: Iterable[IngestedRow], numbers: NDArray[np.int64]) -> pa.Ta
 
 
 def _numbered(rows: Iterable[IngestedRow], numbers: NDArray[np.int64]) -> Iterator[IngestedRow]:
-    """The rows of some numbers, which are in order."""
+    """Yield the rows of some numbers, which are in order."""
     waiting = iter(numbers.data)
     next_one = next(waiting, None)
     for number, row in enumerate(rows):

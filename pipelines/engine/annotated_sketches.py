@@ -1,4 +1,4 @@
-"""Annotated sketches of published programs, and what their augmented programs inherit of them (thesis 5.5.1)."""
+"""Annotated sketches of published programs, and those that their augmented programs inherit (thesis 5.5.1)."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
 
 PARENT = "_parent"
-"""What the origin of an inherited annotation ends with."""
+"""Ending of the origin of an inherited annotation."""
 
 
 ANNOTATED = ("kind", "program_id", "place", "description_id", "keep", "text")
-"""Columns of what `ingest` reads that an annotation has."""
+"""Columns of an annotation, among those that `ingest` reads."""
 
 
 class Annotations(NamedTuple):
@@ -30,7 +30,7 @@ class Annotations(NamedTuple):
 
 
 def fitting(given: Iterable[Mapping[str, Any]], steps_of: Callable[[list[str]], Mapping[str, int]]) -> Annotations:
-    """The annotations of programs that are published; the id of a description names its program.
+    """Return the annotations of programs that are published; the id of a description names its program.
 
     Args:
         given: rows of `ingest`, with the columns `ANNOTATED`.
@@ -53,7 +53,7 @@ def fitting(given: Iterable[Mapping[str, Any]], steps_of: Callable[[list[str]], 
 
 
 def _unfit(row: Mapping[str, Any], steps: int) -> RejectRow:
-    """An annotation whose flags are not as many as the steps of its program."""
+    """Return an annotation whose flags are not as many as the steps of its program."""
     message = f"not a sketch of {row['description_id']}: flags {len(row['keep']):,}, steps of the program {steps:,}"
     remedy = "set a flag for each step of the program"
     fault = Reject.of(Code.BAD_JSON, message, file=row["place"], suggestion=remedy)
@@ -70,7 +70,7 @@ class Marked(NamedTuple):
 
 
 def inherited_annotations(programs: Iterable[ProgramRow], annotations: Mapping[str, SketchRow]) -> Iterator[SketchRow]:
-    """For each child of an annotated program, the steps that the annotation keeps, wherever they now stand.
+    """Yield for each child of an annotated program the steps that the annotation keeps, at their present places.
 
     Args:
         programs: with `program_id`, `parent_id` and `steps`; parents come before their children or after them.
@@ -97,7 +97,7 @@ def _texts(row: ProgramRow) -> tuple[str, ...]:
 
 
 def places(parent: Sequence[str], child: Sequence[str]) -> list[int]:
-    """For each step of a child, which of the parent's it is; -1 for a new one."""
+    """Return for each step of a child the place of the same step in the parent; -1 for a new one."""
     found = [-1] * len(child)
     for first, start, size in SequenceMatcher(None, parent, child, autojunk=False).get_matching_blocks():
         for offset in range(size):

@@ -16,7 +16,7 @@ def knowledge(settings: Settings) -> Knowledge:
 
 
 def knowledge_used(job: Job) -> dict[str, Any]:
-    """The knowledge that a stage used, for its manifest."""
+    """Return the knowledge that a stage used, for its manifest."""
     return made_with(job.settings.kb_folder, job.folder)
 
 

@@ -14,10 +14,10 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 BYTES = {"sampled": 1_200, "augmented": 1_500, "picture": 4_000_000}
-"""On disk: of one execution in the sample or augment stage, and the same again published; of one film."""
+"""Bytes on disk: of one execution in the sample or augment stage, and the same again published; of one film."""
 
 SECONDS = {"sampled": 0.004, "augmented": 0.006, "picture": 20.0}
-"""Of one core, for each of them."""
+"""Seconds of one core, for each of them."""
 
 LONG = 60.0
 """Seconds from which an estimate is printed."""
@@ -43,7 +43,7 @@ class Estimate:
 
 
 def estimate(programs: int, settings: Settings, workers: int, homes: int) -> Estimate:
-    """The costs of a build.
+    """Return the costs of a build.
 
     Args:
         programs: the number of valid programs.
@@ -63,7 +63,7 @@ def estimate(programs: int, settings: Settings, workers: int, homes: int) -> Est
 
 
 def forecast(programs: int, settings: Settings, workers: int, *, force: bool = False) -> str:
-    """The estimate as text; "" for a short build.
+    """Return the estimate as text; "" for a short build.
 
     Raises:
         HearthError: UNWRITABLE, the disk is too small and `force` is False.

@@ -54,13 +54,13 @@ class Homes:
         return self._settings.homes or self.catalog()
 
     def catalog(self) -> tuple[str, ...]:
-        """All homes of ours, of the user's folder, and of scene graphs among the sources."""
+        """Return all homes of ours, of the user's folder, and of scene graphs among the sources."""
         from hearth.homes import library
 
         return tuple(sorted({*library.names(self._settings.homes_folder), *self._scenes}))
 
     def graph(self, name: str) -> EnvironmentGraph:
-        """The scene graph of a home of the catalog.
+        """Return the scene graph of a home of the catalog.
 
         Raises:
             HearthError: UNKNOWN_HOME, or every fault of its plan or graph.
@@ -76,11 +76,11 @@ class Homes:
         return name in self.catalog()
 
     def _edges(self, name: str) -> frozenset[Edge]:
-        """The edges of a home."""
+        """Return the edges of a home."""
         return frozenset(World.start(self.home(name)).edges())
 
     def _home(self, name: str) -> Home:
-        """The home to which environments of that name are differences."""
+        """Return the home to which environments of that name are differences."""
         from hearth.grounding.environments.default_state import prepared
 
         if self.in_catalog(name):

@@ -1,4 +1,4 @@
-"""Which executions are filmed for clips, and in which homes: a step list is in one part, and so is a test's home.
+"""The executions that are filmed for clips, and their homes: a step list is in one part, and so is a test's home.
 
 The thesis films training in homes 1-4, validation in home 5 and tests in all (4.4). Homes count in their order; without
 seven of them the last two are still never seen in training.
@@ -16,7 +16,7 @@ SEEN, BETWEEN, UNSEEN = "seen", "validation", "unseen"
 """Kinds of homes: of training, of validation, and of tests alone."""
 
 SHARES = {TRAIN: 0.7, VALIDATION: 0.1, TEST: 0.2}
-"""Of the programs."""
+"""Shares of the programs in each part."""
 
 COLOURED = 0.25
 """The share of films that have colours and depth, too."""
@@ -31,7 +31,7 @@ def home_kinds(homes: Sequence[str]) -> dict[str, str]:
 
 
 def part_of(program: str, seed: int) -> str:
-    """The part of a program, and of all with the same steps, drawn from the id that is the first of theirs.
+    """Return the part of a program, and of all with the same steps, drawn from the id that is the first of theirs.
 
     Nearly all programs are the only one with their steps: they stay in the parts by which models were trained.
     """
@@ -52,7 +52,7 @@ ALLOWED: Mapping[str, tuple[str, ...]] = {
 def chosen(
     ran: Iterable[tuple[str, str, str]], steps: Mapping[str, Hashable], homes: Sequence[str], count: int, seed: int
 ) -> dict[str, tuple[str, str]]:
-    """The executions to film, with the part and the kind of home of each.
+    """Return the executions to film, with the part and the kind of home of each.
 
     Args:
         ran: program, execution and home of those that ran.
@@ -80,7 +80,7 @@ def chosen(
 
 
 def _order(part: str, program: str, seed: int) -> Sequence[str]:
-    """The kinds of homes to look in, the first first; a test's in an order of its own."""
+    """Return the kinds of homes to look in, the first first; a test's in an order of its own."""
     kinds = ALLOWED[part]
     if part != TEST:
         return kinds

@@ -43,7 +43,7 @@ class DaskEngine:
 
     @property
     def client(self) -> Any:
-        """The cluster's client; starts a cluster if none is running.
+        """Return the cluster's client; starts a cluster if none is running.
 
         Raises:
             HearthError: MISSING_FILE, dask is not installed; UNWRITABLE, the scheduler does not answer.

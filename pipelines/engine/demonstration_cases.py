@@ -1,4 +1,4 @@
-"""Which executions are pictured from above: one of each of some programs, in a home drawn for it."""
+"""The executions that are pictured from above: one of each of some programs, in a home drawn for it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hearth.schemas.rng import derive, rng
 
 
 def chosen(ran: Iterable[tuple[str, str, str]], homes: Sequence[str], count: int, seed: int) -> list[str]:
-    """The executions to picture, home by home: what a home's pictures share is then drawn once.
+    """Yield the executions to picture, home by home, so that the common parts of a home's pictures are drawn once.
 
     Args:
         ran: program, execution and home of those that ran.

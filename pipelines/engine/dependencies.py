@@ -30,7 +30,10 @@ def code_digest(*modules: str) -> str:
 
 
 def files_of(*modules: str) -> set[str]:
-    """Those files, relative to the package; every import is followed but those under `TYPE_CHECKING`."""
+    """Return the files of some modules, relative to the package.
+
+    Imports are followed but for those under `TYPE_CHECKING`.
+    """
     found: set[str] = set()
     waiting = list(modules)
     while waiting:
@@ -44,7 +47,7 @@ def files_of(*modules: str) -> set[str]:
 
 @cache
 def _files() -> dict[str, str]:
-    """The path of each module by its name, and of each data file by its own path."""
+    """Return the path of each module by its name, and of each data file by its own path."""
     found = {"hearth.version": "version.py"}
     for package in ROOT.glob("*/__init__.py"):
         for folder, _, names in os.walk(package.parent):
@@ -68,7 +71,7 @@ def _read(file: str) -> tuple[frozenset[str], frozenset[str]]:
 
 
 def imports(text: str) -> Iterator[str]:
-    """The modules that a source imports, and the names imported from them, which may be modules too."""
+    """Yield the modules that a source imports, and the names imported from them, which may be modules too."""
     for source, names, module in _IMPORT.findall(_TYPES_ONLY.sub("", text) if "if TYPE_CHECKING" in text else text):
         yield source or module
         yield from (f"{source}.{name}" for name in _NAME.findall(names))

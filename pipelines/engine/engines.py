@@ -48,7 +48,7 @@ ENGINES: dict[str, Callable[[int, str], Engine]] = {"local": _local, "dask": _da
 
 
 def engine(name: str, count: int = 1, scheduler: str = "") -> Engine:
-    """The engine of that name.
+    """Return the engine of that name.
 
     Args:
         name: one of `ENGINES`.

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from typing import TextIO
 
+from hearth.schemas.terminal import shown
 from hearth.storage.partitions import Counts
 
 
@@ -16,13 +17,13 @@ class Progress:
         """Information about the build as a whole."""
 
     def start(self, stage: str, total: int | None) -> None:
-        """A stage begins; `total` is the number of its records, if known."""
+        """Show that a stage begins; `total` is the number of its records, if known."""
 
     def seen(self, records: int, rejects: int) -> None:
         """Further records were processed, `rejects` of them rejected."""
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """A stage is complete; `fresh` is False if it was up to date."""
+        """Show that a stage is complete; `fresh` is False if it was up to date."""
 
 
 class Lines(Progress):
@@ -37,7 +38,7 @@ class Lines(Progress):
         self._stream.flush()
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Print what became of the stage's records."""
+        """Print the outcomes of the stage's records."""
         self._stream.write(line(stage, counts, seconds, fresh) + "\n")
         self._stream.flush()
 
@@ -78,7 +79,7 @@ class JsonLines(Progress):
             self._print("progress", done=self._done, rejects=self._rejects, rate=round(rate, 1), seconds_left=left)
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Print what became of the stage's records."""
+        """Print the outcomes of the stage's records."""
         self._stage = stage
         self._print("end", fresh=fresh, seconds=round(seconds, 3), **counts.to_json())
 
@@ -113,7 +114,7 @@ class Bars(Progress):
 
     def note(self, text: str) -> None:
         """Print it."""
-        self._console.print(text, highlight=False, markup=False)
+        self._console.print(shown(text), highlight=False, markup=False)
 
     def start(self, stage: str, total: int | None) -> None:
         """Show a bar."""
@@ -134,11 +135,11 @@ class Bars(Progress):
         if self._rich.tasks:
             self._rich.remove_task(self._task)
         self._rich.stop()
-        self._console.print(line(stage, counts, seconds, fresh), highlight=False, markup=False)
+        self._console.print(shown(line(stage, counts, seconds, fresh)), highlight=False, markup=False)
 
 
 def line(stage: str, counts: Counts, seconds: float, fresh: bool) -> str:
-    """What became of a stage's records, in one line."""
+    """Return the outcomes of a stage's records, in one line."""
     if not fresh:
         return f"{stage:>8}  up to date"
     rate = counts.records_in / max(seconds, 1e-3)
@@ -155,5 +156,5 @@ def for_terminal(stream: TextIO | None = None) -> Progress:
 
 
 def _shown(rate: float) -> str:
-    """A rate as people read it: films take minutes each."""
+    """Return a rate as people read it: films take minutes each."""
     return f"{rate:,.0f}" if rate >= 10 else f"{rate:.2g}"

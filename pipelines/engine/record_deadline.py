@@ -13,7 +13,7 @@ _raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
 _raise_in.argtypes = (ctypes.c_ulong, ctypes.py_object)
 
 _LOOKS = 8
-"""How often the clock is read within a limit."""
+"""Number of times that the clock is read within a limit."""
 
 
 class OverTime(BaseException):

@@ -92,7 +92,7 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
 
 
 def _inputs(stage: Stage, settings: Settings) -> dict[str, str]:
-    """The digest of each input of a stage, by name."""
+    """Return the digest of each input of a stage, by name."""
     digests = {}
     for name in (*stage.reads, *stage.needs):
         manifest = read_manifest(settings.folder(name))
@@ -161,7 +161,7 @@ def _drop_leftovers(folder: Path) -> None:
 
 
 def input_partitions(job: Job) -> Iterator[Partition]:
-    """The parts of the stages that a stage reads, one partition each, unless the stage splits or gathers them."""
+    """Yield the parts of the stages that a stage reads, one partition each, unless the stage splits or gathers them."""
     waiting: list[Partition] = []
     number = 0
     for part in _input_parts(job):
@@ -184,7 +184,7 @@ def _gathered(number: int, parts: list[Partition]) -> Partition:
 
 
 def _input_parts(job: Job) -> Iterator[Partition]:
-    """The parts of the first table of the stages that a stage reads, or shares of them."""
+    """Yield the parts of the first table of the stages that a stage reads, or shares of them."""
     for name in job.stage.reads:
         folder = job.settings.folder(name)
         manifest = read_manifest(folder)
@@ -199,7 +199,7 @@ def _input_parts(job: Job) -> Iterator[Partition]:
 
 
 def _shares(rows: int, share: int | None) -> list[tuple[int, int] | None]:
-    """The rows of a part for each partition, as (first, end); None for all of them."""
+    """Return the rows of a part for each partition, as (first, end); None for all of them."""
     if share is None or rows <= share:
         return [None]
     return [(first, min(first + share, rows)) for first in range(0, rows, share)]

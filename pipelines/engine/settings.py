@@ -67,10 +67,10 @@ class Settings:
     revision: str = ""
 
     def chosen(self, names: tuple[str, ...]) -> dict[str, Any]:
-        """The named options, as stored in a manifest."""
+        """Return the named options, as stored in a manifest."""
         values = asdict(self)
         return {name: values[name] for name in names}
 
     def folder(self, stage: str) -> Path:
-        """The folder of a stage."""
+        """Return the folder of a stage."""
         return Path(self.out) / stage

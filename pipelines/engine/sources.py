@@ -16,7 +16,7 @@ from hearth.storage.rejects import as_text
 
 
 def labelled(paths: Iterable[str]) -> list[Source]:
-    """The sources with their labels: the file name, numbered if several sources share it.
+    """Return the sources with their labels: the file name, numbered if several sources share it.
 
     They are ordered by name, so that the output does not depend on the order given.
 
@@ -60,6 +60,9 @@ def _secret(source: Source) -> str:
 
 @lru_cache(maxsize=10_000)
 def _keyed(path: Path, size: int, changed: int) -> str:
-    """A digest of a file's bytes that is published nowhere; read once a process while the file stays as it is."""
+    """Return a digest of a file's bytes that is published nowhere.
+
+    The file is read once a process while it stays as it is.
+    """
     with path.open("rb") as file:
         return hashlib.file_digest(file, partial(blake2b, person=b"workers")).hexdigest()

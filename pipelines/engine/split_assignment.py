@@ -25,12 +25,12 @@ class Assignment:
     parts: NDArray[np.int8]
 
     def part_of(self, program_id: str) -> str | None:
-        """The part of a program in `activities`."""
+        """Return the part of a program in `activities`."""
         return splits.part_name(int(self.parts[self.programs.place(program_id)]))
 
 
 def assignment(files: list[Path], seed: int) -> Assignment:
-    """The assignment of the programs of cases; `seed` is that of the build.
+    """Return the assignment of the programs of cases; `seed` is that of the build.
 
     Args:
         files: Parquet files of cases (`tables.CASE`), in any order; a program may have several cases.
@@ -41,7 +41,7 @@ def assignment(files: list[Path], seed: int) -> Assignment:
 
 
 def programs_of(files: list[Path], seed: int) -> Iterator[SplitProgram]:
-    """Each program of cases, once a file; its steps are a text with a character for each action and its classes.
+    """Yield each program of cases, once a file; its steps are a text with a character for each action and its classes.
 
     The texts of one call are alike where actions and classes are; those of two calls do not compare.
 
@@ -63,7 +63,7 @@ def programs_of(files: list[Path], seed: int) -> Iterator[SplitProgram]:
 
 
 def _steps(steps: pa.ListArray, letters: dict[str, str]) -> Iterator[str]:
-    """For each program its steps; by columns, because there are hundreds of thousands."""
+    """Yield the steps of each program; by columns, because there are hundreds of thousands of programs."""
     every = steps.flatten()
     actions, objects = every.field("action"), every.field("objects")
     names = pa.ListArray.from_arrays(objects.offsets, objects.values.field("name"))

@@ -30,7 +30,7 @@ from hearth.storage.rejects import Reject, as_text
 Plan = dict[str, Any]
 
 NOTE = "note"
-"""Entry of a plan: what is left out of the records without being a reject; the ledger has it."""
+"""Entry of a plan about records that are left out without being rejects; the ledger has it."""
 
 Output = Row | Reject | tuple[str, Row]
 
@@ -136,13 +136,13 @@ class Job:
 
     @property
     def folder(self) -> Path:
-        """The folder of the stage."""
+        """Return the folder of the stage."""
         folder = self.settings.folder(self.stage.name)
         return beside(folder) if self.stage.exchanged else folder
 
     @cached_property
     def context(self) -> Any:
-        """The context that the stage opened in this process."""
+        """Return the context that the stage opened in this process."""
         return self.stage.open(self)
 
     @cached_property
@@ -194,12 +194,12 @@ def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
 
 
 def records_of(job: Job, partition: Partition) -> Iterable[Any]:
-    """The records of a partition, as the stage has them."""
+    """Return the records of a partition, as the stage has them."""
     return (job.stage.records or rows_of)(job, partition)
 
 
 def rows_of(job: Job, partition: Partition) -> Iterator[Any]:
-    """The rows of a partition that the stage selects."""
+    """Yield the rows of a partition that the stage selects."""
     stage = job.stage
     columns = list(stage.columns) if stage.columns is not None else None
     rows: Iterable[Any] = chain.from_iterable(read_rows(Path(path), columns) for path in partition.payload)
@@ -209,7 +209,7 @@ def rows_of(job: Job, partition: Partition) -> Iterator[Any]:
 
 
 def _name(stage: Stage, record: Any) -> str:
-    """The id of a record, or "" if it has none."""
+    """Return the id of a record, or "" if it has none."""
     try:
         return as_text(stage.identify(record))
     except Exception:
@@ -221,7 +221,7 @@ def _place(record: Any) -> str:
 
 
 def _attempt(stage: Stage, record: Any, context: Any, deadline: Deadline) -> list[Output]:
-    """The outputs of a record; after an exception or a time-out, a reject alone."""
+    """Return the outputs of a record; after an exception or a time-out, a reject alone."""
     try:
         with deadline:
             outputs = stage.process(record, context)
@@ -292,7 +292,7 @@ class _Sink:
         """Sort outputs.
 
         Raises:
-            TypeError: one is neither a row of a table that the stage has nor a reject with a fault.
+            TypeError: a row is neither of a table that the stage has nor a reject with a fault.
         """
         rows: list[tuple[str, Row]] = []
         rejects: list[Reject] = []

@@ -25,16 +25,16 @@ RECORDS = {
     "render": "executions chosen for pictures",
     "publish": "executions of sample and of augment",
 }
-"""What a record of each stage is: its input is counted in these."""
+"""The meaning of a record of each stage: its input is counted in these."""
 
 
 def record_of(name: str, plan: Plan) -> str:
-    """Return what a record of a stage is, and what its plan leaves out."""
+    """Return the meaning of a record of a stage, and its plan's note of the records left out."""
     return "; ".join(filter(None, (RECORDS[name], plan.get(NOTE))))
 
 
 def stage(name: str) -> Stage:
-    """The stage of that name.
+    """Return the stage of that name.
 
     Raises:
         HearthError: UNKNOWN_ID, with the names of the stages.

@@ -30,9 +30,11 @@ pictures 2,000 of them from above, with class masks."""
 
 
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:
-    """The options with those of a tier and, where it has none, of their `strength`; what the user gave is kept.
+    """Return the options with those of a tier and, where it has none, of their `strength`.
 
-    Nobody asks for `standard`, so a strength goes before it. Who wants no pictures wants no films, either.
+    Options that the user gave are kept.
+
+    `standard` is only a default, so a strength goes before it. A user that wants no pictures wants no films, either.
 
     Args:
         tier: one of `TIERS`, or "" for none.

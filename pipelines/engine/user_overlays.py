@@ -1,4 +1,4 @@
-"""What is the user's own in a build, knowledge and homes: kept for stages run alone, named in plans and manifests."""
+"""The user's own parts of a build, knowledge and homes: kept for stages run alone, named in plans and manifests."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -35,5 +35,5 @@ def overlays(settings: Settings) -> dict[str, Any]:
 
 
 def overlays_used(job: Job) -> dict[str, Any]:
-    """The knowledge and homes that a stage used, for its manifest."""
+    """Return the knowledge and homes that a stage used, for its manifest."""
     return {**knowledge_used(job), **dataset_homes.homes_used(job.settings.homes_folder, job.folder)}

@@ -19,7 +19,7 @@ from hearth.storage.partitions import Counts, part_path, rejects_path
 from hearth.storage.stores import store
 
 AHEAD = 2
-"""Partitions assigned to each process, so that the next is ready when one is complete."""
+"""Partitions assigned to each process, so that the next is ready when the first is complete."""
 
 _POLL_SECONDS = 0.2
 
@@ -150,7 +150,7 @@ def _run(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
 
 
 def _needed(job: Job, partition: Partition) -> list[Path]:
-    """The parts that a partition reads: those of its payload, or all if the stage defines its own partitions."""
+    """Return the parts that a partition reads: those of its payload, or all if the stage defines its own partitions."""
     if job.stage.partitions is None:
         return [Path(path) for path in partition.payload]
     manifests = [read_manifest(job.settings.folder(name)) for name in job.stage.reads]

@@ -1,4 +1,4 @@
-"""Which columns of a table, or keys of a JSON record, hold which field: as given, or guessed from their names."""
+"""The columns of a table, or keys of a JSON record, by field: as given, or guessed from their names."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,7 +29,7 @@ def _usual() -> dict[str, list[str]]:
 
 
 def read_columns(text: str) -> dict[str, str]:
-    """The columns of `title=Task,program=Plan`.
+    """Return the columns of `title=Task,program=Plan`.
 
     Raises:
         HearthError: UNKNOWN_ID, a field that no record has; or no `=`.
@@ -47,7 +47,7 @@ def read_columns(text: str) -> dict[str, str]:
 
 
 class Asked(dict[str, str]):
-    """The columns that `--columns` gives, and what is found in one file.
+    """The columns that `--columns` gives, and the findings in one file.
 
     Attributes:
         found: the column of each field so far.
@@ -71,7 +71,7 @@ class Asked(dict[str, str]):
                 self.found.rivals.setdefault(field, others)
 
     def absent(self) -> Iterator[tuple[str, str]]:
-        """Each field whose column no record has, with the column."""
+        """Yield each field whose column no record has, with the column."""
         return ((field, name) for field, name in self.items() if name not in self.names)
 
 
@@ -99,7 +99,7 @@ class Found(dict[str, str]):
 
 
 def lacks(field: str, name: str, names: Iterable[str], place: str, line: int = 0) -> Reject:
-    """The fault of a column that `--columns` names and a file does not have."""
+    """Return the fault of a column that `--columns` names and a file does not have."""
     known = list(names)
     by_lower = {each.lower(): each for each in known}
     near = [by_lower[each] for each in get_close_matches(name.lower(), by_lower, n=3, cutoff=0.6)]
@@ -110,7 +110,7 @@ def lacks(field: str, name: str, names: Iterable[str], place: str, line: int = 0
 
 
 def value_at(record: Mapping[str, Any], name: str) -> Any:
-    """The value of a key, or of one within another as `answer.plan`; None if there is none."""
+    """Return the value of a key, or of one within another as `answer.plan`; None if there is none."""
     if name in record:
         return record[name]
     found: Any = record
@@ -120,7 +120,7 @@ def value_at(record: Mapping[str, Any], name: str) -> Any:
 
 
 def shown(place: str, columns: FieldColumns) -> str:
-    """A sentence that names the columns of a table, and which of the usual fields have none."""
+    """Return a sentence that names the columns of a table, and which of the usual fields have none."""
     named = ", ".join(f"{field}={name}" for field, name in columns.items())
     lacking = [field for field in ("program", "title", "description") if field not in columns]
     none = f"; none for {' and '.join(lacking)}" if named and lacking else ""
@@ -135,7 +135,7 @@ def shown(place: str, columns: FieldColumns) -> str:
 
 
 def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -> dict[str, str]:
-    """The column of each field: the given one if the table has it, else that with the likeliest name.
+    """Return the column of each field: the given one if the table has it, else that with the likeliest name.
 
     A field whose given column is missing is not guessed. An instruction is the title where nothing else is.
 
@@ -154,6 +154,8 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
             name = next((name for name in likely if name not in found.values()), None)
             if name is not None and field not in given:
                 found.setdefault(field, name)
+    if "title" in found and "title" not in given and is_condition(found["title"], found):
+        found.pop("title")
     asked = found.get("description", "")
     if "title" not in found.keys() | given.keys() and words.get(asked) == ["instruction"]:
         found["title"] = found.pop("description")
@@ -162,8 +164,13 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
     return found
 
 
+def is_condition(name: str, found: FieldColumns) -> bool:
+    """Return whether a column holds conditions: `goal` beside predictions, in files to score."""
+    return name.strip().lower() == "goal" and found.get("program", "").strip().lower() in ("prediction", "predicted")
+
+
 def rivals(names: Iterable[str], found: FieldColumns, given: FieldColumns) -> dict[str, list[str]]:
-    """The other columns whose whole names say that they hold a program or a title, where one was guessed."""
+    """Return the other columns whose whole names say that they hold a program or a title, where one was guessed."""
     others = [name for name in dict.fromkeys(names) if name not in found.values()]
     words = {name: " ".join(_OTHER.sub(" ", name.lower()).split()) for name in others}
     known = {field: [name for name in others if words[name] in _usual()[field]] for field in _DOUBTED}

@@ -39,7 +39,7 @@ PROGRAMS = (
 )
 
 COLUMNS = frozenset({*DESCRIPTIONS, *PROGRAMS, "Origin", "Platform", "Style"}) - {"HITId"}
-"""What an answer is, but for its task: of two that agree in them, the second is a copy."""
+"""The columns that identify an answer, but for its task: of two that agree in them, the second is a copy."""
 
 _ACCEPTED = frozenset({"approved", "submitted", "accepted", ""})
 _QUANTITY = re.compile(r"\s*<?([^*<>]+?)>?\s*(?:\*\s*(\d{1,6}))?\s*")
@@ -115,12 +115,12 @@ def _row_fault(line: int, raw: str, cells: list[str] | None, header: Header, pla
 
 
 def _origin(cells: dict[str, str]) -> str:
-    """What the column `Origin` says; without one, an answer is a crowd's."""
+    """Return the value of the column `Origin`; without one, an answer is a crowd's."""
     return cells.get("Origin", "").strip() or NAME
 
 
 def read(item: Item, salt: str) -> IngestedRow | Reject:
-    """The record of an answer, or the reject of an answer that is not used."""
+    """Return the record of an answer, or the reject of an answer that is not used."""
     cells = item.value["cells"]
     status = cells["AssignmentStatus"].strip()
     if status.lower() not in _ACCEPTED:
@@ -151,7 +151,7 @@ _GARBLED = re.compile("(?:\u00c3[\u0080-\u00bf\u0152-\u2122]|\u00e2\u20ac[\u0080
 
 
 def _garbled(text: str) -> str:
-    """The first word that is UTF-8 decoded as Windows-1252, or ""; only a word that decodes back counts."""
+    """Return the first word that is UTF-8 decoded as Windows-1252, or ""; only a word that decodes back counts."""
     match = _GARBLED.search(text)
     if match is None:
         return ""
@@ -189,7 +189,7 @@ class _Who(TypedDict):
 
 
 def _who(cells: dict[str, str], salt: str) -> _Who:
-    """Who gave an answer: a crowd's worker, as a salted hash, and the platform; nobody where the text was written."""
+    """Return the source of an answer: a crowd's worker, as a salted hash, and the platform; none for a written text."""
     origin, worker, style = _origin(cells), cells["WorkerId"].strip(), cells.get("Style", "").strip() or None
     if origin == WRITTEN:
         return {"origin": origin, "worker": None, "platform": None, "style": style}

@@ -18,7 +18,7 @@ from hearth.storage.archives import Place
 from hearth.storage.csv_files import delimiter_of
 
 LONGEST_RECORD = 2_000
-"""Lines of one row at most: a longer one has a quote that is never closed, and reading continues after its line."""
+"""Lines of one row at most: a longer row has a quote that is never closed, and reading continues after its line."""
 
 LONGEST_ANSWER = 2_000_000
 """Characters of one row at most, likewise."""
@@ -30,7 +30,7 @@ csv.field_size_limit(LARGEST_FILE)  # of the process: a cell is refused by the l
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The columns of a table and what separates them."""
+    """The columns of a table and their separator."""
 
     columns: tuple[str, ...]
     delimiter: str
@@ -85,7 +85,7 @@ class Rows(Iterator[tuple[int, str]]):
             yield number, text, cells
 
     def _record(self, number: int, line: str, layout: Layout) -> list[tuple[int, str]]:
-        """The lines of the record that begins here, according to its quotes."""
+        """Return the lines of the record that begins here, according to its quotes."""
         taken = [(number, line)]
         odd, size = line.count('"') % 2 == 1, len(line)
         if odd and _whole(taken, layout):
@@ -114,7 +114,7 @@ def _whole(taken: list[tuple[int, str]], layout: Layout) -> bool:
 
 
 def cells_of(text: str, layout: Layout, strict: bool = False) -> list[str]:
-    """The cells of a record.
+    """Return the cells of a record.
 
     Raises:
         csv.Error: with `strict`, a quote that is never closed.
@@ -123,7 +123,7 @@ def cells_of(text: str, layout: Layout, strict: bool = False) -> list[str]:
 
 
 def cells_at(text: str, cells: list[str], line: int, layout: Layout) -> list[str]:
-    """The cells of a record that begins on this line, with their places; one that can't be found has none."""
+    """Return the cells of a record that begins on this line, with their places; one that can't be found has none."""
     found: list[str] = []
     at = 0
     for cell in cells:

@@ -24,13 +24,13 @@ def looks_like_json(line: str) -> bool:
 
 
 def document(path: Place, place: str) -> Any | Reject:
-    """The JSON value of a whole file, or a reject if it can't be read."""
+    """Return the JSON value of a whole file, or a reject if it can't be read."""
     data = _data(path, place)
     return data if isinstance(data, Reject) else parsed(data, place, 1)
 
 
 def located_document(path: Place, place: str) -> Located | Reject:
-    """The JSON value of a whole file with its places, or a reject if it can't be read."""
+    """Return the JSON value of a whole file with its places, or a reject if it can't be read."""
     data = _data(path, place)
     return data if isinstance(data, Reject) else located(data, place, 1)
 
@@ -49,7 +49,7 @@ def _data(path: Place, place: str) -> bytes | Reject:
 
 
 def located(data: bytes | str, place: str, line: int, column: int = 1) -> Located | Reject:
-    """A JSON value whose texts know their places, with repeated keys; it begins at this line and column."""
+    """Return a JSON value whose texts know their places, with repeated keys; it begins at this line and column."""
     value, data = _loaded(data, place, line, column)
     if isinstance(value, Reject):
         return value
@@ -65,12 +65,15 @@ def located(data: bytes | str, place: str, line: int, column: int = 1) -> Locate
 
 
 def parsed(data: bytes | str, place: str, line: int, column: int = 1) -> Any | Reject:
-    """A JSON value that begins at this line and column; comments and commas after the last entry mean nothing."""
+    """Return a JSON value that begins at this line and column.
+
+    Comments and commas after the last entry mean nothing.
+    """
     return _loaded(data, place, line, column)[0]
 
 
 def _loaded(data: bytes | str, place: str, line: int, column: int) -> tuple[Any | Reject, bytes | str]:
-    """A JSON value, and the strict JSON in which it was found."""
+    """Return a JSON value, and the strict JSON in which it was found."""
     try:
         return orjson.loads(data), data
     except (orjson.JSONDecodeError, RecursionError) as error:

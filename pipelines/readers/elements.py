@@ -30,7 +30,7 @@ class BrokenError(Exception):
 
 
 def entries(path: Place, place: str, key: str = "") -> Iterator[tuple[int, Any | Reject]]:
-    """The values of a list with their first lines; an entry that is not JSON and a broken end are rejects.
+    """Yield the values of a list with their first lines; an entry that is not JSON and a broken end are rejects.
 
     Args:
         path: the file.
@@ -41,7 +41,7 @@ def entries(path: Place, place: str, key: str = "") -> Iterator[tuple[int, Any |
 
 
 def located_entries(path: Place, place: str) -> Iterator[tuple[int, Located | Reject]]:
-    """The values of a file's list as `entries` gives them, with the places of their texts."""
+    """Yield the values of a file's list as `entries` gives them, with the places of their texts."""
     return ((line, found) for line, _, found in _read(path, place, "", located))
 
 
@@ -58,7 +58,7 @@ def _read(
 
 
 def kinds(path: Place) -> dict[str, str]:
-    """The keys of a file's object, as far as it can be read, with the first character of each value."""
+    """Return the keys of a file's object, as far as it can be read, with the first character of each value."""
     scanner = _Scanner("", keep=False)
     with suppress(BrokenError):
         for _ in scanner.entries(pieces(path)):
@@ -80,7 +80,7 @@ class _Scanner:
         self._key, self._name = "", ""
 
     def entries(self, texts: Iterable[str]) -> Iterator[tuple[int, int, str]]:
-        """Each entry of the list with its first line, and its column there.
+        """Yield each entry of the list with its first line, and its column there.
 
         Raises:
             BrokenError: after the last whole entry.
@@ -117,7 +117,7 @@ class _Scanner:
 
     def _begin(self, token: str, at: int) -> None:
         if self._began or token not in _OPENS or uncommented(self._buffer[:at]).strip():
-            raise BrokenError("text beside the list or object", self._here(at))
+            raise BrokenError("text next to the list or object", self._here(at))
         self._began = True
         self._stack.append(token)
 
@@ -133,7 +133,7 @@ class _Scanner:
         return self._level == 1 or (stack[0] == "{" and self._key == self._wanted)
 
     def _ended(self, token: str, at: int) -> Iterator[tuple[int, int, str]]:
-        """A comma or bracket, which may end an entry."""
+        """Yield a comma or bracket, which may end an entry."""
         if self._listed() and self._start >= 0:
             text = uncommented(self._buffer[self._start : at])
             # `[]` is an empty list, and nothing need follow the last comma; before a comma an empty text is an entry.

@@ -47,9 +47,9 @@ def _are_plans(value: dict[str, Any], given: FieldColumns) -> bool:
 
 
 def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> Iterator[tuple[str, Any]]:
-    """Yield the records of the parts of an object; a part that can't be a record stands beside the others.
+    """Yield the records of the parts of an object; a part that can't be a record is yielded as one of the others.
 
-    A record without a title has the title beside it, or its key.
+    A record without a title has the title among the object's keys, or its own key.
     """
     titled = guessed([key for key, part in value.items() if isinstance(part, str)], {}, exact=True).get("title", "")
     is_asked = plain_name(titled) not in ("", "title", "name")  # as those may be of the whole file
@@ -67,7 +67,7 @@ def _records_inside(value: dict[str, Any], given: FieldColumns, depth: int) -> I
 
 
 def _plan_in(value: Any) -> list[tuple[str, Any]]:
-    """The record of a list in a list, where its texts read as steps."""
+    """Return the record of a list in a list, where its texts read as steps."""
     is_texts = isinstance(value, list) and len(value) > 1 and all(map(is_line, value))
     return [("", {"steps": value})] if is_texts and column_of_steps({"steps": ["\n".join(value)]}) else []
 
@@ -83,7 +83,7 @@ _NO_TITLES = frozenset({
     "actions", "output", "answer", "response", "result", "results", "data", "completion", "solution", "message", "body",
     "function calls", "tool calls", "calls", "trajectory", "script", "action sequence", "prediction", "generation",
 })  # fmt: skip
-"""Keys that say what they hold, and are no names of tasks."""
+"""Keys that describe their contents, and are no names of tasks."""
 
 
 def holds_program(value: Any) -> bool:
@@ -115,7 +115,7 @@ def _is_steps(value: Any) -> bool:
 
 
 def named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
-    """A record with its fields by our names; those of others are guessed where ours are missing."""
+    """Return a record with its fields by our names; those of others are guessed where ours are missing."""
     value = with_step_lists(value)
     inside = {name: value_at(value, name) for name in given.values() if "." in name and name not in value}
     value = {**value, **{name: part for name, part in inside.items() if part is not None}}
@@ -148,7 +148,7 @@ _PROGRAM_KEYS = _PROGRAMS | {"text"}
 
 
 def _key_of_steps(value: Mapping[str, Any]) -> str:
-    """The key whose texts read as steps, of a record that no key names."""
+    """Return the key whose texts read as steps, of a record that no key names."""
     parts = {key: part if isinstance(part, list) else [part] for key, part in value.items()}
     return column_of_steps(
         {key: ["\n".join(part)] for key, part in parts.items() if all(isinstance(each, str) for each in part)}

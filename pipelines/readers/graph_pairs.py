@@ -1,7 +1,7 @@
 """The start and end graph of a program, read from a release's JSON: a megabyte a program, nearly all of it edges.
 
-The graphs of a release have most of their edges in common and in one order: the text of some ten edges is parsed when
-it is first met, and then looked up. What looks otherwise is parsed as it stands, with the same result.
+The graphs of a release have most of their edges in common and in one order. The text of some ten edges is parsed when
+it is first met, and then looked up. Other text is parsed as it stands, with the same result.
 """
 
 import re
@@ -25,14 +25,16 @@ EDGE = itemgetter("from_id", "relation_type", "to_id")
 
 _BETWEEN = re.compile(rb"\}\s*,\s*\{")
 _CUT = b"7"
-"""A file is cut between objects where the last of a text ends in this: some ten edges a text, so that what differs
-between two graphs is in few texts."""
+"""A file is cut between objects where the last of a text ends in this.
+
+A text has some ten edges, so that the differences of two graphs are in few texts.
+"""
 
 _MOST = 50_000
 """Texts that are kept: some 50 MB."""
 
 _RELATION, _SOURCE = 28, 32
-"""From which bit of its number on an edge has its relation and source; the target is below."""
+"""First bits of an edge's number with its relation and its source; the target is below."""
 
 Portions = set[bytes]
 """Edges by the text, each with its ends and relation in one integer of 64 bits."""
@@ -42,7 +44,7 @@ _KNOWN: dict[bytes, bytes] = {}
 
 
 def read_pair(data: bytes) -> tuple[JsonObject, Change | None]:
-    """The start graph, and the change to the end graph in edges and simulated states; None without an end graph.
+    """Return the start graph, and the change to the end graph in edges and simulated states; None without an end graph.
 
     The start graph is the release's, but for its edges, which are `EdgeColumns` if they have usual ids and relations.
 
@@ -57,7 +59,7 @@ def read_pair(data: bytes) -> tuple[JsonObject, Change | None]:
 
 
 def pair_of(value: Any) -> tuple[JsonObject, Change | None]:
-    """The same of a JSON value, its edges as they are.
+    """Return the pair of a JSON value, with its edges as they are.
 
     Raises:
         KeyError, TypeError, ValueError, AttributeError: it is not a pair of graphs.
@@ -69,8 +71,10 @@ def pair_of(value: Any) -> tuple[JsonObject, Change | None]:
 
 
 def _by_texts(data: bytes) -> tuple[JsonObject, Change | None]:
-    """Both, most edges looked up by their texts: exact, because each text is a list of objects by itself, and what is
-    left is JSON in which the number of each run of texts stands where a graph has its edges.
+    """Return both, with most edges looked up by their texts.
+
+    The result is exact, because each text is a list of objects by itself. The rest is JSON in which the number of each
+    run of texts stands where a graph has its edges.
     """
     rest, runs = _cut(data)
     pair = orjson.loads(rest)
@@ -89,7 +93,7 @@ def _by_texts(data: bytes) -> tuple[JsonObject, Change | None]:
 
 
 def _cut(data: bytes) -> tuple[bytes, list[Portions]]:
-    """The file with a number for each run of texts that are nothing but edges, and the runs' edges."""
+    """Return the file with a number for each run of texts that are nothing but edges, and the runs' edges."""
     between = _BETWEEN.search(data)
     cut = _CUT + between[0] if between else b""
     texts = re.split(re.escape(cut), data) if cut else [data]  # half as long as `bytes.split` takes
@@ -109,7 +113,7 @@ def _cut(data: bytes) -> tuple[bytes, list[Portions]]:
 
 
 def _learnt(text: bytes) -> bytes:
-    """The edges of a text that is nothing else, kept for the next time; else nothing."""
+    """Return the edges of a text that is nothing else, kept for the next time; else nothing."""
     try:
         found = _KNOWN[text] = _portion(orjson.loads(b"[{%b%b}]" % (text, _CUT)))
     except (KeyError, TypeError, ValueError, AttributeError):
@@ -118,7 +122,7 @@ def _learnt(text: bytes) -> bytes:
 
 
 def _portions(edges: Sequence[Any], runs: Sequence[Portions]) -> Portions:
-    """A graph's edges: those of its runs, and the others."""
+    """Return a graph's edges: those of its runs, and the others."""
     others = _portion([one for one in edges if type(one) is not int])
     return {others}.union(*(runs[one] for one in edges if type(one) is int))
 
@@ -138,7 +142,7 @@ def _sorted(portions: Portions) -> Any:
 
 
 def _missing(some: Any, edges: Any) -> Any:
-    """Which are not among edges in order."""
+    """Return the items that are not among some ordered edges."""
     import numpy as np
 
     return some[edges[np.minimum(np.searchsorted(edges, some), len(edges) - 1)] != some]
@@ -150,7 +154,7 @@ def _columns(numbers: Any) -> EdgeColumns:
 
 
 def _changed(start: JsonObject, final: JsonObject, edges: set[Edge], new: set[Edge]) -> Change:
-    """The change between two sets of edges, which may lack what both have, and in the simulated states."""
+    """Return the change between two sets of edges, without the edges of both, and between the simulated states."""
     nodes = (start["nodes"], final["nodes"])
     past, now = ({(int(one["id"]), *(one.get("states") or ())) for one in each} for each in nodes)
     ids = {one[0] for one in past ^ now}
@@ -158,5 +162,5 @@ def _changed(start: JsonObject, final: JsonObject, edges: set[Edge], new: set[Ed
 
 
 def _states(nodes: Iterable[tuple[Any, ...]], ids: set[int]) -> set[tuple[int, str]]:
-    """The simulated states of some nodes, each given as its id and states."""
+    """Return the simulated states of some nodes, each given as its id and states."""
     return {(one[0], name) for one in nodes if one[0] in ids for name in one[1:] if name in STATE_ID}

@@ -22,7 +22,7 @@ _HASHED = re.compile(r"[0-9a-f]{16}", re.ASCII)
 
 
 def worker_hash(worker: str, salt: str) -> str:
-    """What stands for the id of a crowd's worker: 16 hexadecimal digits; an id that is such a hash already stays."""
+    """Return the substitute for a crowd worker's id: 16 hexadecimal digits; an id that is such a hash already stays."""
     if _HASHED.fullmatch(worker):
         return worker
     return blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest()
@@ -67,7 +67,7 @@ class Source:
 
 
 def refused(place: str, reject: Reject, record_id: str = "", line: int = 0) -> Item:
-    """An item that only carries faults; its id is its place unless given."""
+    """Return an item that only carries faults; its id is its place unless given."""
     # Rows of rejects, which escape text that is not UTF-8.
     faults = [
         [row[name] for name in ("code", "message", "file", "line", "column", "found", "suggestion")]
@@ -99,7 +99,7 @@ def record(
     parts: list[PartRow] | None = None,
     places: list[list[int]] | None = None,
 ) -> IngestedRow:
-    """The row of an item; id and, unless given, origin, place and description id are those of the item."""
+    """Return the row of an item; id and, unless given, origin, place and description id are those of the item."""
     return {
         "kind": kind,
         "program_id": item.record_id,
@@ -126,7 +126,7 @@ def record(
 
 
 def read_refused(item: Item) -> Reject:
-    """The reject of an item made by `refused`."""
+    """Return the reject of an item made by `refused`."""
     return Reject(
         tuple(
             Diagnostic(Code[code], message, file, line, column, len(found), found, suggestion)
@@ -137,7 +137,7 @@ def read_refused(item: Item) -> Reject:
 
 @contextmanager
 def opened(path: Place) -> Iterator[tuple[BinaryIO, str]]:
-    """A file's bytes, unpacked, after its byte-order mark, and its encoding: UTF-8, or UTF-16.
+    """Yield a file's bytes, unpacked, after its byte-order mark, and its encoding: UTF-8, or UTF-16.
 
     Raises:
         DamagedError: while reading, if a packed file is broken or unpacks to far too much.
@@ -149,17 +149,17 @@ def opened(path: Place) -> Iterator[tuple[BinaryIO, str]]:
 
 
 def suffixless(name: str) -> str:
-    """A file's name without its suffixes: `home.json.gz` is `home`."""
+    """Return a file's name without its suffixes: `home.json.gz` is `home`."""
     return name.partition(".")[0] or name
 
 
 def home_of(place: str) -> str:
-    """The name of the home whose graph a file holds: `TrimmedTestScene1_graph.json` is `TrimmedTestScene1`."""
+    """Return the name of the home whose graph a file holds: `TrimmedTestScene1_graph.json` is `TrimmedTestScene1`."""
     return suffixless(PurePath(place).name).removesuffix("_graph")
 
 
 def lines(path: Place) -> Iterator[tuple[str, int]]:
-    """Each line of a text without its end, and its length; text beyond `LONGEST_LINE` is dropped.
+    """Yield each line of a text without its end, and its length; text beyond `LONGEST_LINE` is dropped.
 
     A line that is not UTF-8 is read as Windows-1252 if it is that; other bytes that are not text become lone
     surrogates, which `fault_of` finds; other lines are not affected.
@@ -179,7 +179,7 @@ _PIECE = 1 << 18
 
 
 def pieces(path: Place) -> Iterator[str]:
-    """A text as `lines` decodes it, line ends as `\\n`, a quarter of a megabyte at a time."""
+    """Yield a text as `lines` decodes it, line ends as `\n`, a quarter of a megabyte at a time."""
     with opened(path) as (file, encoding):
         decode = codecs.getincrementaldecoder(encoding)("surrogateescape" if encoding == "utf-8" else "replace")
         decoder = io.IncrementalNewlineDecoder(decode, translate=True)
@@ -192,7 +192,7 @@ _NOT_TEXT = re.compile(r"[\x00\ud800-\udfff]")
 
 
 def fault_of(text: str, place: str, line: int) -> Diagnostic | None:
-    """The fault of a piece of a file that is not text, or None; `line` is the number of its first line."""
+    """Return the fault of a piece of a file that is not text, or None; `line` is the number of its first line."""
     if text.isascii() and "\x00" not in text:
         return None
     bad = _NOT_TEXT.search(text)

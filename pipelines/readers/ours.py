@@ -17,6 +17,7 @@ from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.found_records import FIELDS, named, records_in
 from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless, worker_hash
 from hearth.pipelines.readers.json_actions import is_action, step_of
+from hearth.pipelines.readers.models import is_message
 from hearth.pipelines.readers.placed_texts import Located, Text, pieces_of, texts_in
 from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
@@ -46,7 +47,7 @@ _ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "syntheti
 
 
 def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
-    """The items of each line that is not blank."""
+    """Yield the items of each line that is not blank."""
     yield from of_entries(_lines(path, place), place, asked)
 
 
@@ -58,14 +59,36 @@ def _lines(path: Place, place: str) -> Iterator[Entry]:
 
 
 def of_entries(entries: Iterable[Entry], place: str, asked: Asked) -> Iterator[Item]:
-    """The items of the records of a file, of which several may be the steps of one program."""
-    for value, line, name in joined(entries, lambda value: row_of_json(value, asked)):
+    """Yield the items of the records of a file, of which several may be the steps of one program."""
+    for value, line, name in joined(_talks(entries), lambda value: row_of_json(value, asked)):
         yield from items(value, place, line, name, asked)
     yield from absent(asked, place)
 
 
+def _talks(entries: Iterable[Entry]) -> Iterator[Entry]:
+    """Yield the entries, messages that follow each other as one chat."""
+    talk: list[Entry] = []
+    for entry in entries:
+        value = entry.value.value if isinstance(entry.value, Located) else entry.value
+        if is_message(value):
+            talk.append(entry._replace(value=value))
+            continue
+        yield from _talk(talk)
+        talk = []
+        yield entry
+    yield from _talk(talk)
+
+
+def _talk(talk: list[Entry]) -> Iterator[Entry]:
+    """Yield messages as a chat; one alone as it is."""
+    if len(talk) > 1:
+        yield talk[0]._replace(value={"messages": [each.value for each in talk]})
+    else:
+        yield from talk
+
+
 def scan_document(path: Place, place: str, asked: Asked) -> Iterator[Item]:
-    """The items of one value."""
+    """Yield the items of one value."""
     found = located_document(path, place)
     if isinstance(found, Located) and isinstance(found.value, list):
         found.value = {"title": suffixless(PurePath(place).name).replace("_", " "), "steps": found.value}
@@ -74,13 +97,13 @@ def scan_document(path: Place, place: str, asked: Asked) -> Iterator[Item]:
 
 
 def absent(asked: Asked, place: str) -> Iterator[Item]:
-    """The fault of each column that `--columns` names and no record has."""
+    """Yield the fault of each column that `--columns` names and no record has."""
     for field, name in asked.absent() if asked.names else ():
         yield refused(place, lacks(field, name, asked.names, place), f"{place}~{name}")
 
 
 def scan_list(path: Place, place: str, asked: Asked) -> Iterator[Item]:
-    """The items of each entry of a list."""
+    """Yield the items of each entry of a list."""
     entries = enumerate(located_entries(path, place), 1)
     yield from of_entries((Entry(value, line, f"{place}[{number}]") for number, (line, value) in entries), place, asked)
 
@@ -120,7 +143,7 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
 
 
 def _version(value: dict[str, Any]) -> str:
-    """What changes when the places of a record's program do."""
+    """Return a text that changes when the places of a record's program do."""
     texts = (value[key] for key in ("steps", "program", "text") if key in value)
     found = [f"{text.line}.{text.column}.{len(text.raw)}" for text in texts_in(list(texts))]
     return " ".join(found[:1] + found[-1:])
@@ -137,7 +160,7 @@ def id_fault(own: str, place: str, line: int = 0) -> Reject | None:
 
 
 def read(item: Item, salt: str = "") -> list[IngestedRow | Reject]:
-    """The record of an item; with further descriptions, one record for each.
+    """Return the record of an item; with further descriptions, one record for each.
 
     Args:
         item: as scanned.
@@ -212,7 +235,7 @@ def _placed(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[
 
 
 def _grounded(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow | Reject]:
-    """The row with the graph in which its program runs, if it has one; a faulty graph is refused alone."""
+    """Yield the row with the graph in which its program runs, if it has one; a faulty graph is refused alone."""
     if row["kind"] != "program" or "init_graph" not in value:
         yield row
         return
@@ -246,7 +269,7 @@ _TEXTS = ("steps", "text", "program")
 
 
 def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool, Places]:
-    """The program's text, whether it has natural-language steps, and the places of its lines."""
+    """Return the program's text, whether it has natural-language steps, and the places of its lines."""
     steps = next((value[key] for key in ("steps", "program") if isinstance(value.get(key), list)), None)
     text = "" if steps is not None else next((word for key in _TEXTS if (word := _word(value, key))), "")
     listed: Any = steps_of(text) if steps is None else steps
@@ -269,7 +292,7 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
 
 
 def _step(value: Mapping[str, Any]) -> Step:
-    """A step from a published row."""
+    """Return a step from a published row."""
     objects = tuple(
         ObjectRef(normal_name(str(ref["name"])), int(ref.get("instance") or 1), None)
         for ref in value.get("objects") or ()

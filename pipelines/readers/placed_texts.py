@@ -85,7 +85,7 @@ class Text(str):
 
 
 def _unit(name: str) -> re.Pattern[str]:
-    """Return what one character of a text is in the file; `name` may be a line break with the indent behind it."""
+    """Return a pattern for a character of a text in the file; `name` may be a line break with its indent."""
     if name.startswith("\n"):
         return re.compile(f"{name}|.", re.DOTALL)
     return CELL_UNIT if name == '""' else JSON_UNIT
@@ -99,7 +99,7 @@ def text_at(value: str, line: int, column: int, raw: str, unit: str = "") -> Tex
 
 
 class Composed(Text):
-    """A line made of texts from several places, and of what stands between them."""
+    """A line made of texts from several places, and of the characters between them."""
 
     __slots__ = ("parts",)
     parts: list[tuple[int, Text]]
@@ -203,7 +203,7 @@ def pairs_of(value: dict[str, Any]) -> list[tuple[str, Any]]:
 
 
 def _parts(value: Any) -> Iterator[tuple[Any, Any, Any]]:
-    """Each part of a list or object: what holds it, under which key, and the part."""
+    """Yield each part of a list or object: its container, its key, and the part."""
     if isinstance(value, list):
         return ((value, index, part) for index, part in enumerate(value))
     if not isinstance(value, Pairs):

@@ -1,4 +1,4 @@
-"""Which column of a table holds the programs when no name says so: the one whose cells read as several steps."""
+"""The choice of a table's program column when no name decides: the column whose cells read as several steps."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
@@ -17,7 +17,7 @@ _NO_WORDS = {"title": "", "description": ""}
 
 
 class Reading(NamedTuple):
-    """How many steps of some texts are understood, and how many are not."""
+    """Numbers of the steps of some texts: those understood, and the others."""
 
     understood: int
     faults: int

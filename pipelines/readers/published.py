@@ -83,6 +83,8 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:
         try:
             if not file.is_file():
                 raise ValueError("it is not a regular file")
+            if not file.resolve().is_relative_to(path.resolve()):
+                raise ValueError("it is a link that leads out of the dataset")
             with pq.ParquetFile(file) as source:
                 later = {*earlier(1).get(table, {}).get("lacks", ())} - {*source.schema_arrow.names}
                 columns = [name for name in columns if name not in later]
@@ -113,7 +115,7 @@ def _check_text(schema: Any, columns: list[str]) -> None:
 
 
 def read(item: Item) -> list[IngestedRow | Reject]:
-    """The record of a row."""
+    """Return the record of a row."""
     value = item.value
     try:
         origin = str(value["origin"])

@@ -18,6 +18,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EdgeColumns, read_node
+from hearth.schemas.graph_faults import REMEDY, graph_fault
 from hearth.schemas.numbers import stored
 from hearth.schemas.row_types import ChangeRow, ConditionRow, GraphRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
@@ -49,7 +50,10 @@ def names_it(path: str) -> bool:
 
 
 def _located(path: str) -> tuple[str, str, str] | None:
-    """The kind of a file, its home ("" for none), and its program (`batch/file`); None for a file of another layout."""
+    """Return the kind of a file, its home ("" for none), and its program (`batch/file`).
+
+    The result is None for a file of another layout.
+    """
     parts = path.split("/")
     for number, part in enumerate(parts[:-1]):
         kind = FOLDERS.get(part)
@@ -104,7 +108,7 @@ def _item(path: Path, place: str, key: str, members: JsonObject, version: str) -
 
 
 def _listing(path: Path) -> Iterable[tuple[str, str]]:
-    """The name and a checksum of each file."""
+    """Return the name and a checksum of each file."""
     if path.is_dir():
         for file in walk(path):
             yield file.relative_to(path).as_posix(), file_digest(file)[:16]
@@ -114,7 +118,7 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
 
 
 def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
-    """A member's bytes, or the fault that prevents reading them."""
+    """Return a member's bytes, or the fault that prevents reading them."""
     path = Path(value["path"])
     place = f"{value['label']}/{name}"
     try:
@@ -129,18 +133,18 @@ def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
             return Diagnostic(Code.FILE_TOO_LARGE, message, place, suggestion="leave it out, or split it")
         with archive(path).open(info) as file:
             return file.read(max(info.file_size, 1))  # Twice as fast as without a size, which is the most there is.
-    except Exception as error:  # archives raise what their compression raises: zlib, lzma, bz2, struct, ...
+    except Exception as error:  # archives raise the errors of their compression: zlib, lzma, bz2, struct, ...
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
 
 
 def text_of(value: JsonObject, name: str) -> str | Diagnostic:
-    """A member of the release as text, or its fault; `value` is an item's, with its path."""
+    """Return a member of the release as text, or its fault; `value` is an item's, with its path."""
     data = _bytes(value, name)
     return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
 
 
 def json_of(value: JsonObject, name: str, loads: Callable[[bytes], Any] = orjson.loads) -> Any:
-    """A member of the release as a JSON value, as `loads` reads it, or its fault."""
+    """Return a member of the release as a JSON value, as `loads` reads it, or its fault."""
     data = _bytes(value, name)
     if isinstance(data, Diagnostic):
         return data
@@ -151,7 +155,7 @@ def json_of(value: JsonObject, name: str, loads: Callable[[bytes], Any] = orjson
 
 
 def read(item: Item) -> Iterator[IngestedRow | Reject]:
-    """The record of a program with all its groundings; a grounding that can't be read is refused alone."""
+    """Yield the record of a program with all its groundings; a grounding that can't be read is refused alone."""
     value = {**item.value, "path": item.path}
     groundings: list[WrittenGroundingRow] = []
     faults: list[Diagnostic] = []
@@ -188,7 +192,7 @@ def _row(item: Item, text: str, groundings: list[WrittenGroundingRow], condition
 
 
 def _collected(value: JsonObject, groundings: list[WrittenGroundingRow]) -> str | Diagnostic:
-    """The text as collected, or else the first grounded one without its node ids."""
+    """Return the text as collected, or else the first grounded one without its node ids."""
     if "collected" in value:
         return text_of(value, value["collected"])
     if groundings:
@@ -218,13 +222,14 @@ def _graphs(value: JsonObject, name: str) -> tuple[GraphRow, ChangeRow | None] |
 
 
 def graphs_of(data: Any, place: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
-    """The start graph of a pair, and the change to its final graph if there is one."""
+    """Return the start graph of a pair, and the change to its final graph if there is one."""
     return _pair_row(partial(pair_of, data), place)
 
 
 def _pair_row(
     read_it: Callable[[], tuple[JsonObject, Change | None] | Diagnostic], place: str
 ) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
+    start: JsonObject | None = None
     try:
         pair = read_it()
         if isinstance(pair, Diagnostic):
@@ -236,9 +241,9 @@ def _pair_row(
         _columns(change.added if change else ())
         return row, None if change is None else change_row(change)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        message = f"not a pair of environment graphs: {type(error).__name__} {error}"
-        suggestion = "nodes need id and class_name; edges need from_id, relation_type and to_id"
-        return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=suggestion)
+        why = graph_fault(start, error) if start else f"{type(error).__name__} {error}"
+        message = f"not a pair of environment graphs: {why}"
+        return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=REMEDY)
 
 
 def _edges(graph: JsonObject) -> set[Edge]:

@@ -1,4 +1,4 @@
-"""A limit on the time that scanning a packed file takes: a small one may hold far more than anybody would read."""
+"""A limit on the time for scanning a packed file: a small file may hold far more than a person would read."""
 
 import time
 from collections import defaultdict
@@ -16,16 +16,18 @@ SECONDS = 60.0
 
 _BASE = 1 / 6
 _OF_A_MEGABYTE = 1 / 2
-"""Shares of that limit that a packed file has, for itself and for each megabyte: 10 seconds and 30. What people pack
-takes a tenth of that or less. A limit on size alone would not do: within those of `archives` some kilobytes may unpack
-to millions of empty rows, on which a scanner works for minutes."""
+"""Shares of that limit that a packed file has, for itself and for each megabyte: 10 seconds and 30.
+
+People's archives take a tenth of that or less. A limit on size alone would not do: within those of `archives` some
+kilobytes may unpack to millions of empty rows, on which a scanner works for minutes.
+"""
 
 
 class ScanningTime:
     """Limits the time of scanning packed files, each by its size; of an archive, that of all members together.
 
     It counts the processor's time while a scanner looks for its next record: neither the load of a machine nor the work
-    on the records changes what is refused.
+    on the records changes the refusals.
 
     Args:
         seconds: the time limit of a record; 0 for none.
@@ -41,7 +43,7 @@ class ScanningTime:
         self._deadline.close()
 
     def within(self, path: Place, place: str, found: Iterator[Item]) -> Iterator[Item]:
-        """The items that a scanner finds; at the end of the time, a reject for the rest of the file."""
+        """Yield the items that a scanner finds; at the end of the time, a reject for the rest of the file."""
         file = _packed(path)
         if file is None or not self._seconds:
             yield from found
@@ -66,7 +68,7 @@ class ScanningTime:
 
 
 def _packed(path: Place) -> Path | None:
-    """The packed file that a place is in or is; None for what is not packed."""
+    """Return the packed file that a place is in or is; None for a file that is not packed."""
     if isinstance(path, Member):
         return path.archive
     if not path.is_file():

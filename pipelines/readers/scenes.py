@@ -31,7 +31,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 
 def read(item: Item) -> IngestedRow | Reject:
-    """The record of a scene: the graph of a home that is named by the file."""
+    """Return the record of a scene: the graph of a home that is named by the file."""
     try:
         graph = graph_row(from_release(item.value, item.place))
     except HearthError as error:

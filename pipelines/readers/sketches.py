@@ -1,4 +1,4 @@
-"""Sketches: the steps of a program that somebody kept as its gist (thesis 4.2), in the release's annotation file.
+"""Sketches: the steps of a program that an annotator kept as its gist (thesis 4.2), in the release's annotation file.
 
 `prefix` is the name of a program of a release, or the id of one that was written
 (`written:P...`) or that a crowd gave (`crowd:P...`).
@@ -42,7 +42,7 @@ _ABSENT = (0, None)
 
 
 def read(item: Item) -> IngestedRow | Reject:
-    """The record of a sketch: its program, a flag for each of its steps, and the steps that the flags keep."""
+    """Return the record of a sketch: its program, a flag for each of its steps, and the steps that the flags keep."""
     keep, given = item.value["keep"], item.value["input"]
     try:
         flags = [bool(flag) for flag in keep]

@@ -8,13 +8,13 @@ from hearth.pipelines.readers.json_actions import looks_like_mapping, mapped_ste
 from hearth.pipelines.readers.placed_texts import Text, pieces_of
 
 Places = list[list[int]] | None
-"""Where the lines of a program's text stand in the file, as in `hearth.schemas.text_places`."""
+"""Positions of the lines of a program's text in the file, as in `hearth.schemas.text_places`."""
 
 IN_LINE = re.compile(r"\s*(?:plan|steps|answer)\s*:\s*1[.)]\s+\S.*\s2[.)]\s", re.IGNORECASE)
 """A whole plan on a line, as `Plan: 1. walk to kitchen 2. find milk`."""
 
 SAID = re.compile(r"\s*(?:[\w'’]+\s+){0,3}(?:plan|steps|routine|actions)\s*:\s*(?=\S)", re.IGNORECASE)
-"""What is said before a plan on its line, as in `my plan: wake up, drink coffee`."""
+"""The words before a plan on its line, as in `my plan: wake up, drink coffee`."""
 
 _NUMBERS = re.compile(r"(?<!\S)\d{1,3}[.)]\s+")
 _ENDS = frozenset({"done", "end", "stop", ""})
@@ -25,7 +25,9 @@ _IN_ONE_LINE = re.compile(
 
 
 def steps_of(text: str) -> list[str]:
-    """The lines of a text; of a single line its steps: a list, or separated by numbers, `;`, `->`, brackets, stops.
+    """Return the lines of a text.
+
+    A single line gives its steps: a list, or separated by numbers, `;`, `->`, brackets, stops.
 
     Raises:
         HearthError: BAD_JSON, a mapping of actions to objects that is cut off.
@@ -35,7 +37,7 @@ def steps_of(text: str) -> list[str]:
     lines = text.strip().split("\n")
     in_line = next((line for line in lines if IN_LINE.match(line)), "")
     if in_line and not any(plan_line(line).number for line in lines if line != in_line):
-        # What is said before and below such a plan explains it.
+        # The text before and below such a plan explains it.
         steps = [step.strip() for step in _NUMBERS.split(in_line)[1:]]
         return pieces_of(text, [step for step in steps if step.rstrip(".").lower() not in _ENDS])
     if len(lines) > 1:

@@ -44,7 +44,7 @@ def _item(block: Block, record_id: str, place: str) -> Item:
 
 
 def _too_long(block: Block, place: str) -> Diagnostic | None:
-    """The fault of a line, or else of a program, that is too long."""
+    """Return the fault of a line, or else of a program, that is too long."""
     for number, line in enumerate(block.text.split("\n"), block.first):
         if len(line) > MAX_LINE:
             length = f"more than {MAX_LINE:,}" if block.cut else f"{len(line):,}"
@@ -66,6 +66,6 @@ def header(text: str) -> tuple[str, str]:
 
 
 def read(item: Item) -> IngestedRow:
-    """The record of an item."""
+    """Return the record of an item."""
     title, description = header(item.value["text"])
     return record(item, "program", title, description, text=item.value["text"], line=item.value["line"])

@@ -46,7 +46,7 @@ class _Cutter:
         self._splitter = _started()
 
     def take(self, piece: str, final: bool = False) -> Iterator[Block]:
-        """The programs that end in the next piece of the text."""
+        """Yield the programs that end in the next piece of the text."""
         self._buffer += piece
         if self._kept is None and self._seen == 0:
             self._drop(_LEADING.match(self._buffer).end())  # type: ignore[union-attr]
@@ -140,5 +140,5 @@ def _started() -> Splitter:
 
 
 def _squeezed(blank: str) -> str:
-    """At most three blank lines, as many as can separate programs; the text after the last line end is kept."""
+    """Return at most three blank lines, as many as can separate programs; the text after the last line end is kept."""
     return "\n" * min(blank.count("\n"), 3) + blank[blank.rfind("\n") + 1 :][-MAX_LINE:]

@@ -69,7 +69,7 @@ class Problem:
         self._fixed = _matches(self.predicted.fixed, self.reference.fixed)
 
     def best(self, limit: int = LIMIT) -> Best:
-        """The best alignment, of all where there are at most `limit`."""
+        """Return the best alignment, of all where there are at most `limit`."""
         count = math.prod(group.count() for group in self.groups)
         exact = count <= limit
         found = max(self._scored(self._all() if exact else self._searched()), key=lambda scored: scored[0].rank())
@@ -109,7 +109,7 @@ class Problem:
         return Matches(Match(*sums[:3]), Match(*sums[3:]) + moving)
 
     def _counted(self, reference: int | None, predicted: int | None) -> tuple[int, ...]:
-        """The matches of one pair's states and relations, as six numbers."""
+        """Return the matches of one pair's states and relations, as six numbers."""
         return _matches(self.predicted.about(predicted), self.reference.about(reference))
 
     def _all(self) -> Iterator[tuple[Pair, ...]]:
@@ -118,7 +118,7 @@ class Problem:
             yield tuple(pair for pairs in choice for pair in pairs)
 
     def _derived(self, bijections: Sequence[Sequence[Pair]]) -> tuple[Pair, ...]:
-        """The pairs of the bijections with a named object."""
+        """Return the pairs of the bijections with a named object."""
         ours, theirs = self.predicted.named, self.reference.named
         return tuple(pair for pairs in bijections for pair in pairs if pair[0] in theirs or pair[1] in ours)
 
@@ -149,7 +149,7 @@ class Problem:
                 yield [*bijections[:number], swapped, *bijections[number + 1 :]]
 
     def _guess(self, group: _Group) -> list[Pair]:
-        """The bijection of a class with most matching tuples, ignoring those between movable nodes."""
+        """Return the bijection of a class with most matching tuples, ignoring those between movable nodes."""
         import numpy as np
         from scipy.optimize import linear_sum_assignment
 
@@ -220,7 +220,7 @@ class _Side:
         self._about[node] = view.states(i), relations
 
     def about(self, node: int | None) -> About:
-        """The state and relation tuples of an aligned node, without its edges to movable nodes."""
+        """Return the state and relation tuples of an aligned node, without its edges to movable nodes."""
         if node is not None and (self._either or node in self.named):
             return self._about[node]
         return frozenset(), self._to_characters.get(node, {}) if node is not None else {}
@@ -260,7 +260,7 @@ class _Group:
     named_reference: tuple[int, ...]
 
     def count(self) -> int:
-        """An upper bound of the number of alignments."""
+        """Return an upper bound of the number of alignments."""
         ours, theirs = len(self.predicted), len(self.reference)
         images = math.perm(max(ours, len(self.named_reference)), len(self.named_reference))
         if len(self.named_reference) == ours and ours == theirs:
@@ -269,7 +269,7 @@ class _Group:
         return images * math.perm(left, len(self.named_predicted))
 
     def identity(self) -> list[Pair]:
-        """The bijection that keeps common ids, and pairs the rest in order, or with None."""
+        """Return the bijection that keeps common ids, and pairs the rest in order, or with None."""
         same = [i for i in self.reference if i in self.predicted]
         theirs: list[int | None] = [i for i in self.reference if i not in same]
         ours: list[int | None] = [i for i in self.predicted if i not in same]
@@ -278,7 +278,7 @@ class _Group:
         return [*((i, i) for i in same), *padded]
 
     def alignments(self) -> Iterator[tuple[Pair, ...]]:
-        """Every assignment of counterparts to the named objects of either program."""
+        """Yield every assignment of counterparts to the named objects of either program."""
         for images in _choices(self.predicted, len(self.named_reference)):
             first = tuple(zip(self.named_reference, images, strict=True))
             rest = [node for node in self.named_predicted if node not in images]
@@ -301,6 +301,6 @@ def _groups(predicted: View, reference: View, ours: Set[int], theirs: Set[int]) 
 
 
 def _choices(candidates: Sequence[int], number: int) -> Iterator[tuple[int | None, ...]]:
-    """Every ordered choice of `number` candidates; None fills in for missing ones."""
+    """Yield every ordered choice of `number` candidates; None fills in for missing ones."""
     padded: list[int | None] = [*candidates, *[None] * (number - len(candidates))]
     return permutations(padded, number)

@@ -26,7 +26,7 @@ SIGNATURE = signature("executable", 2, level="program", empty=0)
 class ErrorClass(StrEnum):
     """The class of a program's first failure.
 
-    `wrong order`: the program's own steps could mend it, if the failing step stood at the last place where it was
+    `wrong order`: the program's own steps could fix it, if the failing step stood at the last place where it was
     possible, or if a later step stood before it. `additional step`: its effect already holds. `missing step`: neither.
     """
 
@@ -69,7 +69,10 @@ ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code
 
 
 PLACED: dict[str, Callable[[World, int], int]] = {"ON": rows.on, "INSIDE": rows.inside}
-"""Where a thing may be put, and the row with the result; repeated, such actions are additional steps."""
+"""Relations in which a thing may be put, each with the row of the result.
+
+A repeated action of this kind is an additional step.
+"""
 
 First = tuple[int, ErrorClass, Code]
 
@@ -83,7 +86,7 @@ class Executability:
         empty: whether it has no lines. Such a program is not executable, and is counted separately.
         afforded: whether the grammar allows every step's objects.
         runs: whether every line is a step, and all of them run.
-        failed_line: the first failing line, from 0; None without a failure.
+        failed_line: the first failing line, from 1; None without a failure.
         error: its error class.
         code: its failure code.
         final: the world at its end; None unless it runs.
@@ -102,7 +105,7 @@ class Executability:
 
     @property
     def executable(self) -> bool:
-        """As in A.3: it has steps, the grammar allows every step's objects, and all steps run."""
+        """Return whether the program has steps, the grammar allows every step's objects, and all steps run (A.3)."""
         return not self.empty and self.afforded and self.runs
 
 
@@ -121,7 +124,7 @@ def executability(
         >>> from hearth.scoring.line_sequences import read
         >>> found = hearth.executability(read(["[Walk] <fridge> (1)", "[Close] <fridge> (1)"]), world)
         >>> found.executable, found.failed_line, str(found.code)
-        (False, 1, 'IS_CLOSED')
+        (False, 2, 'IS_CLOSED')
     """
     knowledge = world.home.knowledge
     faults = {fault.line: fault.code for fault in parsability(lines, knowledge).faults}
@@ -141,11 +144,12 @@ def executability(
     line, error, code = min(failures, key=lambda failure: failure[0]) if failures else (None, None, None)
     runs = execution.executable and not faults
     final = execution.final if runs else None
-    return Executability(program, not lines, not unfit and not faults, runs, line, error, code, final)
+    failed_line = None if line is None else line + 1
+    return Executability(program, not lines, not unfit and not faults, runs, failed_line, error, code, final)
 
 
 def _canonical(step: Step, knowledge: Knowledge) -> Step:
-    """The step with canonical names; unchanged if it has a fault."""
+    """Return the step with canonical names; unchanged if it has a fault."""
     names = tuple([ref.name for ref in step.objects])
     action, canonical = _names(step.action, names, knowledge)
     if action == step.action and canonical == names:
@@ -156,7 +160,7 @@ def _canonical(step: Step, knowledge: Knowledge) -> Step:
 
 @lru_cache(maxsize=65_536)
 def _names(action: str, names: tuple[str, ...], knowledge: Knowledge) -> tuple[str, tuple[str, ...]]:
-    """The canonical names of a step without instances, cached because steps recur in a corpus."""
+    """Return the canonical names of a step without instances, cached because steps recur in a corpus."""
     program, _ = check(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
     return program.steps[0].action, tuple(ref.name for ref in program.steps[0].objects)
 
@@ -172,7 +176,7 @@ def _afforded(action: str, names: tuple[str, ...], knowledge: Knowledge) -> bool
 
 
 def _failed_step(steps: Sequence[Step], failure: Failure) -> int:
-    """The index of the failing step: the agent's step in the failing tick."""
+    """Return the index of the failing step: the agent's step in the failing tick."""
     starts = [number for number, step in enumerate(steps) if not number or not step.joins]
     start = starts[failure.tick]
     end = starts[failure.tick + 1] if failure.tick + 1 < len(starts) else len(steps)

@@ -1,6 +1,6 @@
 """A final graph as scorers read it, whether it is a world or a graph from a file: node by node, edges as rows of bits.
 
-Two graphs that are compared number their nodes alike, so that what they share is counted on the rows.
+Two graphs that are compared number their nodes alike, so that their common edges are counted on the rows.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ DOOR = "door"
 Final = EnvironmentGraph | World
 
 Label = int | str | tuple[str, int]
-"""What a node is compared by: its counterpart's id, its own id, or its class."""
+"""The key by which a node is compared: its counterpart's id, its own id, or its class."""
 
 Direction = tuple[str, bool]
 """A relation, and whether its edges go out from the node that is asked about."""
@@ -40,8 +40,8 @@ class Nodes:
         classes: class name by id.
         instances: ids by class name, ascending.
         left_out: rooms and doors (a door's parts too, such as `doorjamb`), which are not scored.
-        characters: who acts.
-        labels: what each is compared by as long as it does not move: rooms, doors, characters by id, else by class.
+        characters: the acting characters.
+        labels: the key of each as long as it does not move: rooms, doors, characters by id, else by class.
     """
 
     classes: Mapping[int, str]
@@ -51,11 +51,11 @@ class Nodes:
     labels: Mapping[int, Label]
 
     def scored(self, nodes: Iterable[int]) -> frozenset[int]:
-        """Those of some nodes that can be scored."""
+        """Return the nodes that can be scored, among some nodes."""
         return frozenset(node for node in nodes if isinstance(self.labels.get(node), str))
 
     def extended(self, nodes: Iterable[Node]) -> Nodes:
-        """The table with more nodes, whose ids are above all that it has."""
+        """Return the table with more nodes, whose ids are above all that it has."""
         more = Nodes.of(nodes)
         joined = {name: self.instances.get(name, ()) + ids for name, ids in more.instances.items()}
         return Nodes(
@@ -68,7 +68,7 @@ class Nodes:
 
     @classmethod
     def of(cls, nodes: Iterable[Node]) -> Nodes:
-        """The table of some nodes."""
+        """Return the table of some nodes."""
         nodes = sorted(nodes, key=lambda node: node.id)
         instances: dict[str, list[int]] = {}
         for node in nodes:
@@ -82,7 +82,7 @@ class Nodes:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A final graph; what is asked of a node is read once.
+    """A final graph; each fact about a node is read once.
 
     Attributes:
         nodes: the table of its nodes.
@@ -99,7 +99,7 @@ class View:
     rows: Callable[[int], EdgeRows]
 
     def mask(self, nodes: Iterable[int]) -> int:
-        """Some nodes as a set of numbers."""
+        """Return some nodes as a set of numbers."""
         return mask_of(map(self.index.__getitem__, nodes))
 
 
@@ -148,7 +148,7 @@ _READ: tuple[tuple[Direction, Callable[[World, int], int], str, str], ...] = (
     (("FACING", True), rows.facing, "facing", "faced"),
     (("FACING", False), rows.faced, "faced", "facing"),
 )
-"""How edges are read: those between things, a character's own, and those of characters with the node."""
+"""Readers of edges: of edges between things, of a character's own, and of those of characters with the node."""
 
 
 def _world_rows(world: World, i: int) -> EdgeRows:
@@ -189,7 +189,7 @@ def _is_room_or_door(node: Node) -> bool:
 
 @lru_cache(maxsize=64)
 def nodes_of(home: Home) -> Nodes:
-    """The table of a home: a prediction and its reference end in worlds of the same one.
+    """Return the table of a home: a prediction and its reference end in worlds of the same one.
 
     Of a home that was made from another by adding nodes, only these are read.
     """

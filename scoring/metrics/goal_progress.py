@@ -1,4 +1,4 @@
-"""The part of a goal that a program brought about: what held at the start earns nothing."""
+"""The part of a goal that a program brought about: literals that held at the start earn nothing."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ class GoalScore:
 
     @property
     def fraction(self) -> float:
-        """The share of what was left to do, and of what was broken, that is done."""
+        """Return the share of the missing and of the broken literals that is done."""
         return self.gained / (self.left + self.broken) if self.left + self.broken else 1.0
 
 
 class Achieved(NamedTuple):
-    """What a reference brings about.
+    """The achievements of a reference.
 
     Attributes:
         start: its goal in the world before it.
@@ -61,7 +61,7 @@ class Achieved(NamedTuple):
 
     @classmethod
     def of(cls, goal: Goal, start: World, final: World) -> Achieved:
-        """Return what of a goal newly holds at the end of a reference.
+        """Return the literals of a goal that newly hold at the end of a reference.
 
         A thing that held at the start counts for nothing: where one of two lamps was on, `ON(lamp)` asks for the other.
         """

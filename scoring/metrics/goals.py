@@ -17,7 +17,7 @@ LASTING = ("ON", "INSIDE", *HANDS)
 
 
 def goal_of(start: World, final: World) -> Goal:
-    """What an execution achieved, as class literals: states set, and objects that it put ON, INSIDE or in a hand.
+    """Return the achievements of an execution as class literals: states set, and objects put ON, INSIDE or in a hand.
 
     Literals that held at the start, and INSIDE a room, do not count. Both worlds are of one home.
     """
@@ -40,7 +40,7 @@ def goal_of(start: World, final: World) -> Goal:
 
 
 def _achieved(start: World, final: World) -> tuple[Iterable[tuple[int, str]], Iterable[Edge]]:
-    """The added states and the added lasting edges."""
+    """Return the added states and the added lasting edges."""
     if start.home is final.home and start.moved is NOTHING and len(final.agents) == 1 and not final.home.others:
         return _states_set(start, final), _lasting(start, final)
     change = final.changes(start)
@@ -54,7 +54,7 @@ def _states_set(start: World, final: World) -> Iterator[tuple[int, str]]:
 
 
 def _lasting(start: World, final: World) -> Iterator[Edge]:
-    """The added lasting edges, as in `World.changes`; only `extra` rows of moved objects are read."""
+    """Yield the added lasting edges, as in `World.changes`; only `extra` rows of moved objects are read."""
     home = final.home
     ids = home.ids
     for key, row in final.moved.extra.items():

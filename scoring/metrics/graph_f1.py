@@ -47,7 +47,7 @@ class GraphScore:
 
     @classmethod
     def of(cls, matches: Matches, exact: bool = True, assigned: tuple[Pair, ...] = ()) -> GraphScore:
-        """The score of counted matches."""
+        """Return the score of counted matches."""
         states, relations = matches
         return cls(states.prf(), relations.prf(), (states + relations).prf(), exact, assigned)
 
@@ -57,12 +57,12 @@ FAILED = GraphScore(NOTHING, NOTHING, NOTHING)
 
 
 def f1_signature(match: MatchBy = MATCH, scope: Scope = SCOPE) -> str:
-    """The signature of a score by this module."""
+    """Return the signature of a score by this module."""
     return signature("f1", match=match, scope=scope, empty=1)
 
 
 def named(program: Program) -> frozenset[int]:
-    """The nodes that a bound program names."""
+    """Return the nodes that a bound program names."""
     return frozenset(ref.node for step in program.steps for ref in step.objects if ref.node is not None)
 
 
@@ -82,12 +82,12 @@ def score(
     graphs; with `own`, each graph's named objects are those of its own program.
 
     Matching: `none` compares ids. `swap1`, as published, is the best over replacing one of the reference's objects by
-    another instance of its class (one object at a time, ids still compared); with scope `own` it gives the numbers of
-    tables 5.2 to 5.5, and almost 0 to an empty program: what remains is the character's place, .1 or so where the
-    reference stays in the room in which it begins. `best` is the best over all alignments of the two graphs (see
+    another instance of its class (one object at a time, ids still compared). With scope `own`, `swap1` gives the
+    numbers of tables 5.2 to 5.5, and almost 0 to an empty program. The rest is the character's place, .1 or so where
+    the reference stays in the room in which it begins. `best` is the best over all alignments of the two graphs (see
     `hearth.scoring.metrics.alignment`); it does not depend on the ids of instances.
 
-    Empty sets: if neither graph has a tuple of a kind, all three numbers are 1; if only one has, 0.
+    Empty sets: if neither graph has a tuple of a kind, all three numbers are 1; if only one graph has, 0.
 
     Args:
         predicted: the graph or world after the predicted program.
@@ -126,7 +126,7 @@ def _swap1(a: View, b: View, ours: Set[int], theirs: Set[int], scope: Scope) -> 
 
 
 def _substitutes(reference: View, objects: Set[int]) -> Iterator[tuple[tuple[Pair, ...], Set[int]]]:
-    """The reference's objects, then variants with one object replaced by another instance of its class."""
+    """Yield the reference's objects, then variants with one object replaced by another instance of its class."""
     yield (), objects
     for node in sorted(objects):
         for other in reference.nodes.instances[reference.nodes.classes[node]]:
@@ -135,7 +135,7 @@ def _substitutes(reference: View, objects: Set[int]) -> Iterator[tuple[tuple[Pai
 
 
 def _compared(a: View, b: View, ours: Set[int], theirs: Set[int]) -> Matches:
-    """The matches of two graphs by id: of tuples about some nodes of each, and about the characters."""
+    """Return the matches of two graphs by id: of tuples about some nodes of each, and about the characters."""
     mine, yours = a.mask(ours | a.nodes.characters), b.mask(theirs | b.nodes.characters)
     found = (a, b, mine, yours), (a, a, mine, mine), (b, b, yours, yours)
     states = (sum(len(x.states(i) & y.states(i)) for i in indices(one & other)) for x, y, one, other in found)
@@ -143,7 +143,7 @@ def _compared(a: View, b: View, ours: Set[int], theirs: Set[int]) -> Matches:
 
 
 def _shared(a: View, b: View, ours: int, theirs: int) -> int:
-    """Number of common edges with an end in the first graph's nodes and one in the second's."""
+    """Return the number of common edges with an end in the first graph's nodes and one in the second's."""
     every, same = ours | theirs, ours & theirs
     found = 0
     for i in indices(every):

@@ -21,7 +21,7 @@ Level = Literal["step", "action", "object"]
 LEVELS: tuple[Level, ...] = get_args(Level)
 
 By = Literal["class", "number", "node"]
-"""What identifies an object."""
+"""The kind of key that identifies an object."""
 
 Sequences = list[list[int]]
 
@@ -35,17 +35,17 @@ class LcsScore(NamedTuple):
 
     @property
     def mean(self) -> float:
-        """The mean of the three."""
+        """Return the mean of the three."""
         return sum(self) / len(self)
 
 
 def lcs_signature(level: str = "step", instances: bool = False) -> str:
-    """The signature of a score by this module."""
+    """Return the signature of a score by this module."""
     return signature("lcs", norm="max", level=level, **({"instances": "named"} if instances else {}))
 
 
 def items(lines: Lines, level: Level = "step", instances: bool = False) -> list[Hashable]:
-    """The items that are compared at a level.
+    """Return the items that are compared at a level.
 
     Names are compared ignoring case, spaces, hyphens and underscores. Instances are ignored (eq. 4.2) unless
     `instances` is set; then an object is identified by its node if bound, else by its number. Modifiers are ignored.
@@ -63,7 +63,7 @@ def similarity(predicted: Lines, reference: Lines, level: Level = "step", instan
 
 
 def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsScore:
-    """The scores of one pair at every level, from 0 to 1 (thesis eq. 4.1).
+    """Return the scores of one pair at every level, from 0 to 1 (thesis eq. 4.1).
 
     Examples:
         >>> from hearth.scoring.line_sequences import read
@@ -75,7 +75,7 @@ def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsSco
 
 
 def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -> list[LcsScore]:
-    """The scores of many pairs, in order; equal to `score` of each, but faster."""
+    """Return the scores of many pairs, in order; equal to `score` of each, but faster."""
     pairs = list(pairs)
     by = [_identity(*pair) if instances else "class" for pair in pairs]
     sides = [[_levels(pair[side], how) for pair, how in zip(pairs, by, strict=True)] for side in (0, 1)]
@@ -84,21 +84,21 @@ def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -
 
 
 def _identity(*programs: Lines) -> By:
-    """What identifies the instances of some programs: nodes, if all of them name any."""
+    """Return the kind of key for the instances of some programs: nodes, if all of them name nodes."""
     steps = ([line for line in lines if isinstance(line, Step)] for lines in programs)
     named = all(any(ref.node is not None for step in found for ref in step.objects) for found in steps)
     return "node" if named else "number"
 
 
 def _levels(lines: Lines, by: By) -> list[list[Hashable]]:
-    """The items of every level."""
+    """Return the items of every level."""
     found = [_items(line, by) for line in lines]
     return [[item for each in found for item in each[place]] for place in range(len(LEVELS))]
 
 
 @lru_cache(maxsize=65_536)
 def _items(line: Line, by: By) -> tuple[tuple[Hashable, ...], ...]:
-    """The items of a line at every level."""
+    """Return the items of a line at every level."""
     if isinstance(line, str):
         return ((("text", line.casefold()),),) * len(LEVELS)
     objects = tuple([_named(ref, by) for ref in line.objects])
@@ -113,7 +113,7 @@ def matrix(
     instances: bool = False,
     workers: int = -1,
 ) -> NDArray[np.float32]:
-    """The similarity of every program of one list to every one of another, shape (len(a), len(b)).
+    """Return the similarity of every program of one list to every one of another, shape (len(a), len(b)).
 
     5,000 x 5,000 programs of 10 steps take about a second on two cores, and 100 MB.
 

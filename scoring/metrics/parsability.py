@@ -46,7 +46,7 @@ class Parsability:
 
     @property
     def parsable(self) -> bool:
-        """As published: every line has the right number of arguments."""
+        """Return whether every line has the right number of arguments, as published."""
         return 0 < self.arity == self.lines
 
     @property
@@ -63,7 +63,7 @@ def parsability(lines: Lines, knowledge: Knowledge) -> Parsability:
 
 
 def _first(line: Line, number: int, knowledge: Knowledge) -> Iterator[Fault]:
-    """The gravest fault of a line, if any."""
+    """Yield the gravest fault of a line, if any."""
     if isinstance(line, str):
         yield Fault(number, line.code if isinstance(line, Refused) else Code.SYNTAX, line[:200])
         return
@@ -84,7 +84,7 @@ def _given_twice(step: Step, knowledge: Knowledge) -> ObjectRef | None:
 
 @lru_cache(maxsize=65_536)
 def _fault(name: str, objects: tuple[str, ...], knowledge: Knowledge) -> tuple[Code, str] | None:
-    """The gravest fault of a step without instances, cached because steps recur in a corpus."""
+    """Return the gravest fault of a step without instances, cached because steps recur in a corpus."""
     action = knowledge.action(name)
     if action is None:
         return Code.UNKNOWN_ACTION, name

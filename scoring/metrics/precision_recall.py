@@ -27,7 +27,7 @@ class Match(NamedTuple):
         return Match(self.both + other.both, self.predicted + other.predicted, self.reference + other.reference)
 
     def prf(self) -> Prf:
-        """The scores; all 1 for two empty sets, all 0 without common tuples."""
+        """Return the scores; all 1 for two empty sets, all 0 without common tuples."""
         if not self.predicted and not self.reference:
             return Prf(1.0, 1.0, 1.0)
         if not self.both:
@@ -46,21 +46,21 @@ class Matches(NamedTuple):
     relations: Match
 
     def rank(self) -> tuple[float, float]:
-        """The rank of an assignment: F1 over both, then the sum of the two F1."""
+        """Return the rank of an assignment: F1 over both, then the sum of the two F1."""
         return ((self.states + self.relations).prf().f1, self.states.prf().f1 + self.relations.prf().f1)
 
     def published_rank(self) -> float:
-        """The published scorer's rank: the sum of the three F1."""
+        """Return the published scorer's rank: the sum of the three F1."""
         return sum(self.rank())
 
 
 def shared(predicted: Set[object], reference: Set[object]) -> Match:
-    """The match of two sets of tuples."""
+    """Return the match of two sets of tuples."""
     return Match(len(predicted & reference), len(predicted), len(reference))
 
 
 def matched(predicted: Mapping[object, int], reference: Mapping[object, int]) -> Match:
-    """The match of two multisets of tuples."""
+    """Return the match of two multisets of tuples."""
     both = 0
     for item, count in predicted.items():
         other = reference.get(item)

@@ -100,9 +100,9 @@ def test_events_as_they_were_collected_are_opened(changed):
         ("did", {"seconds": "long"}, "`seconds` is long"),
         ("did", {"stream": "somebody"}, "is not the event that comes there"),
         ("did", {"kind": "danced"}, "`danced` does not happen there"),
-        ("answered", {"answers": {"helpful": 8}}, "`helpful` is not an answer to what is asked"),
-        ("answered", {"answers": {"name": "Ann"}}, "`name` is not an answer to what is asked"),
-        ("finished", {"answers": {"comments": ["x"]}}, "`comments` is not an answer to what is asked"),
+        ("answered", {"answers": {"helpful": 8}}, "`helpful` is not an answer to a present question"),
+        ("answered", {"answers": {"name": "Ann"}}, "`name` is not an answer to a present question"),
+        ("finished", {"answers": {"comments": ["x"]}}, "`comments` is not an answer to a present question"),
         ("left", {"why": None}, "`why` is None"),
     ],
 )

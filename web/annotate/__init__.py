@@ -1,1 +1,1 @@
-"""Where people describe activities, write programs of blocks for them, and review and mark those of others."""
+"""The room where people describe activities, write programs of blocks, and review and mark others' programs."""

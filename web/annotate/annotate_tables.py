@@ -1,4 +1,4 @@
-"""What annotators made, by the session that made it (thesis 3.3)."""
+"""The contributions of annotators, by the session that made them (thesis 3.3)."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ REVIEWS = sql.Table(
     _text("before", "the draft as it was submitted"),
     _when(),
 )
-"""What second persons said of programs."""
+"""The judgments of reviewers on programs."""
 
 QUALIFIED = sql.Table(
     "annotate_tests",
@@ -68,6 +68,17 @@ QUALIFIED = sql.Table(
     _when(),
 )
 """Qualification tests that were taken."""
+
+REVIEWERS = sql.Table(
+    "annotate_reviewers",
+    METADATA,
+    sql.Column("id", sql.Text, primary_key=True, comment="SHA-256 of the invitation's code, which is not stored"),
+    sql.Column(
+        "session", sql.Text, sql.ForeignKey("sessions.id", ondelete="CASCADE"), index=True, comment="null until taken"
+    ),
+    _when(),
+)
+"""Invitations to review, each for one session."""
 
 MARKS = sql.Table(
     "annotate_marks",

@@ -1,4 +1,4 @@
-"""Programs in the store: found for the session that may see them, changed by whoever read their last version."""
+"""Programs in the store: read by sessions that may see them, changed by a session that has read the last version."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CHANGED = (DRAFT, RETURNED)
 
 
 def text_of(store: Store, text: str) -> Row:
-    """A description by its id.
+    """Return a description by its id.
 
     Raises:
         WebError: UNKNOWN_ID.
@@ -31,13 +31,13 @@ def text_of(store: Store, text: str) -> Row:
 
 
 def own_program(store: Store, person: str, text: str) -> Row | None:
-    """The program that a person has begun for a description."""
+    """Return the program that a person has begun for a description."""
     query = sql.select(PROGRAMS).where(PROGRAMS.c.session == person, PROGRAMS.c.text == text)
     return store.row(query)
 
 
 def begun(store: Store, person: str, text: str) -> Row:
-    """The same, begun with an empty scene if there is none."""
+    """Return a person's program, begun with an empty scene if there is none."""
     found = own_program(store, person, text)
     if found is not None:
         return found
@@ -109,7 +109,7 @@ def submitted(store: Store, person: str, most: int = 100) -> list[Row]:
 
 
 def accepted(store: Store, person: str = "") -> list[Row]:
-    """Accepted programs with their descriptions, oldest first; of all but one person."""
+    """Return accepted programs with their descriptions, oldest first; of all but one person."""
     joined = PROGRAMS.join(TEXTS, PROGRAMS.c.text == TEXTS.c.id)
     columns = (TEXTS.c.title, TEXTS.c.description, TEXTS.c.scene, TEXTS.c.session.label("writer"))
     query = (

@@ -24,7 +24,7 @@ OTHER = "Other"
 
 
 def drawer(action: Action, known: Knowledge) -> str:
-    """The drawer in which an action's block is found."""
+    """Return the drawer in which an action's block is found."""
     groups = ((name, each) for name, members in DRAWERS for each in members)
     return next((name for name, each in groups if action.name in known.group(each)), OTHER)
 
@@ -46,7 +46,7 @@ def actions(known: Knowledge) -> tuple[dict[str, Any], ...]:
 
 
 def things(draft: Draft, known: Knowledge) -> list[dict[str, Any]]:
-    """Every declared thing: its name, instance, words, and the kinds of slots that take it."""
+    """Return every declared thing: its name, instance, words, and the kinds of slots that take it."""
     fits = {name: _slots(name, known) for name in (*draft.rooms, *draft.props)}
     several = {name: count > 1 for name, count in (*draft.rooms.items(), *draft.props.items())}
     return [

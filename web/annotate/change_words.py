@@ -1,4 +1,4 @@
-"""What a step of a run changed, in everyday words: no ids, no names of relations."""
+"""The changes of a step of a run in everyday words: no ids, no names of relations."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ STATES = {"PLUGGED_IN": "plugged in", "PLUGGED_OUT": "unplugged", "LYING": "lyin
 """States whose words are not their names."""
 
 PLACES = {"INSIDE": "in", "ON": "on"}
-"""Relations that are named, by their words; who is close to what, or faces it, is not."""
+"""The words of the relations that are named; closeness and facing are not named."""
 
 HELD = dict(zip(HANDS, ("right", "left"), strict=True))
 
 
 def changed_in_words(change: Change, world: World) -> str:
-    """What changed, "" where only the person's place did; `world` is the one before."""
+    """Return the changes in words, "" where only the person's place changed; `world` is the world before."""
     text = "; ".join(dict.fromkeys(_parts(change, world)))
     return text[:1].upper() + text[1:]
 

@@ -1,11 +1,10 @@
-"""What was accepted, as the files that `ingest` reads: batches of both stages, sketches, described films.
+"""The accepted contributions, as the files that `ingest` reads: batches of both stages, sketches, described films.
 
 The files follow from the store: they are written after each acceptance and when the server starts, and can be deleted.
 """
 
 from __future__ import annotations
 
-import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -18,6 +17,7 @@ from hearth.analysis.completeness_ratings import COLUMNS, HELP
 from hearth.analysis.spreadsheet_cells import sheet_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.csv_files import rows_writer
 from hearth.storage.files import write_bytes
 from hearth.web.annotate import annotated_programs
 from hearth.web.annotate.annotate_tables import MARKS
@@ -37,7 +37,7 @@ PROGRAMS = (
 
 
 def write_collected(web: Web) -> None:
-    """Write all files of what is accepted, each whole or not at all; none where nothing is."""
+    """Write all files of accepted contributions, each whole or not at all; no file without contributions."""
     with FileLock(private(web.out) / "collected.lock"):
         for name, data in collected(web.store).items():
             path = web.out / name
@@ -48,7 +48,7 @@ def write_collected(web: Web) -> None:
 
 
 def collected(store: Store) -> dict[str, bytes]:
-    """The files by name; empty where there is nothing for one."""
+    """Return the files by name; empty where there is nothing for one."""
     accepted = annotated_programs.accepted(store)
     marks = _marks(store)
     described = {row["text"]: row for row in reversed(accepted)}
@@ -65,7 +65,7 @@ def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> bytes:
     """CSV; empty without rows."""
     listed = list(rows)
     out = io.StringIO(newline="")
-    csv.writer(out, lineterminator="\n").writerows([header, *listed])
+    rows_writer(out)([header, *listed])
     return out.getvalue().encode() if listed else b""
 
 
@@ -86,14 +86,14 @@ def _film(mark: Row) -> tuple[str, ...]:
 
 
 _KINDS: Mapping[str, type] = {"sketch": list, "completeness": int, "film": dict}
-"""What the value of a mark is, by its kind."""
+"""The type of a mark's value, by the mark's kind."""
 
 
 def _marked(mark: Row) -> Any:
-    """The value of a mark.
+    """Return the value of a mark.
 
     Raises:
-        HearthError: DAMAGED_FILE: it is none, as in a store that somebody has changed.
+        HearthError: DAMAGED_FILE: it is none, as in a store that was changed by hand.
     """
     try:
         value = orjson.loads(mark["value"])
@@ -111,7 +111,10 @@ def _marks(store: Store) -> list[Row]:
 
 
 def _sketches(accepted: Sequence[Row], marks: Iterable[Row]) -> bytes:
-    """The steps that are the activity, in the form of the release's annotations; the first mark of each program."""
+    """Return the steps that are the activity, in the form of the release's annotations.
+
+    The first mark of each program counts.
+    """
     programs = {row["id"]: row for row in accepted}
     first = {mark["subject"]: mark for mark in reversed(list(marks)) if mark["kind"] == "sketch"}
     answers: list[list[int]] = []
@@ -128,7 +131,7 @@ def _sketches(accepted: Sequence[Row], marks: Iterable[Row]) -> bytes:
 
 
 def ratings_sheet(store: Store) -> str:
-    """The grades of completeness, as the sheet that `corpus completeness --sheet` reads."""
+    """Return the grades of completeness, as the sheet that `corpus completeness --sheet` reads."""
     programs = {row["id"]: row for row in annotated_programs.accepted(store)}
     rows: list[tuple[object, ...]] = [(*COLUMNS[:-1], f"rating ({HELP})")]
     for mark in _marks(store):

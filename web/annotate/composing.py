@@ -22,7 +22,7 @@ Run = Callable[[Draft, str, str, Knowledge], dict[str, Any]]
 
 
 def task_list(visit: Visit) -> Response:
-    """Step one: the descriptions that one may write a program for."""
+    """Return step one: the descriptions that the person may write a program for."""
     return visit.page("annotate/tasks.html", tasks=annotated_programs.tasks(visit.web.store, visit.person))
 
 
@@ -94,13 +94,13 @@ def compose(visit: Visit) -> Response:
 
 
 def work(visit: Visit) -> Response:
-    """The program, the blocks and the things, for the page's scripts."""
+    """Return the program, the blocks and the things, for the page's scripts."""
     program = _own(visit)
     return visit.answer(work_of(visit, program, stored(program["draft"])))
 
 
 def work_of(visit: Visit, program: Row, draft: Draft) -> dict[str, Any]:
-    """The same of any program."""
+    """Return the work of any program, as JSON."""
     known = visit.web.known
     blocks = {"actions": block_grammar.actions(known), "things": block_grammar.things(draft, known)}
     changes = program["state"] in annotated_programs.CHANGED
@@ -141,7 +141,7 @@ def try_out(visit: Visit) -> Response:
 
 
 def replay(visit: Visit) -> Response:
-    """The same run in 3D."""
+    """Return the same run in 3D."""
     message = visit.json()
     draft = sent(visit, message, _draft(visit))
     return visit.answer(run_of(visit, _text(visit), message, draft, trial_run.replay_draft))
@@ -150,7 +150,7 @@ def replay(visit: Visit) -> Response:
 def run_of(
     visit: Visit, text: Row, message: dict[str, Any], draft: Draft, run: Run = trial_run.run_draft
 ) -> dict[str, Any]:
-    """A run, in the home that a message names, of a draft without faults: in words, or in 3D.
+    """Return a run, in the home that a message names, of a draft without faults: in words, or in 3D.
 
     Raises:
         WebError: TOO_FAST; or the code of the first fault.
@@ -163,24 +163,24 @@ def run_of(
 
 
 def plan(visit: Visit) -> Response:
-    """The floor plan of a home."""
+    """Return the floor plan of a home."""
     trial_run.home_of(visit.part("home"), visit.web.known)
     return Response(trial_run.plan_of(visit.part("home"), visit.web.known), media_type="image/svg+xml")
 
 
 def shapes(visit: Visit) -> Response:
-    """The shapes of a home in 3D."""
+    """Return the shapes of a home in 3D."""
     found = trial_run.shapes_of(visit.part("home"), visit.web.known)
     return Response(found, media_type="application/json", headers={"Cache-Control": "private, max-age=3600"})
 
 
 def replay_script(visit: Visit) -> Response:
-    """The script that plays runs in 3D."""
+    """Return the script that plays runs in 3D."""
     return Response(trial_run.replay_script(), media_type="text/javascript")
 
 
 def check_of(visit: Visit, text: Row, draft: Draft) -> list[dict[str, Any]]:
-    """The faults and warnings of a draft for a description."""
+    """Return the faults and warnings of a draft for a description."""
     found = live_check.check_draft(draft, text["title"], text["description"], visit.web.known)
     return [each._asdict() for each in found]
 
@@ -198,5 +198,5 @@ def _draft(visit: Visit) -> Draft:
 
 
 def sent(visit: Visit, message: dict[str, Any], scene: Draft) -> Draft:
-    """The draft with the steps that a page sent."""
+    """Return the draft with the steps that a page sent."""
     return replace(scene, blocks=read_blocks(message.get("steps"), scene, visit.web.known))

@@ -32,13 +32,13 @@ EXAMPLES = (
 
 
 def describe(visit: Visit) -> Response:
-    """The page of stage one."""
+    """Return the page of stage one."""
     thanks = visit.fields.get("thanks") == "yes"
     return _page(visit, title="", description="", wishes=(), thanks=thanks)
 
 
 def submit_description(visit: Visit) -> Response:
-    """Store a description, or ask politely for what it lacks."""
+    """Store a description, or ask politely for the missing parts."""
     title, description = visit.field("title").strip(), visit.field("description").strip()
     wishes = lacks(title, description)
     if wishes:
@@ -56,7 +56,7 @@ def submit_description(visit: Visit) -> Response:
 
 
 def lacks(title: str, description: str) -> tuple[str, ...]:
-    """What a description lacks, as polite sentences; none if it is good enough to be read by others."""
+    """Return the faults of a description, as polite sentences; none if others can read it."""
     found = []
     if sum(letter.isalpha() for letter in title) < 3 or len(title) > MOST_TITLE or len(title.split()) > 10:
         found.append("Please give the activity a short title of its own, such as “Make tea”.")
@@ -74,7 +74,7 @@ def lacks(title: str, description: str) -> tuple[str, ...]:
 
 
 def _scene(visit: Visit) -> str:
-    """The room that is drawn for a person's next description."""
+    """Return the room that is drawn for a person's next description."""
     query = sql.select(sql.func.count()).select_from(TEXTS).where(TEXTS.c.session == visit.person)
     count = visit.web.store.scalar(query)
     return rng(0, "annotate", visit.person, count).choice(SCENES)

@@ -38,13 +38,13 @@ class Block(NamedTuple):
     text: str = ""
 
     def line(self) -> str:
-        """The step as program text; an empty slot is left out, which the check reports."""
+        """Return the step as program text; an empty slot is left out, which the check reports."""
         if self.action == SPECIAL:
             return f"[{SPECIAL}] <{self.text}>"
         return print_step(Step(self.action, tuple(filter(None, self.things))))
 
     def words(self, known: Knowledge) -> str:
-        """The step as a phrase: `Put cup 1 on table 1`."""
+        """Return the step as a phrase: `Put cup 1 on table 1`."""
         if self.action == SPECIAL:
             return f"Special: {self.text}"
         names = [f"{ref.name.replace('_', ' ')} {ref.instance}" if ref else "…" for ref in self.things]
@@ -66,16 +66,16 @@ class Draft:
     blocks: tuple[Block, ...] = ()
 
     def lines(self) -> list[str]:
-        """The steps as program text, one line each."""
+        """Return the steps as program text, one line each."""
         return [block.line() for block in self.blocks]
 
     def things(self) -> list[ObjectRef]:
-        """Every declared thing, rooms first."""
+        """Return every declared thing, rooms first."""
         both = [*self.rooms.items(), *self.props.items()]
         return [ObjectRef(name, number) for name, count in both for number in range(1, count + 1)]
 
     def as_json(self) -> dict[str, Any]:
-        """As it is stored and sent."""
+        """Return the draft as it is stored and sent."""
         steps = [
             {"special": block.text}
             if block.action == SPECIAL
@@ -85,11 +85,11 @@ class Draft:
         return {"rooms": self.rooms, "props": self.props, "steps": steps}
 
     def dumped(self) -> str:
-        """As text for the store."""
+        """Return the draft as text for the store."""
         return orjson.dumps(self.as_json()).decode()
 
     def with_scene(self, rooms: dict[str, int], props: dict[str, int]) -> Draft:
-        """With another scene; slots whose thing is no longer declared become empty."""
+        """Return the draft with another scene; slots whose thing is no longer declared become empty."""
         scene = Draft(rooms, props)
         left = set(scene.things())
         return replace(scene, blocks=tuple(
@@ -98,10 +98,10 @@ class Draft:
 
 
 def stored(text: str) -> Draft:
-    """A draft as it was stored.
+    """Return a draft as it was stored.
 
     Raises:
-        HearthError: DAMAGED_FILE: it is none, as in a store that somebody has changed.
+        HearthError: DAMAGED_FILE: it is none, as in a store that was changed by hand.
     """
     try:
         value = orjson.loads(text)
@@ -128,7 +128,7 @@ def _stored_thing(name: str, instance: int) -> ObjectRef:
 
 
 def read_quantity(text: str, place: str) -> int:
-    """A quantity from a form, from 0 to `MOST_PIECES`.
+    """Return a quantity from a form, from 0 to `MOST_PIECES`.
 
     Raises:
         WebError: BAD_ARGUMENT.
@@ -139,7 +139,7 @@ def read_quantity(text: str, place: str) -> int:
 
 
 def read_blocks(value: Any, scene: Draft, known: Knowledge) -> tuple[Block, ...]:
-    """The steps that a page sends: only declared things, only what the grammar affords.
+    """Return the steps that a page sends: only declared things, and only actions that the grammar affords.
 
     Raises:
         WebError: BAD_ARGUMENT, UNKNOWN_ACTION, WRONG_ARITY, UNDECLARED or NOT_AFFORDED, with the step.
@@ -191,10 +191,10 @@ def is_plain(text: str) -> bool:
 
 
 def _special(text: str, place: str) -> str:
-    """The free text of a special block, with single spaces.
+    """Return the free text of a special block, with single spaces.
 
     Raises:
-        WebError: BAD_ARGUMENT: it is longer than anybody writes.
+        WebError: BAD_ARGUMENT: it is longer than any person's.
     """
     text = " ".join(text.split())
     if len(text) > MOST_KEPT:

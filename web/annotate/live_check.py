@@ -1,4 +1,4 @@
-"""The check of a program while it is written: the code of `check`, and what `build` would refuse."""
+"""The check of a program while it is written: the code of `check`, and the faults that `build` would refuse."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Found(NamedTuple):
         fault: whether a program with it can't be submitted.
         code: the kind.
         message: for people.
-        remedy: what to do.
+        remedy: the correction.
     """
 
     step: int
@@ -37,7 +37,7 @@ class Found(NamedTuple):
 
 
 def check_draft(draft: Draft, title: str, description: str, known: Knowledge) -> list[Found]:
-    """All faults and warnings of a draft, ordered by step."""
+    """Return all faults and warnings of a draft, ordered by step."""
     lines = _shown_plain(draft).lines()
     expanded = special_blocks.expand("\n".join(lines), 0)
     pairs = zip(expanded.text.split("\n"), expanded.lines, strict=True)
@@ -62,7 +62,7 @@ _UNFIT = (
 
 
 def _shown_plain(draft: Draft) -> Draft:
-    """The draft without texts of special blocks that can't stand in a line; they are faults of their own."""
+    """Return the draft without texts of special blocks that can't stand in a line; they are faults of their own."""
     blocks = (each if is_plain(each.text) else each._replace(text="") for each in draft.blocks)
     return replace(draft, blocks=tuple(blocks))
 

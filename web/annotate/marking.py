@@ -1,4 +1,4 @@
-"""Marks on what is there: sketches of programs (thesis 5.5.1), their completeness (3.4.1), films in words (4.4)."""
+"""Marks on existing items: sketches of programs (thesis 5.5.1), their completeness (3.4.1), films in words (4.4)."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Film(NamedTuple):
 
 @lru_cache(maxsize=2)
 def films_of(dataset: Path) -> dict[str, Film]:
-    """The films of a published dataset by the id of their execution; one of each program."""
+    """Return the films of a published dataset by the id of their execution; one of each program."""
     opened = Dataset.open(dataset)
     query = """SELECT min(v.execution_id), min_by(v.file, v.execution_id), e.program_id
         FROM videos v JOIN executions e USING (execution_id) GROUP BY e.program_id ORDER BY 1"""
@@ -60,7 +60,7 @@ def films_of(dataset: Path) -> dict[str, Film]:
 
 
 def sketch_page(visit: Visit) -> Response:
-    """The next accepted program, each step with a box."""
+    """Return the next accepted program, each step with a box."""
     return _program_page(visit, SKETCH, "annotate/sketch.html")
 
 
@@ -76,7 +76,7 @@ def keep_sketch(visit: Visit) -> Response:
 
 
 def rating_page(visit: Visit) -> Response:
-    """The next accepted program, to be graded."""
+    """Return the next accepted program, to be graded."""
     return _program_page(visit, COMPLETENESS, "annotate/rate.html", grades={int(each): SAID[each] for each in SAID})
 
 
@@ -90,12 +90,12 @@ def keep_rating(visit: Visit) -> Response:
 
 
 def film_page(visit: Visit) -> Response:
-    """The next film."""
+    """Return the next film."""
     return _film_page(visit, 200, "", "", ())
 
 
 def keep_film(visit: Visit) -> Response:
-    """Store the description of a film, or ask politely for what it lacks."""
+    """Store the description of a film, or ask politely for the missing parts."""
     film = _film(visit)
     title, description = visit.field("title").strip(), visit.field("description").strip()
     if wishes := lacks(title, description):
@@ -105,7 +105,7 @@ def keep_film(visit: Visit) -> Response:
 
 
 def film_file(visit: Visit) -> Response:
-    """The film itself."""
+    """Return the film itself."""
     path = _film(visit).path
     return FileResponse(path, media_type=KINDS[path.suffix])
 
@@ -140,7 +140,7 @@ def _program_page(visit: Visit, kind: str, template: str, **values: Any) -> Resp
 
 
 def _accepted(visit: Visit) -> Row:
-    """The accepted program of the address, by somebody else.
+    """Return the accepted program of the address, by another person.
 
     Raises:
         WebError: UNKNOWN_ID.
@@ -153,7 +153,7 @@ def _accepted(visit: Visit) -> Row:
 
 
 def _marked(visit: Visit, kind: str) -> set[str]:
-    """What a person has marked in one way."""
+    """Return the items that a person has marked in one way."""
     query = sql.select(MARKS.c.subject).where(MARKS.c.session == visit.person, MARKS.c.kind == kind)
     return set(visit.web.store.read(lambda connection: connection.execute(query).scalars().all()))
 

@@ -36,7 +36,10 @@ def is_qualified(store: Store, person: str) -> bool:
 
 
 def test_page(visit: Visit) -> Response:
-    """The questions; for who has just answered them, what was right, and why. To load it again costs no try."""
+    """Return the questions, and after an answer the right answers with reasons.
+
+    To load the page again costs no attempt.
+    """
     questions, taken = _test()["questions"], _taken(visit)
     values: dict[str, Any] = {"questions": questions, "taken": taken, "left": MOST_TRIES - taken}
     given = visit.field("given", len(questions)) if taken else ""

@@ -1,4 +1,4 @@
-"""Review: a second person accepts a program, mends it, or returns it to its author (thesis 3.3)."""
+"""Review: a second person accepts a program, corrects it, or returns it to its author (thesis 3.3)."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from hearth.web.annotate.annotate_tables import ACCEPTED, PROGRAMS, RETURNED, RE
 from hearth.web.annotate.collected_files import write_collected
 from hearth.web.annotate.draft import Draft, stored
 from hearth.web.annotate.qualification import is_qualified
+from hearth.web.annotate.reviewers import is_invited
 from hearth.web.messages import int_field
 from hearth.web.store import Row
 from hearth.web.visit import Visit
@@ -22,14 +23,15 @@ from hearth.web.web_errors import WebError
 
 
 def review_list(visit: Visit) -> Response:
-    """What waits for a second person; the way to the test for those who have not passed it."""
-    qualified = is_qualified(visit.web.store, visit.person)
-    waiting = annotated_programs.submitted(visit.web.store, visit.person) if qualified else []
-    return visit.page("annotate/reviews.html", qualified=qualified, waiting=waiting)
+    """Return the programs that wait for a second person; others get the way to an invitation and the test."""
+    store, person = visit.web.store, visit.person
+    invited, qualified = is_invited(store, person), is_qualified(store, person)
+    waiting = annotated_programs.submitted(store, person) if invited and qualified else []
+    return visit.page("annotate/reviews.html", invited=invited, qualified=qualified, waiting=waiting)
 
 
 def review_page(visit: Visit) -> Response:
-    """A program beside its description."""
+    """Return a program next to its description."""
     program, text = _waiting(visit)
     draft = stored(program["draft"])
     found = composing.check_of(visit, text, draft)
@@ -51,39 +53,39 @@ def judge(visit: Visit) -> Response:
 
 
 def mend_page(visit: Visit) -> Response:
-    """The program with its blocks, to be mended."""
+    """Return the program with its blocks, for correction."""
     program, text = _waiting(visit)
     values: dict[str, Any] = {"base": f"/annotate/review/{program['id']}", "mode": "mend", "homes": trial_run.homes()}
     return visit.page("annotate/compose.html", text=text, closed=False, program=program, **values)
 
 
 def work(visit: Visit) -> Response:
-    """The program, the blocks and the things, for the page's scripts."""
+    """Return the program, the blocks and the things, for the page's scripts."""
     program, _ = _waiting(visit)
     return visit.answer(composing.work_of(visit, program, stored(program["draft"])))
 
 
 def check(visit: Visit) -> Response:
-    """Check the mended steps; nothing is kept before they are accepted."""
+    """Check the corrected steps; nothing is kept before they are accepted."""
     _, text, draft, message = _mended(visit)
     found = composing.check_of(visit, text, draft)
     return visit.answer({"version": int_field(message, "version", 1, 10**9), "found": found})
 
 
 def try_out(visit: Visit) -> Response:
-    """Run the mended steps in a home."""
+    """Run the corrected steps in a home."""
     _, text, draft, message = _mended(visit)
     return visit.answer(composing.run_of(visit, text, message, draft))
 
 
 def replay(visit: Visit) -> Response:
-    """The same run in 3D."""
+    """Return the same run in 3D."""
     _, text, draft, message = _mended(visit)
     return visit.answer(composing.run_of(visit, text, message, draft, trial_run.replay_draft))
 
 
 def mend(visit: Visit) -> Response:
-    """Accept the mended steps instead of those that were submitted."""
+    """Accept the corrected steps instead of the submitted ones."""
     program, text, draft, message = _mended(visit)
     if fault := next((each for each in composing.check_of(visit, text, draft) if each["fault"]), None):
         raise WebError(Code[fault["code"]], "steps", "a program without faults", fault["message"])
@@ -98,12 +100,14 @@ def _mended(visit: Visit) -> tuple[Row, Row, Draft, dict[str, Any]]:
 
 
 def _waiting(visit: Visit) -> tuple[Row, Row]:
-    """A submitted program of somebody else, and its description, for those who passed the test.
+    """Return another person's submitted program, and its description, for a person with invitation and test.
 
     Raises:
         WebError: NOT_ALLOWED or UNKNOWN_ID.
     """
     store = visit.web.store
+    if not is_invited(store, visit.person):
+        raise WebError(Code.NOT_ALLOWED, "review", "somebody whom the desk invited", "somebody whom it did not")
     if not is_qualified(store, visit.person):
         raise WebError(Code.NOT_ALLOWED, "review", "somebody who passed the test", "somebody who did not")
     query = sql.select(PROGRAMS).where(
@@ -116,7 +120,7 @@ def _waiting(visit: Visit) -> tuple[Row, Row]:
 
 
 def _store(visit: Visit, program: Row, verdict: str, note: str, version: int, draft: Draft) -> None:
-    """Store a verdict, unless another reviewer was faster; then write what is accepted.
+    """Store a verdict, unless another reviewer was faster; then write the accepted programs.
 
     Raises:
         WebError: LOCKED.

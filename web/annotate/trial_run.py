@@ -1,4 +1,4 @@
-"""A program run in a home before it is submitted: what each step changes, and where the character is."""
+"""A program run in a home before it is submitted: the changes of each step, and the character's places."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from hearth.web.web_errors import WebError
 
 
 def homes() -> tuple[str, ...]:
-    """The names of our homes."""
+    """Return the names of our homes."""
     return library.names()
 
 
 @lru_cache(maxsize=8)
 def home_of(name: str, known: Knowledge) -> Home:
-    """A home of ours.
+    """Return a home of ours.
 
     Raises:
         WebError: UNKNOWN_HOME.
@@ -44,7 +44,7 @@ def home_of(name: str, known: Knowledge) -> Home:
 
 @lru_cache(maxsize=8)
 def plan_of(name: str, known: Knowledge) -> str:
-    """The floor plan of a home as SVG, in metres; z points up the page."""
+    """Return the floor plan of a home as SVG, in metres; z points up the page."""
     return draw(library.load_graph(name, known).nodes)
 
 
@@ -70,7 +70,7 @@ def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str
 
 
 def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str, Any]:
-    """The same run in 3D, for `replay.js` of the report: `home`, the address of the home's shapes, and `run`.
+    """Return the same run in 3D, for `replay.js` of the report: `home`, the address of the home's shapes, and `run`.
 
     Raises:
         WebError: NOT_RENDERED: nothing of it runs.
@@ -88,7 +88,7 @@ def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[
 
 @lru_cache(maxsize=8)
 def shapes_of(name: str, known: Knowledge) -> bytes:
-    """The shapes of a home, as JSON.
+    """Return the shapes of a home, as JSON.
 
     Raises:
         WebError: UNKNOWN_HOME.
@@ -100,12 +100,12 @@ def shapes_of(name: str, known: Knowledge) -> bytes:
 
 
 def replay_script() -> bytes:
-    """The script that plays runs in 3D, which reports have, too."""
+    """Return the script that plays runs in 3D, which reports have, too."""
     return (files("hearth.datasets.report") / "assets" / "replay.js").read_bytes()
 
 
 def _lines(draft: Draft) -> tuple[list[int], list[str]]:
-    """The blocks that run, by number and as lines of a program."""
+    """Return the blocks that run, by number and as lines of a program."""
     numbers = [number for number, block in enumerate(draft.blocks) if block.action != SPECIAL]
     return numbers, [draft.blocks[number].line() for number in numbers]
 

@@ -9,7 +9,7 @@ import sqlalchemy as sql
 
 from hearth.challenges.episodes import Record
 from hearth.kb.knowledge import Knowledge
-from hearth.web.play import game_store, play_pages
+from hearth.web.play import game_store, play_pages, shared_games
 from hearth.web.play.live_games import games
 from hearth.web.play.play_socket import live
 from hearth.web.play.trials import Trial
@@ -33,6 +33,7 @@ ROOM = Room(
     ),
     desk=(get("", play_pages.desk_page), get("/results.jsonl", play_pages.desk_results)),
     needs=("three",),
+    keeps=shared_games.keep,
 )
 """The room."""
 
@@ -43,7 +44,7 @@ def start_trial(connection: sql.Connection, session: str, trial: Trial, go_on: s
     Args:
         connection: of the transaction.
         session: whose trial it is; it has the first character.
-        trial: as `hearth.web.play.trials.trial` makes it of a task, a helper, an interface, a seed, and what is seen.
+        trial: as `hearth.web.play.trials.trial` makes it, with the helper, the interface, the seed and the view.
         go_on: address of ours to which the page leads once it is over.
 
     Returns:
@@ -58,7 +59,7 @@ def trial_address(game: str) -> str:
 
 
 def recorded_episode(store: Store, knowledge: Knowledge, game: str) -> Record | None:
-    """What was done in a trial, as result files have it; None while it goes on.
+    """Return the actions of a trial, as result files have them; None while it goes on.
 
     `hearth.web.play.game_results.results` makes files of several.
     """

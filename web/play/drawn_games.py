@@ -1,4 +1,4 @@
-"""The 3D scene of a game: a home's fixed part as one glTF, and what is different from it now, for browsers to draw."""
+"""The 3D scene of a game, for browsers: a home's fixed part as one glTF, and the present differences from it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from hearth.web.play.trials import SIZE
 
 @lru_cache(maxsize=32)
 def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
-    """A home as all games of a challenge have it: what is in sight, without the things of goals and characters.
+    """Return a home as all games of a challenge have it: its visible parts, without the things of goals and characters.
 
     Raises:
         HearthError: BAD_ARGUMENT: the challenge is not played there.
@@ -43,14 +43,17 @@ def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
 
 
 def in_sight(scene: Scene, world: World) -> Iterator[Thing]:
-    """The things of a scene without what closed furniture holds: it costs time to draw, and a page must not know it."""
+    """Yield the things of a scene, without those inside closed furniture.
+
+    These cost time to draw, and a page must not know them.
+    """
     shut = {world.home.ids[i] for i in indices(out_of_sight(world))}
     return (thing for thing in scene.everything if thing.id not in shut)
 
 
 @lru_cache(maxsize=32)
 def base_key(name: str, home: str, knowledge: Knowledge) -> str:
-    """What is drawn of it, in 32 digits, for its file and address."""
+    """Return a digest of the drawn parts, in 32 digits, for its file and address."""
     return _digest(base_scene(name, home, knowledge).everything)
 
 
@@ -68,7 +71,7 @@ def _digest(value: object) -> str:
 
 
 def model_key(thing: Thing) -> str:
-    """What names a thing's model in addresses; parts of the building are drawn where they stand."""
+    """Return the name of a thing's model in addresses; parts of the building are drawn where they stand."""
     where = (thing.position, thing.yaw) if thing.structural else ()
     return _digest((thing.model, where))
 
@@ -93,16 +96,16 @@ class DrawnGame:
 
     @property
     def scene(self) -> Scene:
-        """What there is to see now."""
+        """Return the present scene."""
         return self.sensor.scene(self.game.playing.env)
 
     @property
     def camera(self) -> Camera:
-        """The eyes now."""
+        """Return the eyes now."""
         return self.sensor.camera(self.game.playing.env, self.number)
 
     def as_json(self) -> dict[str, Any]:
-        """The home's file, which of its nodes are not there now, what else is, and the eyes.
+        """Return the home's file, its nodes that are missing now, the other things, and the eyes.
 
         Each of `on` is node id, class, key of its model, x, y, z in metres, and yaw in degrees. Axes are the scene's:
         x east, y up, z north.
@@ -117,7 +120,7 @@ class DrawnGame:
         return {"base": self.address, "off": off, "on": on, "camera": eyes}
 
     def model(self, key: str) -> bytes:
-        """A model that is there now, or was sent to a page before, which may ask once the game has gone on.
+        """Return a model that is there now, or was sent to a page before, which may ask once the game has gone on.
 
         Raises:
             HearthError: UNKNOWN_ID: there is none with that key.
@@ -129,14 +132,14 @@ class DrawnGame:
         return glb(Scene((alone,)), textures=False)
 
     def others(self) -> Iterator[Thing]:
-        """What is there now and is not of the home's fixed part."""
+        """Yield the present things that are not of the home's fixed part."""
         return (thing for thing in self._in_sight() if thing not in self._base)
 
     def _in_sight(self) -> Iterator[Thing]:
         return in_sight(self.scene, self.game.playing.env.world)
 
     def jpeg(self) -> bytes:
-        """What is seen, as our own renderer draws it."""
+        """Return the person's view, as our own renderer draws it."""
         import cv2
 
         rgb = self.sensor(self.game.playing.env, self.number, ("rgb",))["rgb"]
@@ -145,7 +148,7 @@ class DrawnGame:
         return data.tobytes()
 
     def pick(self, x: int, y: int) -> int:
-        """The node id that a pixel of the picture shows; 0 of the background."""
+        """Return the node id that a pixel of the picture shows; 0 of the background."""
         ids = self.sensor(self.game.playing.env, self.number, ("instance_ids",))["instance_ids"]
         return int(ids[min(max(y, 0), SIZE[1] - 1), min(max(x, 0), SIZE[0] - 1)])
 

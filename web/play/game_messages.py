@@ -1,4 +1,4 @@
-"""The messages to a person's page: at first all that it sees, then what is different after each tick."""
+"""The messages to a person's page: at first the whole view, then the differences after each tick."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from hearth.web.play.games import Game
 from hearth.web.play.remembered import Counted
 
 USES = ("GRABBABLE", "CAN_OPEN", "HAS_SWITCH", "SURFACES", "CONTAINERS", "SITTABLE", "LIEABLE")
-"""Properties of things that pages show; what has none of them, such as a wall, nobody can do anything with."""
+"""Properties of things that pages show; no action uses a thing with none of them, such as a wall."""
 
 PLAN = ("Walls", "Doors", "Windows")
 """Categories that floor plans show of a whole home, which everybody knows."""
 
 Objects = dict[int, list[Any]]
-"""Node id -> room, relation, holder, states, whether it is close; what changes of a thing."""
+"""Changing facts about things: node id -> room, relation, holder, states, whether it is close."""
 
 
 def thing_group(node: Node) -> str:
-    """The panel of a thing: rooms and doors, furniture, things that one can hold, or people; floors are in none."""
+    """Return the panel of a thing: rooms and doors, furniture, things to hold, or people; floors are in none."""
     if node.category == "Floor":
         return "floor"
     if node.category in (ROOM_CATEGORY, "Doors"):
@@ -46,7 +46,7 @@ def thing_group(node: Node) -> str:
 
 
 class Telling:
-    """What one page knows of a game, so that only what is new is sent to it.
+    """One page's knowledge of a game, so that the server sends the page only news.
 
     Args:
         game: the game.
@@ -59,7 +59,7 @@ class Telling:
         self._named: set[int] = set()
 
     def begin(self) -> dict[str, Any]:
-        """Everything: the trial, the floor plan, what is seen and was seen."""
+        """Return the first message: the trial, the floor plan, the present and past observations."""
         game = self.game
         trial = game.trial
         self._known, self._named = {}, set()
@@ -78,7 +78,7 @@ class Telling:
         }
 
     def now(self) -> dict[str, Any]:
-        """The tick: what changed for this page, what it may do, how far the goal is."""
+        """Return the tick: the changes for this page, the legal actions, and the progress of the goal."""
         game = self.game
         view, legal = game.view(self.number), game.legal(self.number)
         objects = seen_objects(view)
@@ -102,12 +102,12 @@ class Telling:
         }
 
     def tick(self) -> dict[str, Any]:
-        """The same as a message of its own."""
+        """Return the tick as a message of its own."""
         return {"type": "tick", **self.now()}
 
 
 def seen_objects(view: View) -> Objects:
-    """Things that can be used and that a person sees: their room, what they are on or in, states, and whether close."""
+    """Return the usable things in a person's view: their room, place, states, and whether they are close."""
     home, world = view.world.home, as_seen(view.world, view.mask)
     usable = usable_things(home)
     agent = world.agents[view.agent]
@@ -125,7 +125,7 @@ def seen_objects(view: View) -> Objects:
 
 
 def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
-    """What a thing is held by, in, or on, as far as it is seen; '' and 0 where there is no such thing."""
+    """Return the relation and the id of a thing's holder or place, as far as it is visible; '' and 0 without one."""
     world, home = view.world, view.world.home
     if i in held:
         return "held", home.ids[held[i].index]
@@ -139,7 +139,7 @@ def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
 
 
 def _thing(home: Home, node_id: int) -> list[Any]:
-    """What never changes of a thing: class, panel, footprint on the plan."""
+    """Return the constant facts about a thing: class, panel, footprint on the plan."""
     node = home.node(home.index[node_id])
     return [node.class_name, thing_group(node), _rect(node)]
 
@@ -164,10 +164,10 @@ PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}
 
 
 def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
-    """The instructions that are offered: action -> the ids that each of its places may have.
+    """Return the instructions that are offered: action -> the ids that each of its places may have.
 
     They are those that can be done with things that the page shows, and that make sense to people. `me` is the node of
-    who decides, which the page does not show as a thing.
+    the person's character, which the page does not show as a thing.
     """
     home = legal.home
     things = usable_things(home) & ~(1 << home.index[me])
@@ -183,12 +183,12 @@ def legal_json(legal: Legal, me: int) -> dict[str, list[list[int]]]:
 
 
 def usable_things(home: Home) -> int:
-    """The things of a home that pages show."""
+    """Return the things of a home that pages show."""
     return home.rooms | home.characters | _with(home, USES)
 
 
 def _with(home: Home, properties: Iterable[str]) -> int:
-    """The things that have one of some properties."""
+    """Return the things that have one of some properties."""
     return reduce(or_, (home.properties[name] for name in properties))
 
 
@@ -217,7 +217,7 @@ def _wanted(counted: Counted, home: Home) -> dict[str, Any]:
 
 
 def _classes(literal: Any, home: Home) -> Iterator[str]:
-    """The classes of the home's things that a literal is about, so that pages can mark them."""
+    """Yield the classes of the home's things that a literal is about, so that pages can mark them."""
     for term in literal.terms:
         if isinstance(term, int):
             yield home.classes[home.index[term]]
@@ -226,7 +226,7 @@ def _classes(literal: Any, home: Home) -> Iterator[str]:
 
 
 def goal_words(literal: Any, home: Home) -> str:
-    """A literal of a goal for people: `Put plate on dining table`."""
+    """Return a literal of a goal for people: `Put plate on dining table`."""
     names = [_name(term, home) for term in literal.terms]
     if literal.name == HOLDS:
         return f"Hold {names[1]}"

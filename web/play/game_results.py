@@ -1,4 +1,4 @@
-"""Games as results: what people did, in the files that `challenge verify`, `score` and `build` read."""
+"""Games as results: people's actions, in the files that `challenge verify`, `score` and `build` read."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ MAIN = "person"
 """The main agent of people's results."""
 
 Kind = tuple[str, str, str, str]
-"""Challenge, split, helper, and what the helper is asked to do: those of one file."""
+"""Challenge, split, helper and the helper's goal: those of one file."""
 
 
 def kind_of(game: Game) -> Kind:
-    """The file that a game belongs in."""
+    """Return the file that a game belongs in."""
     trial = game.trial
     return (trial.task.challenge, trial.task.split, trial.helper, trial.goal)
 
 
 def results(games: Iterable[Game]) -> dict[Kind, Results]:
-    """The results of games by their kind.
+    """Return the results of games by their kind.
 
     Of two games of one task with one seed, the later gets the next seed that is free: a seed names an episode.
     """
@@ -57,5 +57,5 @@ def _results(kind: Kind, games: list[Game]) -> Results:
 
 
 def as_bytes(found: Results) -> bytes:
-    """A file of results."""
+    """Return a file of results."""
     return b"".join((first_line(found.header), *(line(found.header, each) for each in found.records)))

@@ -24,7 +24,7 @@ class Stored(NamedTuple):
 
     Attributes:
         id: names it.
-        trial: what is played.
+        trial: the trial that is played.
         created: seconds since 1970.
         code: the secret by which a second person joins.
         go_on: address to go on to after its end.
@@ -78,10 +78,12 @@ def begin(connection: sql.Connection, session: str, trial: Trial, go_on: str = "
 
 
 def join(connection: sql.Connection, session: str, code: str) -> str:
-    """Take the second seat of the game with a code; its id. Who has a seat of it keeps that.
+    """Take the second seat of the game with a code, and return the game's id.
+
+    A person with a seat in the game keeps that seat.
 
     Raises:
-        WebError: UNKNOWN_ID: there is no such game for two; LOCKED: somebody else has the seat.
+        WebError: UNKNOWN_ID: there is no such game for two; LOCKED: another person has the seat.
     """
     found = connection.execute(sql.select(GAMES.c.id, GAMES.c.trial).where(GAMES.c.code == code)).first()
     if found is None or read_trial(orjson.loads(found.trial)).helper != PERSON:
@@ -96,7 +98,7 @@ def join(connection: sql.Connection, session: str, code: str) -> str:
 
 
 def seat(connection: sql.Connection, game: str, session: str) -> int:
-    """The character that a session plays in a game.
+    """Return the character that a session plays in a game.
 
     Raises:
         WebError: UNKNOWN_ID: none; whether there is such a game is not said.
@@ -109,7 +111,7 @@ def seat(connection: sql.Connection, game: str, session: str) -> int:
 
 
 def stored(connection: sql.Connection, game: str) -> Stored:
-    """A game; who may see it, `seat` has checked.
+    """Return a game; `seat` has checked that the person may see it.
 
     Raises:
         WebError: UNKNOWN_ID: it was deleted, as one of its people asked.
@@ -121,7 +123,7 @@ def stored(connection: sql.Connection, game: str) -> Stored:
 
 
 def games_of(connection: sql.Connection, session: str) -> list[Stored]:
-    """The games in which a session has a seat, the newest first."""
+    """Return the games in which a session has a seat, the newest first."""
     query = sql.select(GAMES).join(SEATS, SEATS.c.game == GAMES.c.id).where(SEATS.c.session == session)
     return [_stored(row) for row in connection.execute(query.order_by(GAMES.c.created.desc()))]
 
@@ -133,7 +135,7 @@ def played_before(connection: sql.Connection, task: str) -> int:
 
 
 def all_games(connection: sql.Connection) -> list[Stored]:
-    """Every game, the oldest first; for researchers."""
+    """Return every game, the oldest first; for researchers."""
     return [_stored(row) for row in connection.execute(sql.select(GAMES).order_by(GAMES.c.created, GAMES.c.id))]
 
 
@@ -143,7 +145,7 @@ def _stored(row: Any) -> Stored:
 
 
 def decisions(connection: sql.Connection, game: str, since: int = 0) -> dict[int, list[Decided]]:
-    """The decisions of the ticks from `since` on, by tick and character."""
+    """Return the decisions of the ticks from `since` on, by tick and character."""
     query = sql.select(DECISIONS).where(DECISIONS.c.game == game, DECISIONS.c.tick >= since)
     found: dict[int, list[Decided]] = {}
     for row in connection.execute(query.order_by(DECISIONS.c.tick, DECISIONS.c.agent)):
@@ -152,7 +154,7 @@ def decisions(connection: sql.Connection, game: str, since: int = 0) -> dict[int
 
 
 class Turn(NamedTuple):
-    """A tick of a game in which somebody decides."""
+    """A tick of a game in which a character decides."""
 
     game: str
     tick: int
@@ -182,7 +184,7 @@ def end(connection: sql.Connection, game: str, why: Mapping[str, Any]) -> None:
 
 
 def over(connection: sql.Connection, game: str, success: bool, ticks: int, at: float) -> None:
-    """Write that a game is over, and when; what was written first stays."""
+    """Write that a game is over, and when; an earlier result stays."""
     result = orjson.dumps({"success": success, "ticks": ticks, "at": at}).decode()
     query = sql.update(GAMES).where(GAMES.c.id == game, GAMES.c.result.is_(None))
     connection.execute(query.values(result=result))

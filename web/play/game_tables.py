@@ -33,7 +33,7 @@ SEATS = sql.Table(
     sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
     owner(),
 )
-"""Who plays which character."""
+"""The person who plays each character."""
 
 DECISIONS = sql.Table(
     "play_decisions",
@@ -41,10 +41,13 @@ DECISIONS = sql.Table(
     _game(),
     sql.Column("tick", sql.Integer, primary_key=True, comment="from 0"),
     sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
-    sql.Column("act", sql.Text, comment="as in records, `Grab 41`; null for who waits"),
+    sql.Column("act", sql.Text, comment="as in records, `Grab 41`; null for a character that waits"),
     sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when it was accepted"),
 )
-"""What each character tried in each tick. A tick is done once every character has a row of it; a row never changes."""
+"""The attempts of each character in each tick.
+
+A tick is done once every character has a row of it; a row never changes.
+"""
 
 SIGNS = sql.Table(
     "play_signs",
@@ -53,4 +56,4 @@ SIGNS = sql.Table(
     sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
     sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when its page was open last"),
 )
-"""Which people of games for two are there."""
+"""The people of games for two who are present."""

@@ -1,4 +1,4 @@
-"""A game: a trial under way. It is a value of its decisions: done again from the store, it is the same."""
+"""A game: a trial under way. Its decisions determine it: a replay from the store gives the same game."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from hearth.web.play.remembered import Remembered
 from hearth.web.play.trials import OTHERS, PERSON, PROGRAM, Trial
 
 Texts = tuple[str | None, ...]
-"""What each character tried in a tick, as records have it (`Grab 41`); None where it waited."""
+"""Each character's attempt in a tick, as records have it (`Grab 41`); None where it waited."""
 
 HELPER = 1
 """The number of the helper."""
 
 
 class Person:
-    """A main agent of which nobody knows what it is doing."""
+    """A person as main agent, whose subgoal is unknown."""
 
     subgoal = None
 
@@ -41,15 +41,15 @@ class Game:
     """A trial under way.
 
     Attributes:
-        trial: what is played.
+        trial: the trial that is played.
         playing: the episode.
-        seen: what each person knows by now, by its number.
+        seen: each person's observations so far, by its number.
         end: why it ended before its goal and time, as records have it; None if it did not.
 
     Args:
-        trial: what is played.
+        trial: the trial that is played.
         knowledge: of its home.
-        program: a helper of somebody's own.
+        program: a user's own helper.
     """
 
     def __init__(self, trial: Trial, knowledge: Knowledge, program: Agent | None = None) -> None:
@@ -96,15 +96,15 @@ class Game:
         return self.end is not None or self.playing.over
 
     def view(self, number: int) -> View:
-        """What a character sees now."""
+        """Return a character's current view."""
         return self.playing.view(number)
 
     def legal(self, number: int) -> Legal:
-        """What a character may do now."""
+        """Return a character's currently legal actions."""
         return self.playing.legal(number)
 
     def read(self, number: int, text: str | None) -> str | None:
-        """A decision of a person, as records have it; None to wait.
+        """Return a decision of a person, as records have it; None to wait.
 
         Raises:
             HearthError: it can't be done now, as far as the person sees; nothing changes then.
@@ -113,7 +113,9 @@ class Game:
         return written(step)
 
     def helper_decides(self) -> str | None:
-        """What an agent that helps does in this tick; it is asked once a tick, however often this is called.
+        """Return the choice of an agent that helps, in this tick.
+
+        The agent is asked once a tick, however often this is called.
 
         Raises:
             AgentError: it can't go on.
@@ -126,7 +128,7 @@ class Game:
         return self._answer[0]
 
     def _asked(self) -> Guarded:
-        """The helper, begun, and shown every tick that the store knew."""
+        """Return the helper, begun, and shown every tick that the store knew."""
         assert self._helper is not None
         agent = Guarded(self._helper, HELPER, self.allowed)
         if not self._begun:
@@ -138,12 +140,12 @@ class Game:
         return agent
 
     def use(self, program: Agent) -> None:
-        """Let a program that has just come be the helper; what it is shown begins with the next tick."""
+        """Let a program that has just connected be the helper; its observations begin with the next tick."""
         self._helper, self._begun = program, False
         self._unasked, self._answer = [], None
 
     def advance(self, texts: Texts) -> Tick:
-        """One tick: what each character tries, which `read` and `helper_decides` gave or the store has."""
+        """Run one tick with each character's attempt, from `read` and `helper_decides` or from the store."""
         if self._answer is None and self._helper is not None and self.trial.helper != PROGRAM:
             self._unasked.append((self.view(HELPER), self.legal(HELPER)))
         self._answer = None
@@ -160,11 +162,11 @@ class Game:
         return done
 
     def stop(self, number: int, code: Code, message: str) -> None:
-        """End it: somebody left, or an agent can't go on."""
+        """End the game: a person left, or an agent can't go on."""
         self.end = {"agent": number, "code": str(code), "message": message}
 
     def record(self) -> Record:
-        """The episode as result files have it (see `challenges.result_files`)."""
+        """Return the episode as result files have it (see `challenges.result_files`)."""
         trial, playing = self.trial, self.playing
         metrics = measured(trial.challenge, self.start, playing.env.ticks, self.goals, playing.progress)
         asked = trial.helper_goal if trial.helped else None
@@ -178,7 +180,7 @@ _UNFINISHED = {"agent": 0, "code": str(Code.DISCONNECTED), "message": "not finis
 
 
 def made(trial: Trial) -> Agent:
-    """The agent that helps in a trial."""
+    """Return the agent that helps in a trial."""
     if trial.helper in HELPERS:
         return HELPERS[trial.helper].make(Person())
     return ONLINE[trial.helper].make(trial.challenge.goals_in)

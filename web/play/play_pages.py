@@ -1,4 +1,4 @@
-"""The pages of Play: what may be played, a game, joining one, and the recorded episode."""
+"""The pages of Play: the games to choose from, a game, joining one, and the recorded episode."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ SHOWN = {"symbolic": "Buttons and a floor plan", "visual": "First person, in 3D"
 """The interfaces, for people."""
 
 KINDS_SHOWN = {True: "only what is around me", False: "everything"}
-"""What a person sees, for people."""
+"""A person's view of the home, for people."""
 
 FIRST_TASKS = 20
 """Tasks of each challenge that the page offers; studies choose others."""
 
 
 def start_page(visit: Visit) -> Response:
-    """What may be played, and the person's games."""
+    """Return the games that may be played, and the person's games."""
     mine = visit.web.store.read(lambda connection: game_store.games_of(connection, visit.person))
     return visit.page(
         "play/start.html",
@@ -77,7 +77,7 @@ def new(visit: Visit) -> Response:
 
 
 def _episode(visit: Visit, task: str) -> int:
-    """The number of the next episode of a task in this store."""
+    """Return the number of the next episode of a task in this store."""
     return visit.web.store.read(lambda connection: game_store.played_before(connection, task)) % MOST_SEEDS
 
 
@@ -87,7 +87,7 @@ def begin(visit: Visit, chosen: Trial) -> str:
 
 
 def game_page(visit: Visit) -> Response:
-    """The page of a game, by its interface."""
+    """Return the page of a game, by its interface."""
     live, number = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
     game = live.game
     home = game.start.home
@@ -116,7 +116,7 @@ def join(visit: Visit) -> Response:
 
 
 def record(visit: Visit) -> Response:
-    """The episode as a file of results, for `challenge verify`, `score`, `film` and `build`."""
+    """Return the episode as a file of results, for `challenge verify`, `score`, `film` and `build`."""
     live, _ = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
     if live.stored.blind:
         raise WebError(Code.NOT_ALLOWED, "episode", "a game that is not of a study", "its helper is not to be known")
@@ -131,7 +131,7 @@ def _file(data: bytes, name: str) -> Response:
 
 
 def home_file(visit: Visit) -> Response:
-    """A home in 3D as all games of a challenge have it, as glTF."""
+    """Return a home in 3D as all games of a challenge have it, as glTF."""
     name, home = visit.part("challenge"), visit.part("home")
     if name not in NAMES:
         raise WebError(Code.UNKNOWN_ID, "challenge", " or ".join(NAMES), name[:40])
@@ -142,21 +142,21 @@ def home_file(visit: Visit) -> Response:
 
 
 def model_file(visit: Visit) -> Response:
-    """A model of a game that its home's file lacks, as glTF."""
+    """Return a model of a game that its home's file lacks, as glTF."""
     live, number = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
     with live.lock:
         return _model(live.drawn(visit.web.known, number).model(visit.part("key")))
 
 
 def _model(data: bytes) -> Response:
-    # The address names what the file contains, so that a browser need not ask for it again.
+    # The address depends on the file's contents, so that a browser need not ask for it again.
     return Response(
         data, media_type="model/gltf-binary", headers={"Cache-Control": "private, max-age=604800, immutable"}
     )
 
 
 def desk_page(visit: Visit) -> Response:
-    """The games of everybody, for researchers."""
+    """Return the games of everybody, for researchers."""
     every = visit.web.store.read(game_store.all_games)
     kinds: dict[tuple[str, str, str, str], list[Stored]] = {}
     for each in every:
@@ -171,7 +171,7 @@ def _kind(game: Stored) -> tuple[str, str, str, str]:
 
 
 def desk_results(visit: Visit) -> Response:
-    """The games of a kind that are over, as a file of results."""
+    """Return the games of a kind that are over, as a file of results."""
     asked = tuple(visit.field(name, 60) for name in ("challenge", "split", "helper", "goal"))
     every = [each for each in visit.web.store.read(game_store.all_games) if each.result is not None]
     found = results(_done(visit, [each for each in every if _kind(each) == asked]))

@@ -8,11 +8,10 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from starlette.concurrency import run_in_threadpool as in_thread
-
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.web import sessions
+from hearth.web import deadlines, sessions
+from hearth.web.handler_threads import in_thread
 from hearth.web.link import Link
 from hearth.web.messages import int_field, text_field
 from hearth.web.play.game_messages import Telling
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from hearth.web.play.drawn_games import DrawnGame
 
 LOOKS_EVERY = {PERSON: 0.3}
-"""Seconds between looks at the store for what others decided, by helper; another server may have taken it."""
+"""Seconds between reads of others' decisions from the store, by helper; another server may have received them."""
 
 USUALLY = 2.0
 
@@ -51,7 +50,7 @@ class Page:
         self._sending = asyncio.Lock()
 
     async def take(self, message: dict[str, Any]) -> None:
-        """Do what a message asks for.
+        """Answer a message.
 
         Raises:
             WebError: it is refused; nothing changed then.
@@ -74,7 +73,7 @@ class Page:
             raise WebError(Code.BAD_ARGUMENT, "type", "hello, act, finish, picture or pick", kind[:40])
 
     async def _show(self, message: dict[str, Any]) -> None:
-        """A picture, or what a pixel of it shows."""
+        """Send a picture, or the thing at one of its pixels."""
         if message["type"] == "picture":
             await self.link.send_bytes(await in_thread(self._picture))
             return
@@ -85,12 +84,13 @@ class Page:
         with self.live.lock:
             self._signed()
             self.telling.game = self.live.sync()
-            port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
+            port, token = self.live.listen() if self.live.game.trial.helper == PROGRAM else (0, "")
             self._told = self._state()
             begun = {**self.telling.begin(), **self._unnamed()}
             return {
                 **begun,
                 "port": port,
+                "token": token,
                 "code": self._code(),
                 "left": self.live.seconds_left(),
                 **self._waiting(),
@@ -98,12 +98,12 @@ class Page:
             }
 
     def _unnamed(self) -> dict[str, str]:
-        """The helper of a study's trial, without its name."""
+        """Return the helper of a study's trial, without its name."""
         helped = "somebody" if self.live.stored.trial.helped else "none"
         return {"helper": helped} if self.live.stored.blind else {}
 
     def _scene(self) -> dict[str, Any]:
-        """What is different in 3D, for pages that draw it."""
+        """Return the differences in 3D, for pages that draw them."""
         if self.live.game.trial.interface != "visual":
             return {}
         return {"drawn": self._drawn().as_json()}
@@ -121,7 +121,7 @@ class Page:
             return self._drawn().pick(x, y)
 
     def _code(self) -> str:
-        """What the first of two people gives the second."""
+        """Return the code that the first of two people gives the second."""
         return self.live.stored.code if self.live.game.trial.helper == PERSON and self.number == 0 else ""
 
     def _act(self, tick: int, text: str | None) -> dict[str, Any] | None:
@@ -149,7 +149,8 @@ class Page:
             self._sign = time.monotonic()
 
     def _news(self) -> dict[str, Any] | None:
-        """What others did, if anything."""
+        """Return others' actions since the last message, if there are any."""
+        self.live.seen = time.monotonic()
         with self.live.lock:
             if self._told:
                 self._signed()
@@ -158,14 +159,14 @@ class Page:
             return self._new() if self._told else None
 
     def _new(self) -> dict[str, Any] | None:
-        """What the page does not know yet; None if it knows everything. Hold the lock."""
+        """Return the news for the page; None if there are none. The caller holds the lock."""
         if self._state() == self._told:
             return None
         self._told = self._state()
         return {**self.telling.tick(), **self._waiting(), **self._scene()}
 
     async def tell(self, done: Callable[..., dict[str, Any] | None], *given: Any) -> None:
-        """Do something, and send what is new then."""
+        """Call a function, and send the resulting news."""
         async with self._sending:
             if (news := await in_thread(done, *given)) is not None:
                 await self.link.send(news)
@@ -173,11 +174,14 @@ class Page:
                     await self.link.send_bytes(await in_thread(self._picture))
 
     async def watch(self) -> None:
-        """Tell what others decided, until cancelled."""
+        """Send others' decisions, until cancelled."""
         while True:
             await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
+            deadlines.begin()
             try:
                 await self.tell(self._news)
+            except HearthError:  # the store is busy: the next look finds it
+                continue
             except WebError as fault:  # the game was deleted, as its other person asked
                 await self.link.refuse(fault)
                 with contextlib.suppress(RuntimeError):
@@ -192,6 +196,7 @@ def _act_of(message: dict[str, Any]) -> str | None:
 async def live(link: Link) -> None:
     """Serve a page until it goes."""
     web = link.web
+    deadlines.begin(deadlines.OPENS)
     try:
         found = games(web.store, web.known).find
         game, number = await in_thread(found, str(link.socket.path_params["game"]), link.session.id)
@@ -199,10 +204,15 @@ async def live(link: Link) -> None:
         await link.refuse(fault)
         await link.socket.close(4404)
         return
+    except HearthError as error:
+        await link.refuse(refusal(error))
+        await link.socket.close(1013)
+        return
     page = Page(link, game, number)
     watching = asyncio.create_task(page.watch())
     try:
         while (message := await link.receive()) is not None:
+            deadlines.begin(deadlines.OPENS if message["type"] == "hello" else deadlines.ACTS)
             try:
                 await page.take(message)
             except WebError as fault:

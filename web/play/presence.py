@@ -1,4 +1,4 @@
-"""Whether the people of a game are there: each one's page leaves a sign in the store while it is open."""
+"""The presence of the people of a game: each person's page leaves a sign in the store while it is open."""
 
 from __future__ import annotations
 

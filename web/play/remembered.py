@@ -1,4 +1,4 @@
-"""What a person has seen of a game by now: trails of characters, and counts of the goal when it last saw its place."""
+"""A person's observations of a game so far: trails of characters, and counts of the goal as last observed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Counted:
 
 
 class Remembered:
-    """What one person has seen.
+    """The observations of one person.
 
     Attributes:
         trails: for each character, the ticks at which it was seen and where it stood.
@@ -54,7 +54,7 @@ class Remembered:
 
 
 def _sees_place(each: SeenLiteral, view: View) -> bool:
-    """Return whether what a literal counts things at is in sight, so that what is not counted does not hold."""
+    """Return whether the place of a literal's things is in sight, so that things not counted do not hold."""
     terms = each.literal.terms
     place = terms[-1] if terms else None
     about_somebody = any(isinstance(term, str) and term.partition(":")[0] == AGENT for term in terms)

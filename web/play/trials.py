@@ -40,13 +40,13 @@ class Trial:
     """A task that a person does.
 
     Attributes:
-        task: what is to be done.
+        task: the task to do.
         helper: `none`, `person`, `program`, or an agent by name (see `helpers`).
-        goal: what the helper is asked to do, one of `challenges.episode_agents.GOALS`.
+        goal: the helper's goal, one of `challenges.episode_agents.GOALS`.
         helper_goal: the same in the words of the grammar; None if nothing.
         interface: one of `INTERFACES`.
         seed: number of the episode among those of its task.
-        partial: whether the person sees only what is around it.
+        partial: whether the person sees only the area around it.
         seconds: after which it ends, counted from when it was begun; 0 for never.
     """
 
@@ -61,7 +61,7 @@ class Trial:
 
     @property
     def challenge(self) -> Challenge:
-        """Whose task it is."""
+        """Return the challenge of the task."""
         return challenge(self.task.challenge)
 
     @property
@@ -71,16 +71,16 @@ class Trial:
 
     @property
     def people(self) -> tuple[int, ...]:
-        """The characters that people decide for."""
+        """Return the characters that people decide for."""
         return (0, 1) if self.helper == PERSON else (0,)
 
     @property
     def episode_seed(self) -> int:
-        """Of all that is random in it, as of episodes of agents (see `challenges.episodes.played`)."""
+        """Return the seed of all random choices in it, as of episodes of agents (see `challenges.episodes.played`)."""
         return derive(self.task.seed, "episode", self.seed)
 
     def as_json(self) -> dict[str, Any]:
-        """As the store has it; `read_trial` reads it."""
+        """Return the trial as the store has it; `read_trial` reads it."""
         grammar = self.challenge.grammar
         alone = Suite(self.task.challenge, self.task.split, 0, (self.task,))
         return {
@@ -96,7 +96,7 @@ class Trial:
 
 
 def helpers() -> dict[str, str]:
-    """The helpers that a person may have, with what they are. One that needs a main agent of ours is not among them."""
+    """Return the helpers that a person may have, with descriptions; none that needs a main agent of ours."""
     ours = {name: each.about for name, each in HELPERS.items() if not each.main}
     online = {name: each.about for name, each in ONLINE.items()}
     others = {NOBODY: "nobody", PERSON: "another person", PROGRAM: "a program over the agent protocol"}
@@ -104,12 +104,12 @@ def helpers() -> dict[str, str]:
 
 
 def offered(which: Challenge) -> dict[str, str]:
-    """Those of `helpers` that can help in a challenge, here: some ask networks, which need the extra `models`."""
+    """Return the helpers that can help in a challenge, here: some use networks, which need the extra `models`."""
     return {name: about for name, about in helpers().items() if _can_help(name, which)}
 
 
 def drawable() -> tuple[str, ...]:
-    """The interfaces that can be here: buttons alone where the extra `pictures` is not installed."""
+    """Return the interfaces that can be here: buttons alone where the extra `pictures` is not installed."""
     return INTERFACES[:1] if lacking("pictures") else INTERFACES
 
 
@@ -122,7 +122,7 @@ def _can_help(helper: str, which: Challenge) -> bool:
 
 
 def published(name: str, split: str, number: int) -> Task:
-    """A published task by its place in its split, from 0.
+    """Return a published task by its place in its split, from 0.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is no such challenge, split or number.
@@ -143,16 +143,16 @@ def trial(
     partial: bool | None = None,
     goal: str = "",
 ) -> Trial:
-    """A trial, checked, with what its helper is asked to do.
+    """Return a trial, checked, with its helper's goal.
 
     Args:
-        task: what is to be done.
+        task: the task to do.
         knowledge: with which its homes are read.
         helper: one of `helpers`.
         interface: one of `INTERFACES`.
         seed: number of the episode among those of its task.
-        partial: whether the person sees only what is around it; as the challenge has it where None.
-        goal: what the helper is asked to do; as its row in the registry says where empty.
+        partial: whether the person sees only the area around it; as the challenge has it where None.
+        goal: the helper's goal; as its row in the registry says where empty.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is no such helper, goal or interface, or the helper can't help there;
@@ -178,7 +178,7 @@ def _check(what: str, given: str, known: Any) -> None:
 
 
 def _asked(task: Task, kind: str, seed: int, knowledge: Knowledge) -> Goal | None:
-    """What a helper is asked to do; a random goal is another that the task's sets could have had."""
+    """Return a helper's goal; a random goal is another that the task's sets could have had."""
     if kind == "true":
         return task.goal
     if kind in INFERRED:
@@ -191,7 +191,7 @@ def _asked(task: Task, kind: str, seed: int, knowledge: Knowledge) -> Goal | Non
 
 
 def read_trial(given: Mapping[str, Any]) -> Trial:
-    """A trial as the store has it.
+    """Return a trial as the store has it.
 
     Raises:
         HearthError: BAD_JSON, DAMAGED_FILE, BAD_ARGUMENT: it is not as it was written.

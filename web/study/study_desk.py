@@ -22,11 +22,11 @@ from hearth.web.visit import Visit
 
 SILENT, DELETED = "silent", "deleted"
 OVER = (DONE, LEFT, SILENT, DELETED)
-"""What is not under way: also who gives no sign for longer than the study allows, and who was deleted."""
+"""The states of people who have ended: also those silent for longer than the study allows, and deleted people."""
 
 
 def overview(visit: Visit) -> Response:
-    """The people of the study, and how far they are."""
+    """Return the people of the study, and how far they are."""
     if study_here(visit.web) is None:
         return visit.page("study/desk_none.html")
     conduct = conduct_here(visit.web)
@@ -79,13 +79,16 @@ def _collected(visit: Visit) -> Collected:
 
 
 def tables(visit: Visit) -> Response:
-    """The study's tables as an archive."""
+    """Return the study's tables as an archive."""
     found = _collected(visit)
     return _file(archive(found), "application/zip", f"{found.study.name}.zip")
 
 
 def report(visit: Visit) -> Response:
-    """The study's report as a page to keep; it has a style of its own, which pages of this server may not have."""
+    """Return the study's report as a page to keep.
+
+    It has a style of its own, which pages of this server may not have.
+    """
     found = _collected(visit)
     names = visit.web.store.read(lambda connection: set(connection.execute(sql.select(STUDIES.c.name)).scalars()))
     other = found.study.alone

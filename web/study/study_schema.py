@@ -1,4 +1,4 @@
-"""The store's tables of studies: their files, who has which place, what happened, and the games of their trials."""
+"""The store's tables of studies: their files, their places, their events, and the games of their trials."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PLACES_TAKEN = sql.Table(
         "session", sql.Text, sql.ForeignKey("sessions.id", ondelete="SET NULL"), comment="who; null if forgotten"
     ),
 )
-"""Who took which place."""
+"""The person who took each place."""
 
 HAPPENED = sql.Table(
     "study_events",
@@ -38,7 +38,7 @@ HAPPENED = sql.Table(
     sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC"),
     sql.Column("data", sql.Text, nullable=False, comment="JSON"),
 )
-"""What a person did; a row never changes."""
+"""The actions of a person; a row never changes."""
 
 TRIAL_GAMES = sql.Table(
     "study_games",

@@ -27,7 +27,7 @@ from hearth.web.store import Store, default_url, embedded, usable
 from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, STUDIES
 
 FOLDER = "studies"
-"""In the server's folder, the folders of studies: their films, and the episodes of the human-like agent."""
+"""Folder of studies in the server's folder: their films, and the episodes of the human-like agent."""
 
 UNREADABLE = "the store is not as `serve` keeps it"
 
@@ -39,13 +39,13 @@ class StoreLedger:
         self.store, self.study = store, study
 
     def streams(self) -> list[str]:
-        """The people, in the order in which they joined."""
+        """Return the people, in the order in which they joined."""
         query = sql.select(PLACES_TAKEN.c.session).where(PLACES_TAKEN.c.study == self.study)
         query = query.where(PLACES_TAKEN.c.session.is_not(None)).order_by(PLACES_TAKEN.c.number)
         return [str(each) for each in self.store.read(lambda connection: connection.execute(query).scalars().all())]
 
     def read(self, stream: str) -> list[Event]:
-        """The events of a stream."""
+        """Return the events of a stream."""
         if stream == PLACES:
             return self._places()
         query = sql.select(HAPPENED).where(HAPPENED.c.study == self.study, HAPPENED.c.session == stream)
@@ -82,13 +82,13 @@ class StoreLedger:
             forget_session(self.store, stream)
 
     def secret(self, name: str) -> str:
-        """Derived from the study's salt."""
+        """Return derived from the study's salt."""
         query = sql.select(STUDIES.c.salt).where(STUDIES.c.name == self.study)
         return salted(str(self.store.read(lambda connection: connection.execute(query).scalar_one())), name)
 
 
 def _event(stream: str, number: Any, kind: Any, at: Any, data: Any) -> Event:
-    """An event of a row, whose cells SQLite lets be of any kind.
+    """Return an event of a row, whose cells SQLite lets be of any kind.
 
     Raises:
         HearthError: BAD_JSON: it is not one.
@@ -101,7 +101,7 @@ def _event(stream: str, number: Any, kind: Any, at: Any, data: Any) -> Event:
 
 
 def conducted(store: Store, study: Study, known: Callable[[], Knowledge]) -> Conduct:
-    """A study in the store, begun if it is new.
+    """Return a study in the store, begun if it is new.
 
     Raises:
         HearthError: CONTRADICTION: it has begun with another file.
@@ -121,7 +121,7 @@ def conducted(store: Store, study: Study, known: Callable[[], Knowledge]) -> Con
 
 
 def names_in(source: Path, url: str = "") -> list[str]:
-    """The names of the studies of a store.
+    """Return the names of the studies of a store.
 
     Raises:
         HearthError: MISSING_FILE: there is none.
@@ -136,7 +136,7 @@ def names_in(source: Path, url: str = "") -> list[str]:
 
 
 def opened_store(source: Path, url: str, name: str, known: Callable[[], Knowledge]) -> Collected:
-    """A study that people took part in.
+    """Return a study that people took part in.
 
     Args:
         source: the server's folder.
@@ -160,7 +160,7 @@ def opened_store(source: Path, url: str, name: str, known: Callable[[], Knowledg
 
 
 def collected_in(store: Store, name: str, out: Path, known: Callable[[], Knowledge]) -> Collected:
-    """A study of a store, with the folder of its films.
+    """Return a study of a store, with the folder of its films.
 
     Raises:
         HearthError: BAD_JSON: the store has another study by that name; every fault of the study.

@@ -17,11 +17,11 @@ from hearth.web.study.study_schema import TRIAL_GAMES
 from hearth.web.visit import Web
 
 BACK = "/study/"
-"""Where the page of a game leads when it is over."""
+"""The address that a game's page leads to when the game is over."""
 
 
 def begun(web: Web, conduct: Conduct, standing: Standing) -> str:
-    """The game of the trial or practice that a person is at; it is begun if it was not."""
+    """Return the game of the trial or practice that a person is at; it is begun if it was not."""
     chosen = _chosen(web, conduct, standing)
     key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
 
@@ -42,7 +42,7 @@ def _query(key: dict[str, Any]) -> sql.Select[Any]:
 
 
 def _chosen(web: Web, conduct: Conduct, standing: Standing) -> Trial:
-    """The trial as the room Play has it; a practice is alone."""
+    """Return the trial as the room Play has it; a practice is alone."""
     study = conduct.study
     seconds = study.limits.minutes * 60
     if standing.stage == PRACTICE:
@@ -58,7 +58,7 @@ def _chosen(web: Web, conduct: Conduct, standing: Standing) -> Trial:
 def gone_on(web: Web, conduct: Conduct, standing: Standing) -> Standing:
     """Return where a person is once the game of the trial, if it is over, is recorded in the study.
 
-    What it took lasts from its beginning to its end, however long the person stays on the page afterwards.
+    The duration lasts from the game's beginning to its end, however long the person stays on the page afterwards.
     """
     key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
     game = web.store.read(lambda connection: connection.execute(_query(key)).scalar())

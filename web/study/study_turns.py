@@ -1,4 +1,4 @@
-"""Whose turn it is: the stages of a study at which a post is asked for, and what is said of one that is not."""
+"""The stages of a study at which a post is expected, and the notes about unexpected posts."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from hearth.studies.study import JUDGE, PLAY, Study
 from hearth.web.web_errors import WebError
 
 UNASKED = "unasked"
-"""The field of the address of a person's page that makes it say that what was posted is not asked for."""
+"""The field of an address that makes a person's page say that the last post is not asked for."""
 
 HERE = f"/study/?{UNASKED}=1"
-"""Where browsers are sent then."""
+"""The address that browsers are sent to then."""
 
 BOTH = {"agree": (CONSENT,), "understood": (TUTORIAL,), "leave": tuple(each for each in STAGES if each != DONE)}
 
@@ -32,7 +32,7 @@ TURNS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     PLAY: {**BOTH, "begin": (PRACTICE, TRIAL), "answer": (QUESTIONS, EXIT)},
     JUDGE: {**BOTH, "begin": (), "answer": (TRIAL, QUESTIONS, EXIT)},
 }
-"""By what a study asks people to do: the stages at which each post is asked for."""
+"""The stages at which each post is expected, by kind of study."""
 
 FIRST = {
     CONSENT: "First you are asked whether you take part.",
@@ -43,7 +43,7 @@ FIRST = {
     DONE: "You have finished the study.",
     LEFT: "You have stopped taking part.",
 }
-"""What the page says, by stage; of trials it depends on what is done in them."""
+"""The page's note, by stage; for trials it depends on their task."""
 
 TRIALS = {PLAY: "First do this task: begin it, or go on with it.", JUDGE: "First judge what is shown here."}
 
@@ -53,7 +53,7 @@ def in_turn(study: Study, standing: Standing | None, post: str) -> Standing:
 
     Args:
         study: the study.
-        standing: where the person is; None of somebody who has not agreed to take part.
+        standing: the person's stage; None of a person who has not agreed to take part.
         post: the last part of its address, such as `answer`.
 
     Raises:
@@ -87,7 +87,7 @@ def check_answers(standing: Standing, asked: Collection[str], given: Collection[
 
 
 def unasked_line(study: Study, standing: Standing | None) -> str:
-    """What the page of a person's stage says of something that was posted and is not asked for there."""
+    """Return the note of a person's stage about a post that is not expected there."""
     stage = standing.stage if standing else CONSENT
     comes = TRIALS[study.room] if stage == TRIAL else FIRST[stage]
     return f"What you sent last is not asked for now, and changed nothing. {comes}"
