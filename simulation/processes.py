@@ -47,6 +47,12 @@ class _Kind(NamedTuple):
         return self._replace(lacks=tuple(each for each in self.lacks if each != number))
 
 
+_Beside = Callable[[World, int], int]
+
+_Part = tuple[_Kind, _Kind | None, _Beside]
+"""A thing, its device, and the relation between them."""
+
+
 class Running(NamedTuple):
     """A process, ready to be advanced.
 
@@ -61,10 +67,10 @@ class Running(NamedTuple):
     process: Process
     thing: _Kind
     device: _Kind | None
-    beside: Callable[[World, int], int]
+    beside: _Beside
     first: int
     bits: int
-    kept: tuple[tuple[_Kind, _Kind | None, Callable[[World, int], int]], ...] = ()
+    kept: tuple[_Part, ...] = ()
 
     def now(self, world: World) -> int:
         """The things that are in it."""
@@ -74,7 +80,7 @@ class Running(NamedTuple):
         return found
 
 
-def _taking_part(world: World, thing: _Kind, device: _Kind | None, beside: Callable[[World, int], int]) -> int:
+def _taking_part(world: World, thing: _Kind, device: _Kind | None, beside: _Beside) -> int:
     devices = -1 if device is None else device.mask(world.home, world.states)
     things = thing.mask(world.home, world.states) if devices else 0
     return things & beside(world, devices) if things and device is not None else things
@@ -113,7 +119,7 @@ def _kind(literals: Iterable[Literal[Term]], variable: str) -> _Kind:
     )
 
 
-def _keeping(ending: Running, every: Iterable[Running]) -> Iterable[tuple[_Kind, _Kind | None, Callable]]:
+def _keeping(ending: Running, every: Iterable[Running]) -> Iterable[_Part]:
     """What makes a state that a process ends, whether or not the state is there already."""
     ends = [e.literal for e in ending.process.effects if e.literal.name == "state" and e.literal.negated]
     for literal in ends:

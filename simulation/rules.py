@@ -64,14 +64,6 @@ checks no doors either.
 WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
 """For programs that watch what they themselves keep off (see `suited`)."""
 
-_BEFORE = ("leaves_seat", "near_hands", "made_bed")
-"""The switches that came later, the last first: a dataset from before one of them has none of those before it here."""
-
-
-def _without(rules: Rules, *switches: str) -> Rules:
-    return rules._replace(**dict.fromkeys(switches, False))
-
-
 CONSEQUENCES = DEFAULT._replace(consequences=True)
 """Action set 3."""
 
@@ -82,12 +74,12 @@ RULES: dict[str, Rules] = {
     "leaves_seat_watching_off": WATCHING_OFF,
     "replay": REPLAY,
     "evolving_graph": EVOLVING_GRAPH,
-    "near_hands": _without(DEFAULT, *_BEFORE[:1]),
-    "near_hands_watching_off": _without(WATCHING_OFF, *_BEFORE[:1]),
-    "made_bed": _without(DEFAULT, *_BEFORE[:2]),
-    "made_bed_watching_off": _without(WATCHING_OFF, *_BEFORE[:2]),
-    "default": _without(DEFAULT, *_BEFORE),
-    "watching_off": _without(WATCHING_OFF, *_BEFORE),
+    "near_hands": DEFAULT._replace(leaves_seat=False),
+    "near_hands_watching_off": WATCHING_OFF._replace(leaves_seat=False),
+    "made_bed": DEFAULT._replace(leaves_seat=False, near_hands=False),
+    "made_bed_watching_off": WATCHING_OFF._replace(leaves_seat=False, near_hands=False),
+    "default": DEFAULT._replace(leaves_seat=False, near_hands=False, made_bed=False),
+    "watching_off": WATCHING_OFF._replace(leaves_seat=False, near_hands=False, made_bed=False),
 }
 """The options by the names that published executions give them. The last six are of datasets from before `leaves_seat`,
 four of them from before `near_hands`, two from before `made_bed`; what a name stands for never changes."""

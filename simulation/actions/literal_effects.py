@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 
-from hearth.kb.formula import GONE, Effect
+from hearth.kb.formula import GONE, Effect, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
@@ -17,7 +17,7 @@ from hearth.simulation.world.overlay import linked, unlinked
 from hearth.simulation.world.rows import Numbered
 from hearth.simulation.world.world import World
 
-Change = tuple[Literal, tuple[int, ...]]
+Change = tuple[Literal[Term], tuple[int, ...]]
 """A literal and the indices of its terms; names of states have none."""
 
 

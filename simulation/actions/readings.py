@@ -14,11 +14,10 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID, RELATIONS
 from hearth.simulation.holds import RELATED
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import moved as kinds
 from hearth.simulation.world import rows
 from hearth.simulation.world.affordance import of_kind
 from hearth.simulation.world.agent import Agent
-from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -124,7 +123,7 @@ def kind_of(home: Home, formula: Formula) -> int:
     """The nodes of a kind; found once for a home and a formula, which is kept with them, so that its identity is."""
     known = home.kinds.get(id(formula))
     if known is not None:
-        return known[1]
+        return int(known[1])
     found = of_kind(formula, home.properties, home.by_class, home.everything)
     home.kinds[id(formula)] = (formula, found)
     return found
@@ -176,12 +175,16 @@ def _held(reading: Reading, part: Literal[Term], variable: str, bound: Bound) ->
     return reading.agent.held if part.terms[1].name == variable else -1
 
 
-_ROWS = {
-    "ON": (rows.on, rows.bearing, "on", kinds.ON),
-    "INSIDE": (rows.inside, rows.contents, "inside", kinds.INSIDE),
-    "CLOSE": (rows.close, rows.close, "close", kinds.CLOSE),
-    "FACING": (rows.facing, rows.faced, "facing", kinds.FACING),
+_Row = Callable[[World, int], int]
+
+_ROWS: dict[str, tuple[_Row, _Row, str]] = {
+    "ON": (rows.on, rows.bearing, "on"),
+    "INSIDE": (rows.inside, rows.contents, "inside"),
+    "CLOSE": (rows.close, rows.close, "close"),
+    "FACING": (rows.facing, rows.faced, "facing"),
 }
+"""How the rows of a thing are read, by relation: what it stands in the relation to, and what stands in it to the
+thing; and the field of a character's own."""
 
 
 def _related(reading: Reading, part: Literal[Term], variable: str, bound: Bound) -> int:
@@ -192,10 +195,10 @@ def _related(reading: Reading, part: Literal[Term], variable: str, bound: Bound)
     if variable not in (first.name, second.name) or known.name not in bound or known.function or part.name not in _ROWS:
         return -1
     i = bound[known.name]
-    if not world.home.characters >> i & 1:
-        found = _ROWS[part.name][0 if outwards else 1](world, i)
-        return found | mask_of(agent.index for agent in world.agents)
-    return -1 if not outwards else getattr(rows.character(world, i), _ROWS[part.name][2])
+    to, of, field = _ROWS[part.name]
+    if world.home.characters >> i & 1:
+        return int(getattr(rows.character(world, i), field)) if outwards else -1
+    return (to if outwards else of)(world, i) | world.home.characters
 
 
 _NEAR = {"holds": _held, **dict.fromkeys(RELATIONS, _related)}
