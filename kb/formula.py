@@ -12,7 +12,7 @@ and an effect is
 
     NAME(term, ...)            becomes true
     not NAME(term, ...)        becomes false
-    gone(term)                 is used up: in no place and no hand, beside nothing, and GONE
+    gone(term)                 is used up: in no place and no hand, close to nothing, and GONE
     F -> E                     only if F held before
     for x, y: F -> E           for all things x, y for which F held before; F may be left out
 

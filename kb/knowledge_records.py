@@ -77,7 +77,7 @@ class Consequence:
 
     Attributes:
         preconditions: the checks, of an act that only set 3 executes.
-        effects: what changes, after what the action changes by itself; conditions are read in the world before.
+        effects: its changes, after those of the action itself; conditions are read in the world before.
         like: the action whose rule it shares, or ''.
         ticks: how long it takes.
         notice: what others see or hear of it, in words.

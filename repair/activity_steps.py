@@ -80,7 +80,7 @@ def milestones(execution: Execution) -> Postconditions:
 
 
 def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
-    """Return the devices switched on, the objects ON or INSIDE others, and what characters are ON."""
+    """Return the devices switched on, the objects ON or INSIDE others, and the seats of characters."""
     found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
     return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0]) or _seated(f)]
 

@@ -15,7 +15,7 @@ OPPOSITE = {name: STATES[number ^ 1] for number, name in enumerate(STATES)}
 
 FURTHER_STATES: tuple[str, ...] = (
     "COLD", "HOT", "RAW", "COOKED", "BURNT", "EMPTY", "FULL", "DRY", "WET", "UNFOLDED", "FOLDED", "UNWRAPPED",
-    "WRAPPED", "UNCOVERED", "COVERED", "MENDED", "BROKEN", "COMBED", "SHAVED", "CUT", "FLUSHED", "WRITTEN", "SMEARED",
+    "WRAPPED", "UNCOVERED", "COVERED", "REPAIRED", "BROKEN", "COMBED", "SHAVED", "CUT", "FLUSHED", "WRITTEN", "SMEARED",
     "IN_CALL", "GONE",
 )  # fmt: skip
 """The states that acts set besides in action set 3; what excludes what stands in kb/data/states.yaml. GONE is what was

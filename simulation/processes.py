@@ -1,4 +1,4 @@
-"""What comes by itself in action set 3: heating, cooking, washing, cooling, one row of `processes.yaml` each.
+"""Processes of action set 3: heating, cooking, washing, cooling, one row of `processes.yaml` each.
 
 Every process counts, for each thing, the ticks for which its literals have held without a break. The counts are kept
 bit by bit: a row of a world has the lowest bit of the counts of all things, the next the second, and so on, so that a
@@ -58,7 +58,7 @@ class Running(NamedTuple):
 
     Attributes:
         process: the row.
-        thing, device: who is in it; the device is None where there is none.
+        thing, device: its kinds of things and devices; the device is None where there is none.
         beside: the things in, or on, some devices.
         first, bits: its rows among the counts.
         kept: what keeps up the state that it ends: thing, device and relation of other processes.
@@ -120,7 +120,7 @@ def _kind(literals: Iterable[Literal[Term]], variable: str) -> _Kind:
 
 
 def _keeping(ending: Running, every: Iterable[Running]) -> Iterable[_Part]:
-    """What makes a state that a process ends, whether or not the state is there already."""
+    """Yield the parts of processes that make a state which this one ends, whether or not the state is there."""
     ends = [e.literal for e in ending.process.effects if e.literal.name == "state" and e.literal.negated]
     for literal in ends:
         for other in every:
@@ -142,7 +142,7 @@ def widened(world: World) -> World:
 
 
 def advanced(before: World, world: World) -> World:
-    """The world one tick later: after what the characters did in it, what comes by itself.
+    """Return the world one tick later: after the acts of the characters, with the changes of processes.
 
     Args:
         before: at the start of the tick; where nothing ran in it, and nothing changed since, nothing does.
@@ -176,7 +176,7 @@ def _same(before: World, world: World) -> bool:
 
 
 def _may_start(world: World) -> bool:
-    """Whether a thing or device of a process is in a state without which the process does not go on."""
+    """Return whether a thing or device of a process is in a state without which the process does not go on."""
     home, states = world.home, world.states
     known = home.kinds.get(_TRIGGERS)
     if known is None:
@@ -222,7 +222,7 @@ def _ended(world: World, ready: Iterable[tuple[Running, int]]) -> World:
 
 
 def seen(world: World) -> tuple[tuple[int, str], ...]:
-    """The ids of the things in which something goes on, and what is seen of it."""
+    """Return the ids of the things in a process, each with its visible sign in words."""
     world = widened(world)
     return tuple(
         (world.home.ids[i], each.process.seen)

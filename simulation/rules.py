@@ -30,10 +30,10 @@ class Rules(NamedTuple):
             opened, and one's body parts; nothing after a walk into a room.
         near_hands: one's body parts make near only what is in the room that one is in. By the rules of the release and
             of `evolving_graph` hands that are CLOSE to a sink make it near from any room.
-        leaves_seat: who stands up, or changes to another seat, is no longer ON the one before, so that it is free; and
-            nobody takes a seat that someone rests on. In the release one stays ON every seat ever sat on.
-        consequences: action set 3 (`version.ACTION_SETS`): acts change temperature, cleanliness, wholeness and more,
-            every action is executed, and what is heated, washed or dried becomes so in time (`processes`).
+        leaves_seat: a character that stands up, or changes to another seat, is no longer ON the one before, which is
+            free then; and nobody takes a seat that is in use. In the release one stays ON every seat ever used.
+        consequences: action set 3 (`version.NEXT_ACTION_SET`): acts change temperature, cleanliness, wholeness and more,
+            every action is executed, and heating, washing and drying take time (`processes`).
     """
 
     origin: Origin = "sensible"

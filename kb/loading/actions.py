@@ -56,7 +56,7 @@ _LATER_KEYS = frozenset({"set", "before", "effects", "like", "ticks", "notice"})
 
 
 def _only_later(entry: Entry | None) -> bool:
-    """Whether sets 1 and 2 know an action and do not execute it."""
+    """Return whether sets 1 and 2 know an action and do not execute it."""
     return entry is not None and isinstance(entry.value, dict) and entry.value.get("set") == LATER
 
 
@@ -110,7 +110,7 @@ def _later(
     entries: Mapping[str, Entry],
     faults: Faults,
 ) -> Consequence | None:
-    """What set 3 adds: all of an action that it is the first to execute, `then` of another."""
+    """Return the additions of set 3: all of an action that it is the first to execute, `then` of another."""
     if fields.get("set") not in (None, LATER):
         faults.at(at, f"`set` of {name} is {fields['set']!r:.40}", f"leave it out, or write `set: {LATER}`")
     ticks = fields.get("ticks", 1)

@@ -42,7 +42,7 @@ def load_processes(layers: Layers, derived: Derived, groups: Groups, faults: Fau
     return found
 
 
-_REMEDY = "let one of them ask for what the other does not"
+_REMEDY = "let one of them ask for a state that excludes the other"
 
 
 def _process(name: str, number: int, entry: Entry, derived: Derived, groups: Groups, faults: Faults) -> Process | None:
@@ -102,7 +102,7 @@ Groups = Mapping[str, StateGroup]
 
 
 def ended_by(condition: Formula, effects: tuple[Effect, ...], groups: Groups) -> frozenset[str]:
-    """The states by which what becomes true denies a part of what was waited for, so that it is done once."""
+    """Return the states by which the effects deny a part of the condition, so that the process ends."""
     asked = {each.terms[1].name: each.negated for each in literals(condition) if str(each.atom).startswith("state(x,")}
     found = set()
     for literal in (effect.literal for effect in effects):
@@ -124,13 +124,13 @@ def excluded(state: str, groups: Groups) -> set[str]:
 
 
 def _leads(one: Process, other: Process) -> bool:
-    """Whether the state that one makes is what the other waits for."""
+    """Return whether one makes a state for which the other waits."""
     asked = {str(each) for each in literals(other.condition) if each.name == "state" and not each.negated}
     return any(str(effect.literal) in asked for effect in one.effects)
 
 
 def _contrary(one: Process, other: Process, groups: Groups) -> bool:
-    """Whether they make states of a thing that exclude each other, and nothing else ends them."""
+    """Return whether they make states of a thing that exclude each other, and nothing else ends them."""
     made = [_made(process) for process in (one, other)]
     clash = {(a, b) for a in made[0] for b in made[1] if b in excluded(a, groups)}
     states = {name for pair in clash for name in pair}
@@ -142,7 +142,7 @@ def _made(process: Process) -> set[str]:
 
 
 def _exclusive(one: Process, other: Process) -> bool:
-    """Whether no thing can be in both at once: they ask for opposites, or for other devices, or other classes."""
+    """Return whether no thing can be in both at once: by opposite states, other devices, or other classes."""
     first = {(str(each.atom), each.negated) for each in literals(one.condition)}
     if any((str(each.atom), not each.negated) in first for each in literals(other.condition)):
         return True

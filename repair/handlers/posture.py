@@ -34,7 +34,7 @@ def occupied(context: RepairContext, everything: bool = False) -> Edit | None:
     """Take things off the seat, one by one, until there is room: pets first, what the program names last."""
     home = context.world.home
     if context.step.action not in context.knowledge.group("rests"):
-        return None  # somebody else rests on what is to be taken
+        return None  # somebody else rests on the thing to be taken
     seat = context.index()
     there = [home.index[node] for node in context.failure.objects[1:]]
     too_many = len(there) - home.limit(seat, context.step.action == "Lie") + 1

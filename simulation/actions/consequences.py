@@ -1,4 +1,4 @@
-"""The actions of action set 3: those of set 2 with what follows from them, and the acts that only set 3 executes.
+"""The actions of action set 3: those of set 2 with their consequences, and the acts that only set 3 executes.
 
 An act that only set 3 executes has no function of its own: its checks and effects are read from its row of
 `actions.yaml`. Where set 2 has a function for a check, that is used, with its words.
@@ -47,7 +47,7 @@ def actions(knowledge: Knowledge, placed: bool) -> Mapping[str, Action]:
 
 
 def _followed(action: Action, later: Consequence) -> Action:
-    """An action of set 2 and what set 3 adds to it."""
+    """An action of set 2 with the additions of set 3."""
     if not later.effects:
         return action
 
@@ -101,7 +101,7 @@ class _Check:
 
     @property
     def position(self) -> int:
-        """Which argument it is about: 0 or 1; -1 for the character alone."""
+        """The argument that it is about: 0 or 1; -1 for the character alone."""
         return max(("os".index(name) for name in free(self.condition.formula) & {*"os"}), default=-1)
 
     def refusal(self, world: World, agent: Agent, objects: tuple[int, int], rules: Rules) -> Failure:

@@ -1,4 +1,4 @@
-"""The changes that literals say, made in a world: what action set 3 adds to acts, and what processes end in."""
+"""The changes that literals say, made in a world: effects of acts of action set 3, and of processes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.actions.readings import Bound, Reading
 from hearth.simulation.world import moved as kinds
-from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved import Moved, unlink_all
 from hearth.simulation.world.overlay import linked, unlinked
 from hearth.simulation.world.rows import Numbered
@@ -93,7 +92,7 @@ _ALL = (kinds.ON, kinds.BEARS, kinds.INSIDE, kinds.CONTENTS, kinds.CLOSE, kinds.
 
 
 def gone(world: World, i: int) -> World:
-    """A world in which a thing is used up: nowhere, in no hand, beside nothing, remembered by nobody, and GONE."""
+    """A world in which a thing is used up: nowhere, in no hand, close to nothing, remembered by nobody, and GONE."""
     bit = 1 << i
     moved = world.moved
     extra = dict(moved.extra)
@@ -111,15 +110,3 @@ def _forgotten(world: World, bit: int) -> World:
         for agent in world.agents
     )
     return World(world.home, world.states, agents, world.moved)
-
-
-def used_up(world: World) -> tuple[int, ...]:
-    """The ids of what is gone."""
-    row = rows_gone(world)
-    return tuple(world.home.ids[i] for i in indices(row))
-
-
-def rows_gone(world: World) -> int:
-    """What is gone, as a set."""
-    number = EVERY_STATE_ID["GONE"]
-    return world.states[number] if number < len(world.states) else 0

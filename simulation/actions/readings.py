@@ -36,7 +36,7 @@ class Reading(NamedTuple):
     action: str = ""
 
     def thing(self, term: Term, bound: Bound) -> int:
-        """Index of what a term names, or -1."""
+        """Return the index of the thing that a term names, or -1."""
         index = bound[term.name]
         if not term.function:
             return index
@@ -45,7 +45,7 @@ class Reading(NamedTuple):
         return next((place for thing, place, _ in self.agent.origins if thing == index), -1)
 
     def holds(self, formula: Formula, bound: Bound) -> bool:
-        """Whether a formula holds under a binding of its variables."""
+        """Return whether a formula holds under a binding of its variables."""
         if isinstance(formula, Literal):
             return self._atom(formula, bound) != formula.negated
         if isinstance(formula, Not):
@@ -82,7 +82,7 @@ class Reading(NamedTuple):
             yield from self._extended(variables[1:], waiting, helpful, {**bound, variables[0]: i})
 
     def _worth(self, variable: str, parts: Iterable[Formula], bound: Bound) -> int:
-        """The nodes worth trying for a variable, by what is joined by `and`."""
+        """Return the nodes worth trying for a variable, by the joined literals."""
         found = self.world.home.everything
         every = list(_flat(parts))
         for part in every:
@@ -183,8 +183,7 @@ _ROWS: dict[str, tuple[_Row, _Row, str]] = {
     "CLOSE": (rows.close, rows.close, "close"),
     "FACING": (rows.facing, rows.faced, "facing"),
 }
-"""How the rows of a thing are read, by relation: what it stands in the relation to, and what stands in it to the
-thing; and the field of a character's own."""
+"""Readers of a relation: the targets of a thing, its sources, and the field of a character's own targets."""
 
 
 def _related(reading: Reading, part: Literal[Term], variable: str, bound: Bound) -> int:

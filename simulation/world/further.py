@@ -9,7 +9,7 @@ from hearth.simulation.world.state import WorldState
 
 
 def is_wide(world: WorldState) -> bool:
-    """Whether a world has the further states."""
+    """Return whether a world has the further states."""
     return len(world.states) > len(STATES)
 
 

@@ -182,7 +182,7 @@ def bearing(world: WorldState, i: int) -> int:
 
 
 def seats(home: Home) -> int:
-    """What one can sit or lie on."""
+    """Return the things to sit or lie on."""
     return home.properties["SITTABLE"] | home.properties["LIEABLE"]
 
 

@@ -36,7 +36,7 @@ class World(WorldState):
     __slots__ = ("_key", "idle")
     _key: tuple[object, ...]
     idle: bool
-    """Whether nothing comes by itself in it; known once it has been asked (see `processes`)."""
+    """True if no process goes on in it; known once it has been asked (see `processes`)."""
 
     @classmethod
     @explained
