@@ -32,7 +32,7 @@ class Rules(NamedTuple):
             of `evolving_graph` hands that are CLOSE to a sink make it near from any room.
         leaves_seat: a character that stands up, or changes to another seat, is no longer ON the one before, which is
             free then; and nobody takes a seat that is in use. In the release one stays ON every seat ever used.
-        consequences: action set 3 (`version.NEXT_ACTION_SET`): acts change temperature, cleanliness, wholeness and more,
+        consequences: action set 3 (`version.NEXT_ACTION_SET`): acts change temperature, cleanliness, wholeness,
             every action is executed, and heating, washing and drying take time (`processes`).
     """
 
