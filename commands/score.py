@@ -71,8 +71,8 @@ def lcs(
         table.append([name, *(found[place] for found in means.values()), ""])
     output.table(["id", *(name.replace("_", " ") for name in means), ""], table)
     noted = ", ".join(f"{counts[name]} {words}" for name, words in NOTES.items())
-    print(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
-    print("\n".join(signatures))
+    output.line(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
+    output.line("\n".join(signatures))
     score_output.end(rejects)
 
 
@@ -98,7 +98,7 @@ def program(
     graph: Path | None = None,
     home: str = "",
     homes: Path | None = None,
-    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
+    rules: Literal["auto", "default", "replay", "evolving_graph", "consequences"] = "auto",
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
@@ -115,7 +115,8 @@ def program(
     to FILE's folder), else --home or --graph; with `--homes all`, each of our homes. A goal is else what the reference
     achieves; conditions that hold at the start do not count (`goal_whole` counts them). Steps may be natural language.
     Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
-    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph); `auto`
+    the release of 2018 (replay), those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph), or action
+    set 3 (consequences); `auto`
     takes the last for a --graph in which no two things are CLOSE, as `run` does, and ours otherwise.
 
     \b
@@ -216,9 +217,11 @@ def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_js
         output.emit({"split": split, "thesis_note": THESIS_NOTE, "here": found, "thesis": THESIS})
         return
     output.table([name.replace("_", " ") for name in Result._fields], [*found, *THESIS])
-    print(f"\n{THESIS_NOTE}")
+    output.line(f"\n{THESIS_NOTE}")
     if not found:
-        print(f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities")
+        output.line(
+            f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities"
+        )
 
 
 @app.command("graphs")
@@ -253,4 +256,4 @@ def graphs(
         return
     rows = [["states", *found.states], ["relations", *found.relations], ["both", *found.both]]
     output.table(["", "precision", "recall", "f1"], rows)
-    print(f"\n{signature}{'' if found.exact else '; a lower bound'}")
+    output.line(f"\n{signature}{'' if found.exact else '; a lower bound'}")

@@ -104,18 +104,18 @@ def _print_program(
 ) -> None:
     output.table(["score", "mean", "95% from", "to"], [[name, *found] for name, found in summary.means.items()])
     if by:
-        print()
+        output.line()
         columns = list(summary.means)
         rows = [[name, group.count, *_means(group, columns)] for name, group in groups.items()]
         output.table([by, "rows", *columns], rows)
     if summary.errors:
-        print()
+        output.line()
         output.table(["first failure", "programs"], summary.errors.items())
-        print()
+        output.line()
         output.table(["code", "programs"], summary.codes.items())
-    print(f"\n{_sentence(summary)}{_refused(rejects)}")
+    output.line(f"\n{_sentence(summary)}{_refused(rejects)}")
     shown = tuple(summary.means)
-    print("\n".join(text for name, text in signed.items() if any(each.startswith(name) for each in shown)))
+    output.line("\n".join(text for name, text in signed.items() if any(each.startswith(name) for each in shown)))
 
 
 def _means(group: Summary, columns: Sequence[str]) -> list[float | None]:

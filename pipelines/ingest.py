@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
@@ -13,6 +14,7 @@ from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.description_lookup import Described
 from hearth.pipelines.crowd.duplicate_records import Repeated
 from hearth.pipelines.engine.build_context import knowledge
+from hearth.pipelines.engine.salt_record import salt_changed
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
@@ -268,8 +270,10 @@ def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Rej
 
 
 def prepare(settings: Settings) -> dict[str, Any]:
-    """Identify the salt by a digest, without revealing it."""
-    return {"salt": value_digest(salt(settings))[:16]}
+    """Begin anew where the last build had another salt; the plan has nothing by which a salt could be guessed."""
+    if salt_changed(Path(settings.out), settings.salt):
+        shutil.rmtree(settings.folder("ingest"), ignore_errors=True)
+    return {}
 
 
 def guesses(columns: Mapping[str, FieldColumns]) -> list[str]:

@@ -15,7 +15,7 @@ class Code(StrEnum):
     number: int
 
     def __new__(cls, name: str, number: int) -> Self:
-        """A code that equals its name; `Code["EMPTY"]` finds it again."""
+        """Return a code that equals its name; `Code["EMPTY"]` finds it again."""
         code = str.__new__(cls, name)
         code._value_, code.number = name, number
         return code
@@ -81,6 +81,7 @@ class Code(StrEnum):
     NOT_OPENABLE_STATE = "NOT_OPENABLE_STATE", 48
     NOT_WORN = "NOT_WORN", 49
     NOTHING_TO_EAT = "NOTHING_TO_EAT", 50
+    WRONG_STATE = "WRONG_STATE", 85
     # Several agents
     CONFLICT = "CONFLICT", 51
     UNKNOWN_AGENT = "UNKNOWN_AGENT", 52

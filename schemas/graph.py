@@ -44,7 +44,7 @@ class EdgeColumns(NamedTuple):
         return brief(self)
 
     def rows(self) -> Iterator[Edge]:
-        """The edges, as plain tuples, which equal `Edge` and are made faster."""
+        """Return the edges, as plain tuples, which equal `Edge` and are made faster."""
         names = map(RELATIONS.__getitem__, self.relations.tolist())
         return cast("Iterator[Edge]", zip(self.sources.tolist(), names, self.targets.tolist(), strict=True))
 
@@ -87,7 +87,7 @@ class EnvironmentGraph:
     __repr__ = brief
 
     def node(self, node_id: int) -> Node:
-        """The node of that id.
+        """Return the node of that id.
 
         Raises:
             KeyError: there is none.
@@ -133,7 +133,7 @@ def edge_set(edges: Iterable[Edge]) -> frozenset[tuple[int, str, int]]:
 
 
 def read_node(data: Mapping[str, Any]) -> Node:
-    """A node as the release writes it.
+    """Return a node as the release writes it.
 
     Raises:
         KeyError, TypeError, ValueError, AttributeError: a field that it needs is missing, or one is of a wrong kind.
@@ -161,7 +161,7 @@ def _edge(data: Mapping[str, Any]) -> Edge:
 
 
 def word(value: Any) -> str:
-    """A value that must be text.
+    """Return a value that must be text.
 
     Raises:
         TypeError: it is not.

@@ -102,7 +102,7 @@ class Scored:
 
 
 def _left(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
-    """The value of a goal of which something was left to do at the start."""
+    """Return the value of a goal of which something was left to do at the start."""
     return float(value(scored.goal)) if scored.goal and scored.goal.left else None
 
 
@@ -119,14 +119,14 @@ def _lcs(level: str, by_instance: bool = False) -> Callable[[Scored], float | No
 
 
 def given_goal(pair: Pair) -> Any:
-    """The goal in a prediction's row, unread; None if it has none."""
+    """Return the goal in a prediction's row, unread; None if it has none."""
     return next((found for name in GOALS if (found := pair.more.get(name)) is not None), None)
 
 
 def _goal_score(
     pair: Pair, ran: Executability | None, world: World, rules: Rules, reference: Reference | None
 ) -> GoalScore | None:
-    """The score of the goal that a prediction is asked to reach; one that fails reaches nothing."""
+    """Return the score of the goal that a prediction is asked to reach; one that fails reaches nothing."""
     final = ran.final if ran and ran.afforded else None
     given = given_goal(pair)
     if given is None:
@@ -214,7 +214,7 @@ class Summary:
 
 
 def signatures(options: Options, own: int = 0) -> dict[str, str]:
-    """The signature of each family of scores, where `own` predictions had a goal of their own."""
+    """Return the signature of each family of scores, where `own` predictions had a goal of their own."""
     return {
         **{f"lcs_{level}": lcs_signature(level, options.instances) for level in LEVELS},
         **{f"lcs_{level}_instances": lcs_signature(level, True) for level in ("step", "object")},
@@ -226,7 +226,10 @@ def signatures(options: Options, own: int = 0) -> dict[str, str]:
 
 
 def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[BothLcs]:
-    """The similarity of each prediction to its reference, and that by instance; 0 if one of the two is missing."""
+    """Return the similarity of each prediction to its reference, and that by instance.
+
+    0 if one of the two is missing.
+    """
     lines = [(pair.predicted or (), pair.reference) for pair in pairs]
     distinct = score_pairs(lines, instances=True)
     both = zip(distinct if instances else score_pairs(lines), distinct, strict=True)
@@ -288,7 +291,7 @@ def note_goal(scored: Scored, rejects: FirstFaults | None) -> None:
 
 
 def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
-    """The means of every score that applies to at least one prediction, and counts of the rest."""
+    """Return the means of every score that applies to at least one prediction, and counts of the rest."""
     columns = {name: [metric(each) for each in every] for name, metric in METRICS.items()}
     failures = [each.execution for each in every if each.execution and each.execution.error]
     return Summary(
@@ -332,13 +335,13 @@ class Reference(NamedTuple):
 
     @classmethod
     def of(cls, program: Program, start: World, final: World | None) -> Reference:
-        """The reference of a program, from its initial and final world."""
+        """Return the reference of a program, from its initial and final world."""
         return cls(program, final, Achieved.of(goal_of(start, final), start, final) if final else None)
 
 
 @lru_cache(maxsize=64)
 def reference_of(lines: Lines, world: World, rules: Rules) -> Reference:
-    """The reference of a program in its environment, with objects bound as in `executability`."""
+    """Return the reference of a program in its environment, with objects bound as in `executability`."""
     ran = executability(lines, world, rules=rules)
     return Reference.of(ran.program, world, ran.final)
 

@@ -74,7 +74,7 @@ class Counts:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> Counts:
-        """The inverse of `to_json`."""
+        """Return the inverse of `to_json`."""
         counters: dict[str, Any] = {name: Counter(value[name]) for name in ("rows", "codes", "tally")}
         numbers = {name: value[name] for name in ("records_in", "through", "rejected", "partial")}
         return cls(**numbers, **counters)
@@ -95,7 +95,7 @@ def rejects_path(folder: Path, number: int) -> Path:
 
 
 def read_rows(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
-    """The rows of a Parquet file, or of them these columns; a batch in memory at a time."""
+    """Yield the rows of a Parquet file, or of them these columns; a batch in memory at a time."""
     with pq.ParquetFile(path) as file:
         for batch in file.iter_batches(batch_size=READ_BATCH, columns=columns):
             yield from batch.to_pylist()

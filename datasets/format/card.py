@@ -27,7 +27,7 @@ def write_card(folder: Path, strength: str = MILD) -> None:
 
 
 def card(folder: Path, strength: str) -> Iterator[str]:
-    """The lines of the card."""
+    """Yield the lines of the card."""
     counts = {table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES}
     yield from _header(folder)
     yield from ("# Hearth", "", SUMMARY, "", f"Dataset version {VERSION}, action set {ACTION_SET}.", "")
@@ -95,7 +95,7 @@ def _parts(place: str) -> dict[str, str]:
 
 
 def _config(folder: Path, name: str, files: dict[str, str]) -> Iterator[str]:
-    """A table for `load_dataset`, with its splits by patterns of files; it fails at splits without a row."""
+    """Yield a table for `load_dataset`, with its splits by patterns of files; it fails at splits without a row."""
     found = {pattern: split for pattern, split in files.items() if any(map(_rows, folder.glob(pattern)))}
     if found:
         yield from (f"- config_name: {name}", "  data_files:")
@@ -110,7 +110,7 @@ def _tables(counts: dict[str, int]) -> Iterator[str]:
 
 
 def columns(schema: pa.Schema) -> Iterator[str]:
-    """A table of the columns and nested fields, with their types and meanings."""
+    """Yield a table of the columns and nested fields, with their types and meanings."""
     yield from ("| column | type | meaning |", "|---|---|---|")
     for path, field in (each for column in schema for each in nested(column)):
         kind = re.sub(r"<.*", "", str(field.type)).replace("string", "text")

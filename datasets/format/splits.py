@@ -93,12 +93,12 @@ def by_activity(programs: SplitPrograms, group: NDArray[np.int32]) -> NDArray[np
 
 
 def part_name(number: int) -> str | None:
-    """The name of a part by its position in `PARTS`; None for `NOTHING`."""
+    """Return the name of a part by its position in `PARTS`; None for `NOTHING`."""
     return None if number == NOTHING else PARTS[number]
 
 
 def held_out(runs: Runs, seed: int) -> str:
-    """The home that is held out; homes are numbered in the order of `Runs.homes`."""
+    """Return the home that is held out; homes are numbered in the order of `Runs.homes`."""
     return runs.homes[derive(seed, "split", "home") % len(runs.homes)] if runs.homes else ""
 
 

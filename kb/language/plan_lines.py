@@ -325,7 +325,7 @@ def _header(found: tuple[PlanLine, ...]) -> Header:
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
     above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
-    title = title if named else asked_title(_ROLE.sub("", title, count=1))
+    title = title if named else asked_title(ROLE.sub("", title, count=1))
     return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
 
 
@@ -338,7 +338,7 @@ def asked_title(line: str) -> str:
     return asked[1] if asked else line
 
 
-_ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)
+ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)
 """Who asks for a plan, or what a letter names it by."""
 
 

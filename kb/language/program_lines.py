@@ -127,12 +127,22 @@ def reading_of(lines: Sequence[str]) -> tuple[Unwrap | None, Form | None]:
 
     Nothing unwraps lines that have a form of their own.
     """
-    first = list(unwrapped(_without_thoughts(list(lines[:_LOOKED_AT])), None))
+    first = tuple(lines[:_LOOKED_AT])
+    return _short_reading(first) if sum(map(len, first)) <= _FEW else _reading(first)
+
+
+def _reading(lines: tuple[str, ...]) -> tuple[Unwrap | None, Form | None]:
+    first = list(unwrapped(_without_thoughts(list(lines)), None))
     if form := form_of(first):
         return None, form
     unwrap = unwrapping(first)
     return unwrap, form_of([unwrap(line) for line in first]) if unwrap else None
 
+
+_short_reading = lru_cache(maxsize=512)(_reading)
+
+_FEW = 8_000
+"""Characters of first lines that are remembered: a file is recognized, parted, titled and read, each by its form."""
 
 _LOOKED_AT = 60
 

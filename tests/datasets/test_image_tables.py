@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import shutil
 
 import orjson
@@ -93,7 +94,8 @@ def test_a_picture_other_than_its_file_is_a_fault(folder, column):
 
 @pytest.mark.tools
 def test_load_dataset_gives_images_from_any_folder_without_the_network(folder, tmp_path, monkeypatch):
-    library = pytest.importorskip("datasets", reason="the library `datasets` is not installed")
+    pytest.importorskip("datasets.config", reason="the library `datasets` is not installed")
+    library = importlib.import_module("datasets")
     monkeypatch.setattr("datasets.config.HF_HUB_OFFLINE", True)
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
