@@ -45,7 +45,7 @@ _STRONG = re.compile(rf"{CHAIN.pattern}|\s*(?:>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?t
 """Separators of steps in a line, and nothing else."""
 
 _LOOSE = tuple(map(re.compile, (r"\s+/{1,2}\s+", r"\s*[•·∧|]\s*", r"\s+&&\s+", r"\s+[-–—]{1,2}\s+")))
-"""What joins steps of a line only where each part is one."""
+"""Separators of steps in a line, but only where each part is one."""
 
 _WEAK = re.compile(r"\s*,\s*(?:and\s+)?(?:finally\s+)?|\s+(?:and|&{1,2}|\+)\s+(?:finally\s+)?", re.IGNORECASE)
 _SENTENCES = re.compile(r"(?<=[a-z)][.!])\s+(?=[A-Z])")
@@ -89,7 +89,7 @@ def _beginnings(known: Knowledge) -> frozenset[str]:
 
 
 def _is_misspelled_verb(word: str) -> bool:
-    """Return whether a word is no English one, and near a verb of actions."""
+    """Return whether a word that English lacks is near a verb of actions."""
     if len(word) < _SHORTEST or is_noun(word) or not word.isascii():
         return False
     return any(map(_is_ours, near_words(default(), word)))
