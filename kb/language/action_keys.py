@@ -14,10 +14,10 @@ ACTIONS = (
 """Keys of the action of a step, the likeliest first."""
 
 _WITH_OBJECTS = frozenset({"skill", "primitive", "operator", "command", "name"})
-"""Keys that name an action only where objects stand beside them."""
+"""Keys that name an action only where the mapping has objects too."""
 
 _WITH_KNOWN = frozenset({"cmd", "op", "operation", "service", "tool", "type", "method", "id", "do"})
-"""Keys that name an action only where objects stand beside them and the action is known: they may say much else."""
+"""Keys that name an action only where the mapping has objects too and the action is known: they may say much else."""
 
 OBJECTS = frozenset({
     "object", "objects", "obj", "noun", "object_name", "where", "container", "surface", "target", "targets", "thing",

@@ -96,7 +96,7 @@ _TOLD = re.compile(
 
 
 def _asks(sentence: str) -> bool:
-    """Return whether a sentence asks for something, and tells of nobody."""
+    """Return whether a sentence asks for something, and is not about somebody."""
     return is_like_step(sentence) and not _TOLD.match(sentence)
 
 

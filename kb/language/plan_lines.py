@@ -105,7 +105,7 @@ TAGS = re.compile(r"(?:\s+(?:[+@#][a-z][\w-]*|[a-z]{1,10}:\d[\w-]*|pri:[a-z]))+$
 _LABELLED = re.compile(
     r"^(?!task|title|goal|plan|step)[A-Za-z]{1,12}(?: [A-Za-z]{1,12})?:\s+(?=[01][.)]\s+\S)", re.IGNORECASE
 )
-"""Who answers, or what, before the first step of a list: `Robot: 1. walk to desk`."""
+"""The name of the speaker before the first step of a list: `Robot: 1. walk to desk`."""
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 COMMENT = re.compile(r"\s+(?://|#)\s+\S.*$")
@@ -339,7 +339,7 @@ def asked_title(line: str) -> str:
 
 
 ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)
-"""Who asks for a plan, or what a letter names it by."""
+"""The word for the person with a request, or for the subject of a letter, before a title."""
 
 
 def is_aside(text: str) -> bool:

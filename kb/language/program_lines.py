@@ -37,7 +37,7 @@ _SEVERAL = re.compile(r"[>→⟶➔➡⇒⟹➜➝;•·∧|/]|\d[.):\]]| [-–�
 """A mark that every line of several steps has."""
 
 _OWNER = re.compile(r"[A-Z][a-z]{1,20}:\s+(?=\S)")
-"""Who does a step, or what it is about, in a word before it."""
+"""The owner or the subject of a step, in a word before it."""
 
 _THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>\s*$", re.IGNORECASE)
 
@@ -116,7 +116,7 @@ def header(text: str) -> Header:
 
 
 def formed(lines: Sequence[str]) -> tuple[list[str], Form | None]:
-    """Return the lines of a text without thoughts and what stands around each, and the form that they have then."""
+    """Return the lines of a text without thoughts and wrappings, and the form that they have then."""
     unwrap, form = reading_of(lines)
     found = _without_thoughts(list(unwrapped(lines, unwrap)))
     return found, form

@@ -45,19 +45,20 @@ class Mentioned(NamedTuple):
     second: int = 1
 
 
-def with_place(words: str, said: Sequence[Mentioned]) -> str:
+def with_place(known: Knowledge, words: str, said: Sequence[Mentioned]) -> str:
     """Return `put it inside`, `put it in there` and `put it there` with the name of the place that is meant."""
     put = _PLACED.fullmatch(words)
-    place = _place(said, is_in=bool(put["in"])) if put else None
+    place = _place(known, said, is_in=bool(put["in"])) if put else None
     return f"{put[1] or put[3]} {place}" if put and place else words
 
 
-def _place(said: Sequence[Mentioned], *, is_in: bool) -> str | None:
+def _place(known: Knowledge, said: Sequence[Mentioned], *, is_in: bool) -> str | None:
     """The last place of a thing in steps, with `in` or `on` before it; what is open holds things as well."""
     for each in said:
-        if each.action in ("PutIn", "Pour") or (each.action == "Open" and is_in):
+        relation = known.relation_of(each.action)
+        if relation == "INSIDE" or each.action == "Pour" or (each.action == "Open" and is_in):
             return f"in {_spelt(each.names[-1])}"
-        if each.action == "PutBack" and not is_in:
+        if relation == "ON" and not is_in:
             return f"on {_spelt(each.names[-1])}"
     return None
 

@@ -267,7 +267,7 @@ def _shortened(
 
 def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
     """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
-    words = with_place(words, said)
+    words = with_place(known, words, said)
     if many := several(known, words, said):
         meant = [(understand_exactly(known, clause).meant, number) for clause, number in many]
         return tuple(Asked(each, number) for each, number in meant if each) if all(each for each, _ in meant) else ()

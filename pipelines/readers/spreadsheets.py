@@ -131,7 +131,7 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
 
 
 def _are_single(sample: Sequence[Sequence[str]], number: str, layout: Layout) -> bool:
-    """Return whether no cell beside the numbers holds several steps."""
+    """Return whether no cell next to the numbers holds several steps."""
     at = layout.columns.index(number)
     rest = (cell for row in sample[:_FEW] for n, cell in enumerate(row) if n != at and cell.strip())
     return all(map(is_one_step, rest))

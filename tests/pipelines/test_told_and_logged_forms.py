@@ -181,6 +181,22 @@ def test_a_task_that_is_not_understood_is_a_fault(write, knowledge):
     assert (steps, faults) == (["[Walk] <desk> (1)"], [2, 3])
 
 
+@pytest.mark.parametrize(
+    ("line", "step"),
+    [("I swich on the lamp.", "[SwitchOn] <lamp> (1)"), ("I swithc off the lamp.", "[SwitchOff] <lamp> (1)")],
+)
+def test_a_misspelled_verb_of_two_words_begins_a_step(write, knowledge, line, step):
+    text = f"Light\nI walk to the desk.\nI find the lamp.\n{line}\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "a.txt")
+    assert (steps[2:], faults) == ([step], [])
+
+
+def test_a_verb_that_no_lexicon_has_begins_a_step(write, knowledge):
+    text = "Calls\nShe walks to the desk.\nShe finds the cellphone.\nShe texts on her cellphone.\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "a.txt")
+    assert len(steps) + len(faults) == 3
+
+
 def test_steps_of_two_agents_on_a_line_keep_their_agents(write, knowledge):
     text = "<char0> [walk] <kitchen> (1) | <char1> [walk] <bathroom> (1)\n<char0> [open] <fridge> (1)\n"
     ((_, steps, faults, _),) = programs(write, knowledge, text, "a.txt")

@@ -19,7 +19,7 @@ from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
 from hearth.kb.language.forms.speakers import SPEAKERS
-from hearth.kb.language.forms.tables import TABLES
+from hearth.kb.language.forms.table_rows import TABLES
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.todo_lists import TODO_LISTS
 from hearth.kb.language.forms.tuples import TUPLES
