@@ -64,10 +64,10 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("put return bring take", rf"(.+?)(?: back| away)? {_ITS_PLACE}", "put back {0}"),
     # Nothing is said about a place: the thing is let go of where one is.
     ("put set lay place", r"(?:down (.+)|(.+) down)", "release {0}"),
-    (f"{_PUTTING} insert store pack", r"(.+) (?:into|inside of|inside) (.+)", "put {0} in {1}"),
-    (f"{_PUTTING} insert store pack return", r"(.+?) (?:back |away )?in (.+)", "put {0} in {1}"),
+    (f"{_PUTTING} insert store pack", r"(?:down )?(.+?)(?: down)? (?:into|inside of|inside) (.+)", "put {0} in {1}"),
+    (f"{_PUTTING} insert store pack return", r"(?:down )?(.+?) (?:down |back |away )?in (.+)", "put {0} in {1}"),
     (_PUTTING, r"(.+) (?:onto|on top of|upon) (.+)", "put {0} on {1}"),
-    (_PUTTING, r"(.+?) (?:down |back |away )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
+    (_PUTTING, r"(?:down )?(.+?) (?:down |back |away )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
     ("put lay place", r"(.+) over (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:on|onto|on top of) (.+)", "put {0} on {1}"),
     (_CARRYING, r"(.+?) (?:back )?(?:in|into|inside) (.+)", "put {0} in {1}"),

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step
-from hearth.kb.language.forms.speakers import ROBOTS, said_of
+from hearth.kb.language.forms.speakers import ROBOTS, Said, said_of
 from hearth.kb.language.operators import names_thing, operator_step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
@@ -69,7 +69,7 @@ def _who(lines: Sequence[str], is_step: Callable[[str], bool]) -> str:
     if sum(":" in line or ">" in line for line in texts) < _SHARE * len(texts):
         return ""
     said = [each for each in map(said_of, texts) if each and each.who]
-    if len(said) < max(_FEWEST, _SHARE * len(texts)):
+    if len(said) < max(_FEWEST, _SHARE * len(texts)) or any(map(_is_plan_of_robot, said)):
         return ""
     lines_of, orders = (
         Counter(each.who for each in said),
@@ -79,6 +79,12 @@ def _who(lines: Sequence[str], is_step: Callable[[str], bool]) -> str:
     others = max((count for other, count in orders.items() if other != who), default=0)
     is_clear = most >= _FEWEST and 2 * most >= lines_of[who] and most > 2 * others
     return who if is_clear and not ROBOTS.fullmatch(who) and not _LABELS.fullmatch(who) else ""
+
+
+def _is_plan_of_robot(said: Said) -> bool:
+    """Return whether a robot answers with numbered steps: these are the steps, and the order is their title."""
+    read = plan_line(said.text)
+    return ROBOTS.fullmatch(said.who) is not None and read.numbered and is_like_step(read.text)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
