@@ -94,10 +94,15 @@ def _other() -> Mapping[str, re.Pattern[str]]:
     return {name: re.compile(_pattern(text), re.DOTALL) for name, text in {**flat, **data["joined"]}.items()}
 
 
+_SLOTS = {"variable": r"\w+"}
+"""The patterns of slots that hold less than any text."""
+
+
 def _pattern(template: str) -> str:
     """Return a template as a regular expression; slots are named groups."""
     pieces = re.split(r"\{(\w+)\}", template)
-    return "".join(f"(?P<{piece}>.+)" if number % 2 else re.escape(piece) for number, piece in enumerate(pieces))
+    filled = (f"(?P<{name}>{_SLOTS.get(name, '.+')})" for name in pieces[1::2])
+    return "".join(re.escape(piece) + next(filled, "") for piece in pieces[::2])
 
 
 class _Reader(NamedTuple):
