@@ -27,7 +27,7 @@ from hearth.challenges.household_definition import (
     split_named,
 )
 from hearth.challenges.household_families import FAMILIES
-from hearth.challenges.household_starts import start_for_goal
+from hearth.challenges.household_starts import overlaps, start_for_goal
 from hearth.challenges.instruction_reader import IN_SHORT, read_instruction
 from hearth.challenges.instruction_writer import instruction
 from hearth.grounding.environments.default_state import prepared
@@ -149,6 +149,8 @@ def _drawn(task_id: str, split: HouseholdSplit, family: str, chooser: Random, kn
     world, _ = _start(family, goal, home, seed, activity, known)
     if world is None:
         return "no start"
+    if overlaps(goal, world):
+        return "one thing counts twice"
     text = _text(goal, split, family, activity, seed, known)
     if not _same(text, goal, known):
         return "instruction not read back"

@@ -91,7 +91,8 @@ def _tidy_room(base: Base, chooser: Random) -> Goal | None:
     """Return two or three things, each with a place of its own kind."""
     places = places_of(base)
     found: dict[tuple[str, str], str] = {}
-    for _ in range(chooser.randint(2, 3)):
+    kinds = chooser.randint(2, 3)
+    while len(found) < kinds:
         spot = chooser.choice(list(places.at))
         name = chooser.choice(places.at[spot])
         if name not in found.values():
@@ -118,8 +119,8 @@ def _find(base: Base, chooser: Random) -> Goal | None:
 def _turn_off(base: Base, chooser: Random) -> Goal | None:
     """Return kinds of lamps or devices, or both, of which none is to be on."""
     data = settings()
-    here = [name for name in chooser.choice((data["lights"], data["devices"], [*data["lights"], *data["devices"]]))]
-    known = [name for name in here if name in places_of(base).fixed]
+    kinds = chooser.choice((data["lights"], data["devices"], [*data["lights"], *data["devices"]]))
+    known = [name for name in kinds if name in places_of(base).fixed]
     if not known:
         return None
     some = chooser.sample(known, min(len(known), chooser.randint(1, 3)))

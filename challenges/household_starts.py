@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from random import Random
 
 from hearth.challenges.household_definition import home_named, settings
@@ -10,7 +11,7 @@ from hearth.grounding.environments.goal_environments import sample_for_goal
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
 from hearth.schemas.goals import Goal
-from hearth.schemas.literals import Literal, Name
+from hearth.schemas.literals import HANDS, HOLDS, Literal, Name
 from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.goals import Progress
@@ -35,6 +36,16 @@ def start_for_goal(goal: Goal, home: str, seed: int, knowledge: Knowledge) -> Wo
     for literal, _ in goal:
         world = None if world is None else _undone(world, base, literal, goal, chooser)
     return None if world is None or any(Progress.start(goal, world).counts) else settled(world, seed)
+
+
+def overlaps(goal: Goal, world: World) -> bool:
+    """Return whether one thing could be counted for two literals of a goal, or more is to be held than hands hold."""
+    held = sum(number for literal, number in goal if literal.name == HOLDS)
+    some = [(each.name, candidates(each, world.home)) for each, _ in goal]
+    things = [(name, one.targets if one.by_target else one.subjects) for name, one in some]
+    return held > len(HANDS) or any(
+        first[1] & second[1] and first[0] == second[0] for first, second in combinations(things, 2)
+    )
 
 
 def settled(world: World, seed: int) -> World:
