@@ -172,9 +172,7 @@ def _goal(
     return (found[1] if found else None), activity.id
 
 
-def _start(
-    family: str, goal: Goal, home: str, seed: int, activity: str, known: Knowledge
-) -> tuple[World | None, Goal]:
+def _start(family: str, goal: Goal, home: str, seed: int, activity: str, known: Knowledge) -> tuple[World | None, Goal]:
     if family != ACTIVITY:
         return start_for_goal(goal, home, seed, known), goal
     found = start_of_activity(activities()[activity], home, seed, known)

@@ -16,7 +16,7 @@ from hearth.kb.grammar import check
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
 from hearth.schemas.goals import Goal
-from hearth.schemas.literals import AGENT
+from hearth.schemas.literals import AGENT, HOLDS
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program
 from hearth.scoring.metrics.goals import goal_of
@@ -81,7 +81,8 @@ def program_of(activity: Activity, knowledge: Knowledge) -> Program | None:
 def start_of_activity(activity: Activity, home: str, seed: int, knowledge: Knowledge) -> tuple[World, Goal] | None:
     """Return a world in which a program runs, and what it brings about there; None where it does not run.
 
-    What also held at the start, of another thing of the same class, is not counted.
+    What also held at the start, of another thing of the same class, is not counted. A program that only leaves things
+    in hands ends before its activity does, and gives no goal.
     """
     program = program_of(activity, knowledge)
     if program is None:
@@ -94,6 +95,7 @@ def start_of_activity(activity: Activity, home: str, seed: int, knowledge: Knowl
     counts = Progress.at(goal, environment.world).counts
     new = (pair for pair, count in zip(goal, counts, strict=True) if not count and pair[0].terms != (AGENT,))
     wanted = Goal(tuple(new))
-    if not 0 < len(wanted.counts) <= MOST_LITERALS:
+    lasting = any(literal.name != HOLDS for literal, _ in wanted)
+    if not lasting or len(wanted.counts) > MOST_LITERALS:
         return None
     return settled(environment.world, seed), wanted

@@ -66,9 +66,7 @@ def drawn_tasks(
     return Drawing(tuple(tasks), rejected)
 
 
-def attempts(
-    tasks: Sequence[HouseholdTask], known: Known, workers: int = 1, seen: Seen = unseen
-) -> Iterator[Attempt]:
+def attempts(tasks: Sequence[HouseholdTask], known: Known, workers: int = 1, seen: Seen = unseen) -> Iterator[Attempt]:
     """Yield the episodes of the human-like agent, in the order of the tasks."""
     yield from spread(_attempt, [_Try(task, known) for task in tasks], workers, seen)
 

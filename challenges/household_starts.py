@@ -86,7 +86,9 @@ def _moved(world: World, base: Base, thing: int, goal: Goal, chooser: Random) ->
         for _, j, relation in spots.choices
         if not never >> j & 1 and base.home.classes[j] not in settings()["never_at"]
     ]
-    free = [(node, relation) for node, relation in free if not taken >> home.index.get(node, 0) & 1 and node in home.index]
+    free = [
+        (node, relation) for node, relation in free if not taken >> home.index.get(node, 0) & 1 and node in home.index
+    ]
     if not free:
         return None
     node, relation = chooser.choice(free)

@@ -129,7 +129,7 @@ def _read_number(word: str) -> int | None:
         return EVERY
     if word in NUMBERS[1:]:
         return NUMBERS.index(word)
-    return int(word) if word.isascii() and word.isdigit() and 0 < int(word[:9]) else None
+    return int(word) if word.isascii() and word.isdigit() and int(word[:9]) > 0 else None
 
 
 def _special(prefix: str, rest: str) -> Name | None:

@@ -155,7 +155,9 @@ class _Reader(NamedTuple):
             return None
         if things is None:
             return ((Literal(name, (who, place), negated), 1),) if place is not None else None
-        if any((number == EVERY) != negated for _, number in things) or (about == "who" and not str(who).startswith(AGENT)):
+        if any((number == EVERY) != negated for _, number in things) or (
+            about == "who" and not str(who).startswith(AGENT)
+        ):
             return None
         terms = {"": lambda x: (x,), "place": lambda x: (x, place)}.get(about, lambda x: (who, x))
         return tuple((Literal(name, terms(thing), negated), number or 1) for thing, number in things)

@@ -16,8 +16,8 @@ from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.rng import rng
 
-TRAIN = "train"
-"""The pool of wordings for training."""
+TRAIN, TEST = "train", "test"
+"""The pools of wordings for training and for tests; there is also `valid`."""
 
 SEPARATOR = ", and "
 """Between clauses."""
