@@ -17,6 +17,7 @@ from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.goals import Progress
 from hearth.simulation.holds import candidates
 from hearth.simulation.motion import positions
+from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.edit import edit
 from hearth.simulation.world.world import World
@@ -67,9 +68,11 @@ def _undone(world: World, base: Base, literal: Literal[Name], goal: Goal, choose
     met = 0 if some.by_target else some.met(world)[0]
     movable = world.home.properties["GRABBABLE"]
     for i in indices(things & movable):
-        if met >> i & 1 or chooser.random() < MOVED:
+        # An agent looks into furniture, and not into every box and basket.
+        must = met >> i & 1 or rows.inside(world, i) & movable
+        if must or chooser.random() < MOVED:
             after = _moved(world, base, i, goal, chooser)
-            if after is None and met >> i & 1:
+            if after is None and must:
                 return None
             world = after or world
     return world

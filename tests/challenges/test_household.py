@@ -27,6 +27,9 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.simulation.env import Env
 from hearth.simulation.goals import Progress
+from hearth.simulation.holds import candidates
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.digest import digest
 
 SPLITS = tuple(settings()["splits"])
@@ -60,6 +63,16 @@ def test_nothing_of_a_goal_holds_at_the_start(every, knowledge):
     for task in every:
         progress = Progress.start(task.goal, task.start(knowledge))
         assert not any(progress.counts) and not progress.satisfied, task.id
+
+
+def test_nothing_that_is_wanted_is_shut_in_a_box_or_basket(every, knowledge):
+    for task in every:
+        world = task.start(knowledge)
+        movable = world.home.properties["GRABBABLE"]
+        for literal, _ in () if task.activity else task.goal:
+            some = candidates(literal, world.home)
+            for i in indices((some.targets if some.by_target else some.subjects) & movable):
+                assert not rows.inside(world, i) & movable, task.id
 
 
 def test_a_start_is_the_same_every_time(every, knowledge):
