@@ -46,9 +46,12 @@ class Activity(NamedTuple):
 @lru_cache(maxsize=1)
 def activities() -> Mapping[str, Activity]:
     """Return the written programs of the corpus, by id."""
-    rows = _rows("programs.csv")
-    columns = ("HITId", "Input.title", "Input.description", "Answer.program")
-    return {row["HITId"]: Activity(*(" ".join(row[c].split()) for c in columns[:3]), row[columns[3]]) for row in rows}
+    return {row["HITId"]: _activity(row) for row in _rows("programs.csv")}
+
+
+def _activity(row: Mapping[str, str]) -> Activity:
+    title, description = (" ".join(row[column].split()) for column in ("Input.title", "Input.description"))
+    return Activity(row["HITId"], title, description, row["Answer.program"])
 
 
 @lru_cache(maxsize=4)

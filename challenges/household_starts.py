@@ -62,8 +62,8 @@ def _undone(world: World, base: Base, literal: Literal[Name], goal: Goal, choose
     if literal.target is None:
         state = literal.name if literal.negated else OPPOSITE[literal.name]
         ids = [world.home.ids[i] for i in indices(some.met(world)[0])]
-        after = edit(world, set=[(each, state) for each in ids], check=False)
-        return after if isinstance(after, World) else None
+        set_back = edit(world, set=[(each, state) for each in ids], check=False)
+        return set_back if isinstance(set_back, World) else None
     things = some.targets if some.by_target else some.subjects
     met = 0 if some.by_target else some.met(world)[0]
     movable = world.home.properties["GRABBABLE"]

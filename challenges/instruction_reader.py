@@ -159,8 +159,9 @@ class _Reader(NamedTuple):
             about == "who" and not str(who).startswith(AGENT)
         ):
             return None
-        terms = {"": lambda x: (x,), "place": lambda x: (x, place)}.get(about, lambda x: (who, x))
-        return tuple((Literal(name, terms(thing), negated), number or 1) for thing, number in things)
+        terms = (_terms(about, who, place, thing) for thing, _ in things)
+        numbers = (number or 1 for _, number in things)
+        return tuple((Literal(name, each, negated), number) for each, number in zip(terms, numbers, strict=True))
 
     def _act(self, text: str) -> Literal[Name]:
         """Return the action of its paraphrase."""
@@ -171,6 +172,13 @@ class _Reader(NamedTuple):
             if None not in terms:
                 return Literal(action.name, tuple(term for term in terms if term is not None))
         raise HearthError.of(Code.SYNTAX, f"`{text[:80]}` is not an action", suggestion="as in `open the fridge`")
+
+
+def _terms(about: str, who: Name, place: Name | None, thing: Name) -> tuple[Name, ...]:
+    """Return the terms of a clause's literal about one thing."""
+    if not about:
+        return (thing,)
+    return (who, thing) if place is None else (thing, place)
 
 
 def _key(key: str) -> tuple[bool, str, str]:

@@ -102,7 +102,7 @@ def clauses(goal: Goal, knowledge: Knowledge, style: Style, chooser: Random) -> 
 
 def _grouped(goal: Goal, doer: str) -> Iterator[tuple[Clause, list[tuple[Literal[Name], int]]]]:
     """Yield the literals that one clause can say, in the goal's order."""
-    for key, group in groupby(goal, lambda pair: clause_of(*pair, doer)._replace(things=())):
+    for key, group in groupby(goal, lambda pair: clause_of(pair[0], pair[1], doer)._replace(things=())):
         yield key, list(group)
 
 
