@@ -228,7 +228,7 @@ _PACKAGE = __name__.partition(".")[0]
 
 
 class OldModules(MetaPathFinder):
-    """Finds modules by the names of `MODULES`; Python asks it last, for what no other finder has."""
+    """Finds modules by the names of `MODULES`; Python asks it last, for modules that no other finder has."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None

@@ -1,4 +1,4 @@
-"""The version of the code and of what it publishes."""
+"""Versions of the code and of published formats."""
 
 VERSION = "0.2.0"
 

@@ -148,7 +148,7 @@ class Lineup:
 
 
 def partial_of(agent: Any) -> bool | None:
-    """Return whether an agent sees only its surroundings, for `Player`.
+    """Return whether an agent sees only the part around it, for `Player`.
 
     Our oracles see everything, near-sighted agents never do; the challenge decides for all others.
     """

@@ -272,8 +272,8 @@ def _print(results: Results, as_json: bool) -> None:
         {name: figures[name] for name in ("challenge", "split", "main", "helper", "goal", "seeds", "episodes")}
     )
     measured = [name for name in figures if f"{name}_se" in figures]
-    print()
+    output.line()
     rows = [(name.replace("_", " "), figures[name], figures[f"{name}_se"]) for name in measured]
     output.table(("metric", "mean over tasks", "standard error"), rows)
     for code, number in ends.items():
-        print(f"{output.counted(number, 'episode')} ended with {code}")
+        output.line(f"{output.counted(number, 'episode')} ended with {code}")

@@ -83,7 +83,7 @@ class Setting:
         actions: names of the actions that may be tried; None: those of challenges (see `action_codes.played`).
         code: how instructions are numbered (see `action_codes`): `triples`, `listed`, or an `ActionCode`.
         partial: whether agents see only the area around them.
-        told: the agents that know the goal; all of them where None.
+        told: numbers of the agents that know the goal; all of them where None.
         limit: ticks after which an episode is cut off.
         rewards: of a tick.
         rules: of actions.

@@ -99,7 +99,7 @@ def _conflict(failure: Failure) -> str:
         return "the characters get in each other's way"
     known = Code.__members__.get(code)
     inner = why(Failure(known, 0, failure.agent, failure.action, failure.objects, failure.names)) if known else code
-    return f"{inner}, after what the other character did in the same step"
+    return f"{inner}, after the other character's act in the same step"
 
 
 def _no_room(failure: Failure) -> str:

@@ -120,7 +120,7 @@ def _episode(row: Mapping[str, Any], home: Home) -> Episode:
     said = [{_agent(n): _read_said(text) for n, text in each.items()} for each in row.get("said", [{}] * len(ticks))]
     digests = tuple(map(word, row["digests"]))
     if len(digests) != len(ticks) + 1 or len(said) != len(ticks):
-        raise ValueError(f"{len(digests)} digests and {len(said)} rows of what was said, of {len(ticks)} ticks")
+        raise ValueError(f"{len(digests)} digests and {len(said)} rows of messages, of {len(ticks)} ticks")
     return Episode(start, read_rules(row["rules"]), tuple(ticks), digests, tuple(said))
 
 

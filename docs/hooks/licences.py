@@ -19,8 +19,8 @@ LOCKS = {"requirements.lock": "Hearth with its extras and its tests", "requireme
 ABOUT = """\
 # Licences of libraries
 
-None of these is part of Hearth; each is installed separately. `make licences` writes this page, with what the libraries
-say of themselves. `make sbom` writes a bill of materials with versions and licences in CycloneDX.
+None of these is part of Hearth; each is installed separately. `make licences` writes this page from the libraries' own
+metadata. `make sbom` writes a bill of materials with versions and licences in CycloneDX.
 
 PyTorch (the extra `models`) is in no lock: BSD-3-Clause.
 """

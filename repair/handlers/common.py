@@ -116,7 +116,7 @@ class RepairContext(FailureContext):
         return self.worlds[ticks] if number < self.at else self.world
 
     def seat_taken(self) -> tuple[int, str, ObjectRef] | None:
-        """Return where, how and on what the program itself has made the character rest.
+        """Return where the program itself has made the character rest, how, and its seat.
 
         (number of the step, "Sit", couch).
         """

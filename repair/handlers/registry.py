@@ -34,7 +34,7 @@ HANDLERS: dict[Code, Handler] = {
 """Handlers by failure code: those of table A.4, and those that it leaves out."""
 
 UNREPAIRABLE: dict[Code, str] = {
-    Code.NOT_AFFORDED: "nothing done before makes an object fit for what it is not made for",
+    Code.NOT_AFFORDED: "no earlier act makes an object fit for this use",
     Code.NOT_SIMULATED: "the action is never executed",
     Code.NO_PATH: "no door leads there, open or closed",
     Code.NO_ROOM: "the object is in no room, so nobody can go to it",

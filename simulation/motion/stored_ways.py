@@ -1,7 +1,7 @@
 """Distance fields of floors on disk: made beforehand, one file a floor, read where they lie and shared by processes.
 
 A file is named for its floor, so that every home with that floor finds it, and a home that is changed does not. The
-content of a file is compared with the floor before it is used: whoever wrote the file, the ways are the shortest.
+content of a file is compared with the floor before it is used: the ways are always the shortest.
 """
 
 from __future__ import annotations

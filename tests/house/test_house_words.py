@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -20,6 +23,8 @@ ROOMS = (
     "tests/house", "tests/trust", "models", "tests/models", "web", "tests/web",
 )  # fmt: skip
 """The folders and files that are checked."""
+
+LINTER = ROOT / "tests/house/plain_words.py"
 
 NAMING = ("test_house_words.py", "plain_words.py")
 """Files that name the phrases."""
@@ -84,3 +89,38 @@ def test_the_old_names_of_conditions_are_used_by_readers_alone():
     quoted = re.compile("|".join(f'"{name}"' for name in RENAMED))
     used = {path.relative_to(ROOT).as_posix() for path in files() if quoted.search(path.read_text(errors="replace"))}
     assert {name for name in used if not name.startswith("tests/")} == {"schemas/literals.py"}
+
+
+def test_no_text_asks_its_reader_to_decode_it():
+    done = subprocess.run([sys.executable, str(LINTER)], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("source", "pattern"),
+    [
+        ('"""What a thing is."""', "question"),
+        ('"""Names of what may be tried."""', "what as a noun"),
+        ('"""The place of who sits there."""', "who as a subject"),
+        ('"""A thing beside another."""', "beside"),
+        ("# A thing that was told.", "told"),
+        ('HELP = "run `python cli.py check`"', "python cli.py"),
+    ],
+)
+def test_the_linter_finds_each_kind(source, pattern, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(LINTER.parent))
+    linter = importlib.import_module("plain_words")
+    monkeypatch.setattr(linter, "ROOT", tmp_path)
+    (tmp_path / "module.py").write_text(source + "\n")
+    assert {each.pattern for each in linter.findings(tmp_path / "module.py")} == {pattern}
+    (tmp_path / "module.py").write_text('"""A thing next to another."""\n')
+    assert not list(linter.findings(tmp_path / "module.py"))
+
+
+def test_the_list_of_allowed_places_is_short_and_used():
+    sys.path.insert(0, str(LINTER.parent))
+    linter = importlib.import_module("plain_words")
+    assert len(linter.ALLOWED) < 60 and all(linter.ALLOWED.values())
+    for (name, pattern), _ in linter.ALLOWED.items():
+        kind = next(each for each in linter.PATTERNS if each.name == pattern)
+        assert any(kind.found.search(text) for _, text, _ in linter.texts(ROOT / name)), f"{name}: no {pattern} left"
