@@ -82,7 +82,7 @@ def program_of(activity: Activity, knowledge: Knowledge) -> Program | None:
 
 
 def start_of_activity(activity: Activity, home: str, seed: int, knowledge: Knowledge) -> tuple[World, Goal] | None:
-    """Return a world in which a program runs, and what it brings about there; None where it does not run.
+    """Return a world in which a program runs, and the goal that it reaches; None where it does not run.
 
     What also held at the start, of another thing of the same class, is not counted. A program that only leaves things
     in hands ends before its activity does, and gives no goal.

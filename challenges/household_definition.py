@@ -20,7 +20,7 @@ from hearth.simulation.world.home import Home
 NAME = "household"
 
 RULES: Rules = DEFAULT._replace(one_grip=True, made_bed=False, near_hands=False)
-"""How actions are read, as in the other challenges."""
+"""Rules of actions, as in the other challenges."""
 
 
 class HouseholdSplit(NamedTuple):
