@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
+import typer
 
 from hearth.agents.forbidden_actions import forbidden
 from hearth.challenges import household
@@ -21,6 +22,7 @@ from hearth.challenges.household_definition import (
 from hearth.challenges.household_drawing import attempts, drawn_tasks
 from hearth.challenges.household_files import read_tasks, write_tasks
 from hearth.challenges.instruction_reader import IN_SHORT, read_instruction
+from hearth.commands import challenge_household, play
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -209,6 +211,22 @@ def test_there_is_no_other_task(task_id):
     with pytest.raises(HearthError) as caught:
         household_task(task_id)
     assert caught.value.diagnostics[0].code is Code.BAD_ARGUMENT
+
+
+def test_the_command_prints_instructions_with_their_goals(capsys, drawn):
+    challenge_household.print_tasks("train", None, 0, 2, 1, as_json=False)
+    printed = capsys.readouterr().out
+    for task in drawn["train"][:2]:
+        assert task.instruction in printed and str(task.goal) in printed and task.id in printed
+
+
+def test_a_task_is_played_where_it_starts(drawn, knowledge):
+    task = drawn["train"][1]
+    scene = play._task_scene(task.id, "", None, knowledge)
+    assert (scene.goal, scene.instruction, scene.actions) == (task.goal, task.instruction, settings()["actions"])
+    assert digest(scene.world) == digest(task.start(knowledge))
+    with pytest.raises(typer.BadParameter, match="leave out"):
+        play._task_scene(task.id, "maple", None, knowledge)
 
 
 def test_what_is_never_to_be_done_is_not_done(drawn, knowledge):
