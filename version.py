@@ -14,3 +14,6 @@ ACTION_SET = "hearth-actions/2"
 1: version 0.1. 2: `Walktowards`, `Walkforward`, `Turnleft` and `Turnright` are simulated, step modifiers have effects,
 and nothing is put on or into itself.
 """
+
+NEXT_ACTION_SET = "hearth-actions/3"
+"""Every action is executed and has consequences, some in time (rule `consequences`); new datasets do not use it yet."""

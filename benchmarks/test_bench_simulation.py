@@ -34,7 +34,10 @@ from hearth.simulation.world.world import World
 
 ENDS = ("init_graph", "final_graph")
 OPTIONS = {
-    "release": (REPLAY, Options(doors=False, watch_needs_on=False, made_bed=False, near_hands=False)),
+    "release": (
+        REPLAY,
+        Options(doors=False, watch_needs_on=False, made_bed=False, near_hands=False, leaves_seat=False),
+    ),
     "own homes": (DEFAULT, Options()),
 }
 

@@ -33,7 +33,7 @@ def run(
     fuzzy: Fuzzy = Fuzzy.TYPOS,
     skip_faults: bool = False,
     strict: bool = False,
-    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
+    rules: Literal["auto", "default", "replay", "evolving_graph", "consequences"] = "auto",
     as_json: bool = False,
 ) -> None:
     """Run a program in a home as it is, and print the changes of each step.
@@ -43,10 +43,10 @@ def run(
     runs, and the additions are printed. The status is 1 if the program did not run as given, or if a goal is not
     reached: a literal at the end, an action (`WATCH(television)`), an order (`then`), or alternatives.
 
-    Actions are read by --rules: ours (default), those of the release of 2018 (replay), or those of VirtualHome 2.x
-    (evolving_graph). By evolving_graph the contents of an opened thing are within reach of a character next to it, and
-    a room only walked into is not. By `auto` a graph in which no two things are CLOSE is read by the last, any other
-    home by ours.
+    Actions are read by --rules: ours (default), those of the release of 2018 (replay), those of VirtualHome 2.x
+    (evolving_graph), or action set 3 (consequences: food is used up, and heat and water work in time). By
+    evolving_graph the contents of an opened thing are within reach of a character next to it, and a room only walked
+    into is not. `auto` chooses it for a graph in which no two things are CLOSE, and ours for any other home.
 
     \b
     Examples:

@@ -98,7 +98,7 @@ def program(
     graph: Path | None = None,
     home: str = "",
     homes: Path | None = None,
-    rules: Literal["auto", "default", "replay", "evolving_graph"] = "auto",
+    rules: Literal["auto", "default", "replay", "evolving_graph", "consequences"] = "auto",
     match: Literal["none", "swap1", "best"] = "swap1",
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
@@ -115,7 +115,8 @@ def program(
     to FILE's folder), else --home or --graph; with `--homes all`, each of our homes. A goal is else what the reference
     achieves; conditions that hold at the start do not count (`goal_whole` counts them). Steps may be natural language.
     Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
-    the release of 2018 (replay), or those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph); `auto`
+    the release of 2018 (replay), those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph), or action
+    set 3 (consequences); `auto`
     takes the last for a --graph in which no two things are CLOSE, as `run` does, and ours otherwise.
 
     \b

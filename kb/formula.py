@@ -12,6 +12,7 @@ and an effect is
 
     NAME(term, ...)            becomes true
     not NAME(term, ...)        becomes false
+    gone(term)                 is used up: in no place and no hand, close to nothing, and GONE
     F -> E                     only if F held before
     for x, y: F -> E           for all things x, y for which F held before; F may be left out
 
@@ -39,6 +40,9 @@ BUILT_IN = frozenset(
 
 NAMED = frozenset({"state", "property", "class", "class_contains", "came_from"})
 """Predicates whose second argument is a name, not a thing."""
+
+GONE = "gone"
+"""The effect by which a thing ceases to be anywhere; no formula asks for it (the state GONE is asked for)."""
 
 OPTION = "option"
 """The predicate whose only argument is the name of a rule."""

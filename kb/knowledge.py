@@ -7,7 +7,16 @@ from typing import TypeVar
 
 from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.groups import groups, relation_of, state_of, tool_of
-from hearth.kb.knowledge_records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
+from hearth.kb.knowledge_records import (
+    Action,
+    Association,
+    Kind,
+    ObjectClass,
+    Placement,
+    Process,
+    Repair,
+    StateGroup,
+)
 from hearth.kb.spelling import key_of, near_names
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
@@ -41,6 +50,7 @@ class Knowledge:
         kinds: the kinds above the classes.
         associations: classes that are used together.
         repairs: what to do about a failure, by name; the first that fits is the one to try.
+        processes: changes that come by themselves in action set 3, by name.
     """
 
     actions: Mapping[str, Action]
@@ -53,6 +63,7 @@ class Knowledge:
     kinds: Mapping[str, Kind]
     associations: tuple[Association, ...]
     repairs: Mapping[str, Repair]
+    processes: Mapping[str, Process]
     _action_names: Mapping[str, Action] = field(repr=False)
     _object_names: Mapping[str, ObjectClass] = field(repr=False)
     _aliases: Mapping[str, tuple[str, ...]] = field(repr=False)

@@ -72,6 +72,50 @@ class Condition(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class Consequence:
+    """The part of an action that action set 3 adds: all there is to an act that sets 1 and 2 do not execute.
+
+    Attributes:
+        preconditions: the checks, of an act that only set 3 executes.
+        effects: its changes, after those of the action itself; conditions are read in the world before.
+        like: the action whose rule it shares, or ''.
+        ticks: how long it takes.
+        notice: what others see or hear of it, in words.
+    """
+
+    preconditions: tuple[Condition, ...] = ()
+    effects: tuple[Effect, ...] = ()
+    like: str = ""
+    ticks: int = 1
+    notice: str = ""
+
+    __repr__ = brief
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """A change that comes by itself (`processes.yaml`), action set 3.
+
+    Attributes:
+        name: of its row.
+        id: its place among the processes.
+        condition: literals about a thing `x`, and a device `d` on or in which it is, all of which hold meanwhile.
+        after: the number of ticks after which it is done.
+        effects: what becomes true of x then.
+        seen: what is seen meanwhile, in words.
+    """
+
+    name: str
+    id: int
+    condition: Formula
+    after: int
+    effects: tuple[Effect, ...]
+    seen: str = ""
+
+    __repr__ = brief
+
+
+@dataclass(frozen=True, slots=True)
 class Action:
     """An action of the grammar (thesis 2.3.3, table 2.2, and the release's 78).
 
@@ -89,6 +133,7 @@ class Action:
         aliases: other spellings of the name.
         groups: those of `groups.DECLARED` that it belongs to; others follow from its literals.
         source: release, thesis or ours.
+        later: what action set 3 adds; None where it adds nothing.
     """
 
     name: str
@@ -104,6 +149,7 @@ class Action:
     aliases: tuple[str, ...] = ()
     groups: frozenset[str] = frozenset()
     source: str = ""
+    later: Consequence | None = None
 
     __repr__ = brief
 

@@ -57,7 +57,8 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
 def milestones(execution: Execution) -> Postconditions:
     """Effects that were undone again, but not before something was done meanwhile: the stove that was on while cooking.
 
-    Only devices switched on and objects put somewhere count; objects are held or opened for another step's sake.
+    Only devices switched on, objects put somewhere and where one sat or lay count; objects are held or opened for
+    another step's sake.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
@@ -79,9 +80,13 @@ def milestones(execution: Execution) -> Postconditions:
 
 
 def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
-    """Return the devices switched on, and the objects ON or INSIDE others, characters left out."""
+    """Return the devices switched on, the objects ON or INSIDE others, and the seats of characters."""
     found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
-    return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]
+    return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0]) or _seated(f)]
+
+
+def _seated(fact: Literal[Key]) -> bool:
+    return fact.name == "ON" and fact.subject[0] == CHARACTER_CLASS
 
 
 def _used_after(program: Program, action: str, key: Key, preparation: frozenset[str]) -> bool:

@@ -74,7 +74,18 @@ def _hands(failure: Failure) -> str:
 
 def _seat(failure: Failure) -> str:
     seat, *others = failure.names or ("seat",)
+    if failure.expected == "nobody on it":
+        return f"somebody is on the {spoken(seat)}"
     return f"there is no room left on the {spoken(seat)}: {listed(others)} {'is' if len(others) == 1 else 'are'} on it"
+
+
+def _wrong_state(failure: Failure) -> str:
+    """Return the words for a thing that is already as the step would make it, with the act that would change that."""
+    name, act = spoken(failure.names[0]) if failure.names else "thing", failure.expected.partition("([")[2]
+    if not failure.actual or failure.actual == "not so":
+        return f"the {name} is not in the state that this needs"
+    undone = f": [{act.partition(']')[0]}] would change that" if act else ", which nothing undoes"
+    return f"the {name} is {spoken(failure.actual.lower())}{undone}"
 
 
 def _agent(failure: Failure) -> str:
@@ -216,6 +227,7 @@ WHY: Mapping[Code, Words] = {
     Code.NOT_OPENABLE_STATE: "the {0} is neither open nor closed",
     Code.NOT_WORN: "the character does not wear the {0}",
     Code.NOTHING_TO_EAT: "the {0} is not food, and there is no food on it",
+    Code.WRONG_STATE: _wrong_state,
     # Several agents
     Code.CONFLICT: _conflict,
     Code.UNKNOWN_AGENT: _agent,
@@ -270,6 +282,7 @@ MEANINGS: Mapping[Code, str] = {
     Code.UNBOUND: "the home has no such thing, or none that the program can use",
     Code.NO_FREE_HAND: "both hands are full",
     Code.OCCUPIED: "there is no room left on the seat",
+    Code.WRONG_STATE: "the thing is not in the state that the action needs",
     Code.NO_PLACE: "there is no place for the thing",
 }
 """Words for a code alone, where those of a failure need its facts."""

@@ -103,7 +103,7 @@ class RunRow(TypedDict):
     """A run of a program."""
 
     rules: Annotated[
-        str, "named options of the engine: near_hands, replay or evolving_graph; made_bed or default in older datasets"
+        str, "named options of the engine: leaves_seat, replay or evolving_graph; others in older datasets"
     ]
     bindings: Annotated[list[BindingRow], "program objects to graph nodes"]
     ticks: Annotated[list[TickRow], "what each tick did and changed"]

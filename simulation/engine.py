@@ -8,10 +8,13 @@ from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
 from hearth.schemas.short_repr import brief
+from hearth.schemas.vocabulary import STATES
+from hearth.simulation.actions.consequences import actions
 from hearth.simulation.actions.metres import followed
 from hearth.simulation.actions.modified import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
 from hearth.simulation.motion.positions import placed
+from hearth.simulation.processes import advanced, widened
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
@@ -57,11 +60,11 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
         >>> execution.executable, len(execution.worlds), execution.final.holding()
         (True, 4, {0: (142,)})
     """
-    world = ready(world, program)
+    world = ready(world, program, rules)
     worlds = [world]
     failure: Failure | None = None
     for number, steps in enumerate(_ticks(program)):
-        result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
+        result = alone(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             failure = replace(result, tick=number)
             break
@@ -72,17 +75,21 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
     """Return only the end of a run, for callers that need no trace."""
-    world = ready(world, program)
+    world = ready(world, program, rules)
     for number, steps in enumerate(_ticks(program)):
-        result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
+        result = alone(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             return replace(result, tick=number)
         world = result
     return world
 
 
-def ready(world: World, program: Program) -> World:
-    """The world with its characters at places if a program moves them by metres or says where they stand."""
+def ready(world: World, program: Program, rules: Rules = DEFAULT) -> World:
+    """The world with its characters at places if a program moves them by metres or says where they stand, and by action
+    set 3 with its further states.
+    """
+    if rules.consequences:
+        world = widened(world)
     steps = program.steps
     if MOVES.keys().isdisjoint(map(_ACTION, steps)) and not any(map(_MODIFIERS, steps)):
         return world
@@ -99,6 +106,12 @@ def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = D
     return failures[min(failures)] if failures else now
 
 
+def alone(world: World, instruction: Step, rules: Rules) -> World | Failure:
+    """A tick in which one agent does something: the instruction, and by action set 3 what comes by itself."""
+    result = act(world, instruction, rules)
+    return advanced(world, result) if rules.consequences and type(result) is World else result
+
+
 def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Failure:
     """One instruction of one agent."""
     number, name, objects = instruction.agent, instruction.action, instruction.objects
@@ -106,10 +119,15 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
     if not 0 <= number < len(agents):
         return _refused(world, instruction)
     placed_there = agents[number].pose is not None
-    action = (EVERY if placed_there else ACTIONS).get(name)
+    home, count = world.home, len(objects)
+    if rules.consequences:
+        if len(world.states) == len(STATES):
+            world = widened(world)
+        action = actions(home.knowledge, placed_there).get(name)
+    else:
+        action = (EVERY if placed_there else ACTIONS).get(name)
     if action is None:
         return _refused(world, instruction)
-    home, count = world.home, len(objects)
     arity = home.knowledge.arity[name]
     if count != arity:
         return _miscounted(instruction, arity)
@@ -133,7 +151,7 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
 def _in_place(before: World, done: World, instruction: Step, o: int, s: int) -> World | Failure:
     """Return the world after an instruction, with its character's place and the effects of its modifiers."""
     if before.agents[instruction.agent].pose is not None:
-        done = followed(done, instruction.agent, instruction.action, o)
+        done = followed(before, done, instruction.agent, instruction.action, o)
     return modified(before, done, instruction, o, s) if instruction.modifiers else done
 
 
@@ -162,7 +180,7 @@ def tick(
         The world after the instructions that could be done, and the failures of the others.
     """
     failures: dict[int, Failure] = {}
-    now = world
+    now = world = widened(world) if rules.consequences else world
     for agent, instruction in sorted(instructions.items()):
         if instruction is None:
             continue
@@ -175,7 +193,7 @@ def tick(
             failures[agent] = result
         else:
             now = result
-    return now, failures
+    return advanced(world, now) if rules.consequences else now, failures
 
 
 def _only_moves(instruction: Step, before: World, now: World) -> bool:

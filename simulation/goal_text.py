@@ -24,7 +24,7 @@ from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tokens import Tokens
-from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID
+from hearth.schemas.vocabulary import CHARACTER_CLASS, EVERY_STATE_ID
 from hearth.simulation.goal_trace import acts
 from hearth.simulation.goals import RELATED, check, unknown
 from hearth.simulation.holds import nodes
@@ -178,7 +178,7 @@ class _Parser(Tokens):
         """The name of a state or relation, of an action, or the word itself."""
         name = OTHER_NAMES.get(word.upper(), word.upper())
         action = self.home.knowledge.action(word)
-        if not bracketed and ((terms == 1 and name in STATE_ID) or (terms == 2 and name in RELATED)):
+        if not bracketed and ((terms == 1 and name in EVERY_STATE_ID) or (terms == 2 and name in RELATED)):
             return name
         return action.name if action else name
 

@@ -16,7 +16,7 @@ from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.program import Step
 from hearth.schemas.short_repr import brief
-from hearth.schemas.vocabulary import RELATIONS, STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID, RELATIONS
 from hearth.simulation.engine import Execution
 from hearth.simulation.goal_trace import Trace, acts, by_agent
 from hearth.simulation.holds import Candidates, candidates, nodes
@@ -208,8 +208,8 @@ def check(literal: Literal[Name], home: Home) -> LiteralFault | None:
             return f"{literal.name} is not simulated", Code.NOT_SIMULATED, ""
     elif not terms:
         return f"`{literal.name}` is not a known action", Code.UNKNOWN_ACTION, _near(literal.name, home, "action")
-    elif literal.name not in (STATE_ID if len(terms) == 1 else RELATED if len(terms) == 2 else ()):
-        kind, names = ("state", STATE_ID) if len(terms) == 1 else ("relation", RELATED)
+    elif literal.name not in (EVERY_STATE_ID if len(terms) == 1 else RELATED if len(terms) == 2 else ()):
+        kind, names = ("state", EVERY_STATE_ID) if len(terms) == 1 else ("relation", RELATED)
         near = get_close_matches(literal.name, names, n=1)
         meant = f"did you mean `{near[0]}`?" if near else ""
         return f"{literal.name} is not a known {kind}", Code.SYNTAX, meant

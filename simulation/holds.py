@@ -4,11 +4,12 @@ A literal whose terms stand for several nodes holds when it holds of some subjec
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar
 
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, RELATION_OF, STATE_OF, Key, Literal, Name
-from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
+from hearth.schemas.vocabulary import CHARACTER_CLASS, EVERY_STATE_ID, STATE_ID, STATES
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
@@ -152,8 +153,15 @@ _DIGITS = 9
 
 
 def unary(name: str) -> Unary:
-    """The predicate of one term; a state that is not simulated holds where the graph stores it."""
-    return UNARY.get(name) or (lambda world, i: name in world.home.node(i).states)
+    """The predicate of one term; a state that the world does not simulate holds where the graph stores it."""
+    return UNARY.get(name) or partial(_kept, name)
+
+
+def _kept(name: str, world: World, i: int) -> bool:
+    number = EVERY_STATE_ID.get(name, len(world.states))
+    if number < len(world.states):
+        return bool(world.states[number] >> i & 1)
+    return name in world.home.node(i).states
 
 
 def binary(name: str) -> Binary:

@@ -30,6 +30,10 @@ class Rules(NamedTuple):
             opened, and one's body parts; nothing after a walk into a room.
         near_hands: one's body parts make near only what is in the room that one is in. By the rules of the release and
             of `evolving_graph` hands that are CLOSE to a sink make it near from any room.
+        leaves_seat: a character that stands up, or changes to another seat, is no longer ON the one before, which is
+            free then; and nobody takes a seat that is in use. In the release one stays ON every seat ever used.
+        consequences: action set 3 (`version.NEXT_ACTION_SET`): acts change temperature, cleanliness, wholeness,
+            every action is executed, and heating, washing and drying take time (`processes`).
     """
 
     origin: Origin = "sensible"
@@ -40,9 +44,11 @@ class Rules(NamedTuple):
     made_bed: bool = False
     near: Near = "release"
     near_hands: bool = False
+    leaves_seat: bool = False
+    consequences: bool = False
 
 
-DEFAULT = Rules(made_bed=True, near_hands=True)
+DEFAULT = Rules(made_bed=True, near_hands=True, leaves_seat=True)
 """For inference, sampling, augmenting and people's own programs."""
 
 REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
@@ -58,21 +64,33 @@ checks no doors either.
 WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
 """For programs that watch what they themselves keep off (see `suited`)."""
 
+CONSEQUENCES = DEFAULT._replace(consequences=True)
+"""Action set 3."""
+
 RULES: dict[str, Rules] = {
-    "near_hands": DEFAULT,
-    "near_hands_watching_off": WATCHING_OFF,
+    "consequences": CONSEQUENCES,
+    "consequences_watching_off": CONSEQUENCES._replace(watch_needs_on=False),
+    "leaves_seat": DEFAULT,
+    "leaves_seat_watching_off": WATCHING_OFF,
     "replay": REPLAY,
     "evolving_graph": EVOLVING_GRAPH,
-    "made_bed": DEFAULT._replace(near_hands=False),
-    "made_bed_watching_off": WATCHING_OFF._replace(near_hands=False),
-    "default": DEFAULT._replace(near_hands=False, made_bed=False),
-    "watching_off": WATCHING_OFF._replace(near_hands=False, made_bed=False),
+    "near_hands": DEFAULT._replace(leaves_seat=False),
+    "near_hands_watching_off": WATCHING_OFF._replace(leaves_seat=False),
+    "made_bed": DEFAULT._replace(leaves_seat=False, near_hands=False),
+    "made_bed_watching_off": WATCHING_OFF._replace(leaves_seat=False, near_hands=False),
+    "default": DEFAULT._replace(leaves_seat=False, near_hands=False, made_bed=False),
+    "watching_off": WATCHING_OFF._replace(leaves_seat=False, near_hands=False, made_bed=False),
 }
-"""The options by the names that published executions give them. The last four are of datasets from before `near_hands`,
-two of them from before `made_bed`; what a name stands for never changes."""
+"""The options by the names that published executions give them. The last six are of datasets from before `leaves_seat`,
+four of them from before `near_hands`, two from before `made_bed`; what a name stands for never changes."""
 
-CHOICES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY, "evolving_graph": EVOLVING_GRAPH}
-"""Rules from which `--rules` of a command chooses: ours of today, the release of 2018, and VirtualHome 2.x."""
+CHOICES: dict[str, Rules] = {
+    "default": DEFAULT,
+    "replay": REPLAY,
+    "evolving_graph": EVOLVING_GRAPH,
+    "consequences": CONSEQUENCES,
+}
+"""Rules from which `--rules` of a command chooses: ours, the release of 2018, VirtualHome 2.x, action set 3."""
 
 
 def read(given: Mapping[str, Any]) -> Rules:

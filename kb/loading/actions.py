@@ -7,7 +7,7 @@ from typing import Any
 
 from hearth.kb.formula import TRUE, And, Effect, Formula, Term, parse_atom, parse_effect, parse_formula
 from hearth.kb.groups import DECLARED
-from hearth.kb.knowledge_records import Action, Condition, Repair, Requirement
+from hearth.kb.knowledge_records import Action, Condition, Consequence, Repair, Requirement
 from hearth.kb.loading.entry_shapes import LIST, NAMES, REASONS, TEXT, fits, parts
 from hearth.kb.loading.formula_checks import Derived, check_derived, check_literals
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed, yaml_entries
@@ -16,9 +16,10 @@ from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
-_ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source"})
+_ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source",
+                          "set", "then", "like", "ticks", "notice"})  # fmt: skip
 _ACTION_SHAPES = {"needs": LIST, "before": LIST, "effects": LIST, "roles": NAMES, "words": NAMES, "aliases": NAMES,
-                  "groups": NAMES, "say": TEXT, "source": TEXT}  # fmt: skip
+                  "groups": NAMES, "say": TEXT, "source": TEXT, "then": LIST, "like": TEXT, "notice": TEXT}  # fmt: skip
 _REQUIREMENT_SHAPES = dict.fromkeys(("any", "all", "classes", "contains"), NAMES) | {"also": REASONS, "never": REASONS}
 _REPAIR_SHAPES = {"on": TEXT, "actions": NAMES, "when": TEXT, "say": TEXT, "source": TEXT}
 _REPAIR_KEYS = frozenset({"on", "actions", "when", "say", "source"})
@@ -29,6 +30,10 @@ def load_actions(layers: Layers, derived: Derived, faults: Faults) -> dict[str, 
     executed = yaml_entries(layers, "actions.yaml", faults, inherited="groups")
     written = yaml_entries(layers, "actions_written.yaml", faults, inherited="groups")
     grammar = yaml_entries(layers, "affordances.yaml", faults)
+    for name in [name for name in written if _only_later(executed.get(name))]:
+        own, ours = written.pop(name), executed[name]  # an overlay from before set 3 describes what it executes now
+        kept = {key: ours.value[key] for key in _LATER_KEYS & ours.value.keys()}
+        executed[name] = own._replace(value=kept | own.value) if isinstance(own.value, dict) else own
     for name in sorted(executed.keys() & written.keys()):
         faults.at(written[name], f"`{name}` stands in actions.yaml too", "an action is executed or only written")
     entries = {**written, **executed}
@@ -43,8 +48,20 @@ def load_actions(layers: Layers, derived: Derived, faults: Faults) -> dict[str, 
     check_ids({name: (action.id, entries[name]) for name, action in result.items()}, faults)
     for name in sorted(executed.keys() & result.keys()):
         check_literals(result[name], derived, entries[name], faults)
-        result[name] = replace(result[name], executed=True)
+        result[name] = replace(result[name], executed=not _only_later(entries[name]))
     return dict(sorted(result.items(), key=lambda item: item[1].id))
+
+
+_LATER_KEYS = frozenset({"set", "before", "effects", "like", "ticks", "notice"})
+
+
+def _only_later(entry: Entry | None) -> bool:
+    """Return whether sets 1 and 2 know an action and do not execute it."""
+    return entry is not None and isinstance(entry.value, dict) and entry.value.get("set") == LATER
+
+
+LATER = 3
+"""The action set that `set: 3` of an entry names: it is the first to execute the action."""
 
 
 def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str, Entry], faults: Faults) -> Action:
@@ -63,6 +80,9 @@ def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str
         faults.at(grammar or entry, f"{name} takes {len(roles)} objects, not {len(accepts)}", code=Code.WRONG_ARITY)
     checks = tuple(_conditions(fields.get("before") or (), entry, faults))
     effects = _all_effects(name, fields.get("effects") or (), entry, entries, faults)
+    later = _later(name, fields, (checks, effects), entry, entries, faults)
+    if _only_later(entry):
+        checks, effects = (), ()
     _check_words(name, fields, len(roles), entry, faults)
     return Action(
         name=name,
@@ -78,7 +98,36 @@ def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str
         aliases=strings(fields.get("aliases")),
         groups=_groups(fields.get("groups"), entry, faults),
         source=str(fields.get("source") or "release"),
+        later=later,
     )
+
+
+def _later(
+    name: str,
+    fields: Mapping[str, Any],
+    own: tuple[tuple[Condition, ...], tuple[Effect, ...]],
+    at: Entry,
+    entries: Mapping[str, Entry],
+    faults: Faults,
+) -> Consequence | None:
+    """Return the additions of set 3: all of an action that it is the first to execute, `then` of another."""
+    if fields.get("set") not in (None, LATER):
+        faults.at(at, f"`set` of {name} is {fields['set']!r:.40}", f"leave it out, or write `set: {LATER}`")
+    ticks = fields.get("ticks", 1)
+    if type(ticks) is not int or not 0 < ticks <= MOST_TICKS:
+        faults.at(at, f"`ticks` of {name} is {ticks!r:.40}", f"a whole number from 1 to {MOST_TICKS}")
+        ticks = 1
+    like = str(fields.get("like") or "")
+    if like and (like not in entries or not _only_later(at) or _only_later(entries[like])):
+        faults.at(at, f"{name} is like `{like:.40}`", "an action that sets 1 and 2 execute")
+    more = _all_effects(name, fields.get("then") or (), at, entries, faults)
+    if not _only_later(at):
+        return Consequence((), more, "", ticks, str(fields.get("notice") or "")) if more or "ticks" in fields else None
+    return Consequence(own[0], own[1] + more, like, ticks, str(fields.get("notice") or ""))
+
+
+MOST_TICKS = 100
+"""Of an act: nobody waits longer for one step."""
 
 
 def _check_words(name: str, fields: Mapping[str, Any], arity: int, at: Entry, faults: Faults) -> None:

@@ -3,11 +3,11 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping
 
-from hearth.kb.formula import OPTION, And, Count, Formula, Or, Term, free
+from hearth.kb.formula import GONE, OPTION, And, Count, Effect, Formula, Or, Term, free
 from hearth.kb.knowledge_records import Action
 from hearth.kb.loading.source_files import Entry, Faults
 from hearth.schemas.literals import Literal
-from hearth.schemas.vocabulary import RELATIONS
+from hearth.schemas.vocabulary import EVERY_STATE, RELATIONS
 
 Derived = Mapping[str, tuple[Literal[Term], Formula]]
 """Definitions by predicate."""
@@ -36,7 +36,7 @@ def check_derived(derived: Derived, entries: Mapping[str, Entry], faults: Faults
         variables = [term.name for term in head.terms]
         if any(term.function for term in head.terms) or len({*variables}) < len(variables):
             faults.at(entry, f"`{head}` has other terms than different variables")
-        _check_formula(body, {*variables}, str(head), derived, entry, faults)
+        check_formula(body, {*variables}, str(head), derived, entry, faults)
         if any(part.name == "affords" for part in _asked(body)):
             faults.at(entry, f"`{head}`: what is afforded depends on an action", "say so in its checks")
         if _size(name, derived, sizes, ()) > MOST:
@@ -44,17 +44,35 @@ def check_derived(derived: Derived, entries: Mapping[str, Entry], faults: Faults
 
 
 def check_literals(action: Action, derived: Derived, at: Entry, faults: Faults) -> None:
-    """Note predicates that nothing defines or that have other terms, and variables that nothing binds."""
+    """The same of all that an action asks for and changes, by whichever action set."""
     bound = {"a", *"os"[: action.arity]}
     parts: list[tuple[Formula, set[str]]] = [(condition.formula, bound) for condition in action.preconditions]
-    parts += [(part, bound | {*e.variables}) for e in action.effects for part in (e.condition, e.literal.atom)]
+    effects = list(action.effects)
+    if action.later is not None:
+        parts += [(condition.formula, bound) for condition in action.later.preconditions]
+        effects += action.later.effects
     for part, variables in parts:
-        _check_formula(part, variables, action.name, derived, at, faults)
+        check_formula(part, variables, action.name, derived, at, faults)
+    for effect in effects:
+        check_effect(effect, bound, action.name, derived, at, faults)
 
 
-def _check_formula(
+def check_effect(effect: Effect, bound: set[str], whose: str, derived: Derived, at: Entry, faults: Faults) -> None:
+    """Note what is wrong with an effect of given variables: what it is about, where it holds, and which state."""
+    variables, literal = bound | {*effect.variables}, effect.literal
+    check_formula(effect.condition, variables, whose, derived, at, faults)
+    if literal.name != GONE:
+        check_formula(literal.atom, variables, whose, derived, at, faults)
+    elif len(literal.terms) != 1 or literal.negated or not {literal.terms[0].name} <= variables:
+        faults.at(at, f"`{effect}` is not an effect", "one thing is gone, and for ever: `gone(o)`")
+    if literal.name == "state" and len(literal.terms) == 2 and literal.terms[1].name not in EVERY_STATE:
+        faults.at(at, f"`{literal}`: nothing can be brought into that state", f"one of {', '.join(EVERY_STATE)}")
+
+
+def check_formula(
     formula: Formula, variables: set[str], whose: str, derived: Derived, at: Entry, faults: Faults
 ) -> None:
+    """Note predicates that nothing defines or that have other terms, and variables that nothing binds."""
     known = {*TERMS, *derived}
     for unknown in sorted({part.name for part in _asked(formula)} - known):
         faults.at(at, f"in `{formula}`: nothing says what `{unknown}` is", "see derived.yaml")

@@ -17,6 +17,7 @@ from hearth.kb.loading.objects import (
     load_placements,
     load_stand_ins,
 )
+from hearth.kb.loading.process_rows import load_processes
 from hearth.kb.loading.small_tables import load_limits, load_rooms, load_tables
 from hearth.kb.loading.source_files import Faults, check_extent
 from hearth.kb.spelling import key_of
@@ -38,6 +39,7 @@ FILES = (
     "limits.yaml",
     *OBJECT_FILES,
     "placements.csv",
+    "processes.yaml",
     "repairs.yaml",
     "rooms.yaml",
     "stand_ins.csv",
@@ -45,6 +47,9 @@ FILES = (
     "tables.yaml",
 )
 """Every file the knowledge is read from; another YAML or CSV file in a directory of it is a mistake."""
+
+_LATER = frozenset({"processes.yaml"})
+"""Files that complete directories of before do not have: nothing comes by itself then."""
 
 
 def load(directory: Path | None = None, overlay: Path | None = None) -> Knowledge:
@@ -115,7 +120,7 @@ def _check_files(layer: Path, complete: bool, faults: Faults) -> None:
     for name in sorted(present - set(FILES)):
         faults.add(str(layer / name), 0, "is not one of the knowledge's files", f"they are {', '.join(FILES)}")
     for name in FILES if complete else ():
-        if name not in present:
+        if name not in present | _LATER:
             faults.add(str(layer / name), 0, "is missing", "or lay your files over ours", Code.MISSING_FILE)
 
 
@@ -128,6 +133,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
     actions = load_actions(layers, derived, faults)
     associations = load_associations(layers, objects, actions, faults)
     repairs = load_repairs(layers, actions, faults)
+    processes = load_processes(layers, derived, groups, faults)
     stand_in, limits, tables = load_rooms(layers, faults), load_limits(layers, faults), load_tables(layers, faults)
     if faults:
         return None
@@ -144,6 +150,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
         kinds=kinds,
         associations=associations,
         repairs=repairs,
+        processes=processes,
         _action_names=_action_spellings(actions),
         _object_names=spellings,
         _aliases={name: thing.synonyms for name, thing in named.items() if thing.synonyms},

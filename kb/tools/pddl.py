@@ -65,8 +65,10 @@ def option_predicate(name: str) -> str:
 
 
 def options(knowledge: Knowledge) -> list[str]:
-    """The names of the rules that derived predicates ask for, sorted."""
-    return sorted({name for _, body in knowledge.derived.values() for name in _asked(body)})
+    """The names of the rules that derived predicates and effects ask for, sorted."""
+    formulas = [body for _, body in knowledge.derived.values()]
+    formulas += [effect.condition for action in knowledge.actions.values() for effect in action.effects]
+    return sorted({name for formula in formulas for name in _asked(formula)})
 
 
 def _asked(formula: Formula) -> Iterator[str]:

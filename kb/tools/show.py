@@ -3,7 +3,7 @@
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.knowledge_records import Action, ObjectClass, Placement
+from hearth.kb.knowledge_records import Action, Consequence, ObjectClass, Placement
 from hearth.kb.tools.correction_reasons import Reasons
 
 
@@ -60,6 +60,7 @@ def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
             for check in action.preconditions
         ],
         "effects": [str(effect) for effect in action.effects],
+        "set_3": _set_3(action.later),
         "repairs": [
             {"on": repair.code.value, "when": repair.when, "repair": repair.say, "source": repair.source}
             for check in action.preconditions
@@ -68,6 +69,17 @@ def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
         "served_by": [a.name for a in knowledge.associations if a.relation == "serves" and a.other == action.name],
         "source": action.source,
     }
+
+
+def _set_3(later: Consequence | None) -> list[dict[str, str]]:
+    """Return what action set 3 adds to an action: its checks, its effects, its length and what others notice."""
+    if later is None:
+        return []
+    rows = [("like", later.like, "")] if later.like else []
+    rows += [("before", str(check.formula), check.code.value) for check in later.preconditions]
+    rows += [("effect", str(effect), "") for effect in later.effects]
+    rows += [("ticks", str(later.ticks), ""), ("notice", later.notice, "")]
+    return [{"part": part, "is": text, "else": code} for part, text, code in rows]
 
 
 def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[dict[str, str]]:

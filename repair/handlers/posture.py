@@ -33,6 +33,8 @@ def not_resting(context: RepairContext) -> Edit | None:
 def occupied(context: RepairContext, everything: bool = False) -> Edit | None:
     """Take things off the seat, one by one, until there is room: pets first, what the program names last."""
     home = context.world.home
+    if context.step.action not in context.knowledge.group("rests"):
+        return None  # somebody else rests on the thing to be taken
     seat = context.index()
     there = [home.index[node] for node in context.failure.objects[1:]]
     too_many = len(there) - home.limit(seat, context.step.action == "Lie") + 1

@@ -30,6 +30,7 @@ HANDLERS: dict[Code, Handler] = {
     Code.NO_ORIGIN: hands.no_origin,
     Code.OCCUPIED: posture.occupied,
     Code.SITTING: posture.sitting,
+    Code.WRONG_STATE: leaving_out("already_so"),
 }
 """Handlers by failure code: those of table A.4, and those that it leaves out."""
 

@@ -183,7 +183,7 @@ def need_state(world: World, code: Code, state: int, o: int) -> Failure | None:
     return refuse(world, code, STATES[state], found, o)
 
 
-def _need_reachable(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+def need_reachable(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
     """Refuse what is inside something closed, naming the container."""
     container = rows.closed_container(world, o)
     if container < 0:
@@ -216,4 +216,4 @@ close = Check(need_close, lambda s, _: s.close)
 facing = Check(need_facing, lambda s, _: s.facing)
 free_hand = Check(need_free_hand, lambda s, _: -1 if s.free_hand else 0)
 held = Check(need_holding, lambda s, _: s.held)
-reachable = Check(_need_reachable, lambda s, _: ~s.hidden)
+reachable = Check(need_reachable, lambda s, _: ~s.hidden)

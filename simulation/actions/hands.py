@@ -27,7 +27,7 @@ from hearth.simulation.world import moved as kinds
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.moved import add, lift
-from hearth.simulation.world.states import OPEN
+from hearth.simulation.world.states import LYING, OPEN, SITTING
 from hearth.simulation.world.world import World
 
 
@@ -190,14 +190,48 @@ def _need_another_grip(world: World, agent: Agent, o: int, action: str) -> Failu
     return refuse(world, Code.HELD_ALREADY, "in neither hand", "held already", o)
 
 
+def _need_nobody_resting(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+    """Refuse a seat that the character itself, or another, sits or lies on."""
+    resting = world.states[SITTING] | world.states[LYING]
+    for other in world.agents:
+        if other.on >> o & 1 and resting & other.bit:
+            lying = bool(world.states[LYING] & other.bit)
+            if other.index != agent.index:
+                return refuse(world, Code.OCCUPIED, "nobody on it", "somebody", o, other.index)
+            code, posture = (Code.LYING, "lying") if lying else (Code.SITTING, "sitting")
+            return refuse(world, code, "not on it", f"{posture} on it", o)
+    return None
+
+
+def _unused(s: Situation, action: str) -> int:
+    resting, used = s.states[SITTING] | s.states[LYING], 0
+    for other in s.world.agents:
+        if resting & other.bit:
+            used |= other.on
+    return ~used
+
+
+_nobody_resting = Check(_need_nobody_resting, _unused)
+
 _nobody_else = Check(_need_nobody_else, lambda s, _: ~s.held_by_others)
 
 _another_grip = Check(_need_another_grip, lambda s, _: ~s.held)
 
 _GRAB = (able, close, reachable, free_hand, _nobody_else)
 
+
+def _grabbing(*more: Check) -> Action:
+    """Grab, with more checks at its end: by the rule `one_grip` not again what is held."""
+    checks = (*_GRAB, *more)
+    return by_rule(
+        "one_grip",
+        checked("Grab", _another_grip, *checks, effect=_grab),
+        checked("Grab", *checks, effect=_grab),
+    )
+
+
 ACTIONS = (
-    by_rule("one_grip", checked("Grab", _another_grip, *_GRAB, effect=_grab), checked("Grab", *_GRAB, effect=_grab)),
+    by_rule("leaves_seat", _grabbing(_nobody_resting), _grabbing()),
     Action("PutBack", put_back, _putable_on),
     Action("PutIn", put_in, _putable_in),
     Action("PutObjBack", put_obj_back, _returnable),

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.short_repr import brief
 from hearth.simulation.actions.common import Action
+from hearth.simulation.actions.consequences import actions as consequent
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.observation import reach
 from hearth.simulation.observation.as_seen import as_seen
+from hearth.simulation.processes import widened
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
 
@@ -103,6 +105,8 @@ def legal(
     Raises:
         HearthError: UNKNOWN_AGENT, if the world has no character of that number.
     """
+    if rules.consequences:
+        world = widened(world)
     me, keep = world.agent(agent), -1
     if only_visible:
         keep = reach.visible(world, me)
@@ -110,7 +114,9 @@ def legal(
     situation = Situation(world, agent, rules)
     if only_reachable:
         keep &= reach.reachable(world, situation.me)
-    every = ACTIONS if situation.me.pose is None else EVERY
+    every: Mapping[str, Action] = ACTIONS if situation.me.pose is None else EVERY
+    if rules.consequences:
+        every = consequent(world.home.knowledge, situation.me.pose is not None)
     chosen = every if actions is None else {name: action for name, action in every.items() if name in actions}
     return Legal(world.home, agent, _Masks(situation, chosen, keep))
 

@@ -151,9 +151,9 @@ ACTIONS = (
 )
 
 
-def followed(world: World, number: int, action: str, o: int) -> World:
+def followed(before: World, world: World, number: int, action: str, o: int) -> World:
     """Return the world after an action, its character turned to its target, on its seat, or next to the seat that it
-    has left.
+    was on before and has left.
     """
     agent = world.agents[number]
     pose = agent.pose
@@ -165,7 +165,7 @@ def followed(world: World, number: int, action: str, o: int) -> World:
     elif action in known.group("rests") and o >= 0:
         there = positions.resting(world, pose, o)
     elif action in known.group("rises"):
-        there = positions.risen(world, number, pose)
+        there = positions.risen(before, number, pose)
     else:
         return world
     if there == pose:

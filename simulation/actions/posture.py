@@ -17,15 +17,15 @@ def _sit(world: World, number: int, o: int, rules: Rules) -> World:
     for other in world.agents:
         if other.faced >> o & 1:
             ahead |= other.bit
-    return _settle(world, number, o, SITTING, world.agents[number].facing | ahead)
+    return _settle(world, number, o, SITTING, world.agents[number].facing | ahead, rules)
 
 
 def _lie(world: World, number: int, o: int, rules: Rules) -> World:
-    return _settle(world, number, o, LYING, world.agents[number].facing)
+    return _settle(world, number, o, LYING, world.agents[number].facing, rules)
 
 
 def stand_up(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Get up; the character stays ON its seat or bed, wherever it walks (as the release has it)."""
+    """Get up from the seat or bed; in the release one stays ON it, wherever one walks."""
     agent = world.agents[number]
     failure = _need_rest(world, agent)
     if failure is not None:
@@ -33,7 +33,11 @@ def stand_up(world: World, number: int, o: int, _: int, rules: Rules) -> World |
     states = list(world.states)
     states[SITTING] &= ~agent.bit
     states[LYING] &= ~agent.bit
-    return World(world.home, tuple(states), world.agents, world.moved)
+    agents = world.agents
+    if rules.leaves_seat:
+        left = agent.on & ~rows.seats(world.home)
+        agents = world.with_agent(number, made((*agent[:7], left, *agent[8:]))).agents
+    return World(world.home, tuple(states), agents, world.moved)
 
 
 def sleep(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
@@ -87,9 +91,10 @@ def _resting_on(name: str, lying: bool, already: Check, effect: Effect) -> Actio
     return by_rule("made_bed", made, counted)
 
 
-def _settle(world: World, number: int, o: int, state: int, facing: int) -> World:
+def _settle(world: World, number: int, o: int, state: int, facing: int, rules: Rules) -> World:
     agent = world.agents[number]
-    on = agent.on | 1 << o
+    before = agent.on & ~rows.seats(world.home) if rules.leaves_seat else agent.on
+    on = before | 1 << o
     settled = made((*agent[:3], facing, *agent[4:7], on, *agent[8:]))
     agents = (settled,) if len(world.agents) == 1 else world.with_agent(number, settled).agents
     return World(world.home, with_state(world.states, state, agent.bit), agents, world.moved)

@@ -159,7 +159,7 @@ def resting(world: World, pose: Pose, seat: int) -> Pose:
 
 
 def risen(world: World, number: int, pose: Pose) -> Pose:
-    """Next to the seat that the character has left."""
+    """Next to the seat that the character leaves, by the world before."""
     seats = world.agents[number].on
     return beside(world, pose, lowest(seats))._replace(yaw=pose.yaw) if seats else pose
 

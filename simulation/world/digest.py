@@ -9,9 +9,10 @@ from functools import lru_cache
 from hashlib import blake2b
 from weakref import WeakKeyDictionary
 
-from hearth.schemas.vocabulary import STATES
+from hearth.schemas.vocabulary import EVERY_STATE, STATES
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.further import counts_of, rows_at_start
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import CLOSE
 from hearth.simulation.world.world import World
@@ -36,9 +37,10 @@ def digest(world: World) -> str:
             if kind == CLOSE:
                 found.update((ids[j], relation, ids[i]) for j in indices(mask))
     total += _sum(came) - _sum(went)
-    for name, before, now in zip(STATES, home.states, world.states, strict=True):
+    for name, before, now in zip(EVERY_STATE, rows_at_start(world), world.states, strict=False):
         if before != now:
             total += _states(ids, name, now & ~before) - _states(ids, name, before & ~now)
+    total += sum(_states(ids, f"ticks {k}", row) for k, row in enumerate(counts_of(world)))
     return blake2b((total % (1 << _BITS)).to_bytes(_BITS // 8, "little"), digest_size=16).hexdigest()
 
 

@@ -10,6 +10,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
 from hearth.schemas.short_repr import brief
+from hearth.schemas.vocabulary import FURTHER_STATES
 from hearth.simulation.world import building
 from hearth.simulation.world.affordance import allowed, of_kind
 from hearth.simulation.world.bits import indices, mask_of
@@ -170,6 +171,21 @@ class Home:
             "CLOSE": (self.close, self.close),
             "FACING": (self.facing, self.faced),
         }
+
+    @cached_property
+    def further(self) -> tuple[int, ...]:
+        """The rows of `vocabulary.FURTHER_STATES` at the start: only worlds of action set 3 have them."""
+        found = dict.fromkeys(FURTHER_STATES, 0)
+        for i in indices(self.everything):
+            for name in self.node(i).states:
+                if name in found:
+                    found[name] |= 1 << i
+        return tuple(found.values())
+
+    @cached_property
+    def kinds(self) -> dict[int, tuple[Any, Any]]:
+        """Formulas about a kind of things that somebody has asked for, with the nodes, by the formula's identity."""
+        return {}
 
     def able(self, action: str, position: int = 0) -> int:
         """The nodes that an action's argument may be, by the knowledge's requirement for it."""  # asked by every step

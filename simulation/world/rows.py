@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from hearth.schemas.graph import Edge
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
 from hearth.simulation.world.state import WorldState
 from hearth.simulation.world.states import CLOSED
@@ -178,6 +179,11 @@ def bearing(world: WorldState, i: int) -> int:
         if agent.on >> i & 1:
             found |= agent.bit
     return found
+
+
+def seats(home: Home) -> int:
+    """Return the things to sit or lie on."""
+    return home.properties["SITTABLE"] | home.properties["LIEABLE"]
 
 
 def turned_back(world: WorldState, i: int) -> int:

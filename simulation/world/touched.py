@@ -5,7 +5,7 @@ from operator import attrgetter
 from typing import Any
 
 from hearth.schemas.literals import HANDS, HOLDS
-from hearth.schemas.vocabulary import STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
@@ -47,8 +47,8 @@ def unchanged(before: WorldState, after: WorldState) -> bool:
 
 def changed(name: str, before: WorldState, after: WorldState) -> int:
     """Both ends of every edge of a relation that came or went, or the nodes whose state changed; maybe more."""
-    number = STATE_ID.get(name)
-    if number is not None and before.states is not after.states:
+    number = EVERY_STATE_ID.get(name, len(before.states))
+    if number < len(before.states) and before.states is not after.states:
         found = before.states[number] ^ after.states[number]
     else:
         found = 0

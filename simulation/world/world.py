@@ -9,10 +9,11 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph
-from hearth.schemas.vocabulary import STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, replaced
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.further import rows_with_further
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import NOTHING
 from hearth.simulation.world.nodes import with_states
@@ -32,8 +33,10 @@ class World(WorldState):
         (False, True)
     """
 
-    __slots__ = ("_key",)
+    __slots__ = ("_key", "idle")
     _key: tuple[object, ...]
+    idle: bool
+    """True if no process goes on in it; known once it has been asked (see `processes`)."""
 
     @classmethod
     @explained
@@ -66,7 +69,8 @@ class World(WorldState):
             HearthError: BAD_ARGUMENT, if there is no such node or state.
         """
         try:
-            return bool(self.states[STATE_ID[state]] >> self.home.index[node_id] & 1)
+            number, index = EVERY_STATE_ID[state], self.home.index[node_id]
+            return bool(rows_with_further(self)[number] >> index & 1)
         except KeyError as error:
             raise HearthError.of(Code.BAD_ARGUMENT, f"there is no node or state {error.args[0]!r}") from None
 

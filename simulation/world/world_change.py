@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Set
 
 from hearth.schemas.change import Change, Parts, State, difference
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.vocabulary import STATES
+from hearth.schemas.vocabulary import EVERY_STATE
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import indices
@@ -54,7 +54,7 @@ def encode_whole(before: WorldState, after: WorldState, edges: Set[Edge] | None 
 
 def _parts(world: WorldState, edges: Set[Edge] | None = None) -> Parts:
     ids = world.home.ids
-    states = {(ids[i], name) for name, row in zip(STATES, world.states, strict=True) for i in indices(row)}
+    states = {(ids[i], name) for name, row in zip(EVERY_STATE, world.states, strict=False) for i in indices(row)}
     return Parts(rows.edges(world) if edges is None else edges, states)
 
 
@@ -83,7 +83,7 @@ def _home_differences(one: Home, other: Home) -> int:
 def _state_changes(before: WorldState, after: WorldState, ids: list[int]) -> tuple[list[State], list[State]]:
     came: list[State] = []
     went: list[State] = []
-    for name, old, new in zip(STATES, before.states, after.states, strict=True):
+    for name, old, new in zip(EVERY_STATE, before.states, after.states, strict=False):
         if old != new:
             came.extend((ids[i], name) for i in indices(new & ~old))
             went.extend((ids[i], name) for i in indices(old & ~new))

@@ -111,7 +111,7 @@ def test_who_keeps_off_what_is_watched_means_it(knowledge, maple, actions, off):
     assert suited(program, knowledge) == (WATCHING_OFF if off else DEFAULT)
     found = attempt(program, maple)
     assert isinstance(found, Trial) and found.execution.executable
-    assert run_row(found.execution)["rules"] == ("near_hands_watching_off" if off else "near_hands")
+    assert run_row(found.execution)["rules"] == ("leaves_seat_watching_off" if off else "leaves_seat")
 
 
 def test_a_third_thing_in_two_hands_is_a_contradiction(knowledge):

@@ -82,7 +82,10 @@ def laid(tmp_path):
 
 def test_entries_of_before_say_what_ours_say(laid, knowledge):
     found = laid(actions=ACTIONS, affordances=AFFORDANCES)
-    assert found.actions == knowledge.actions
+    differing = {name for name, action in found.actions.items() if action != knowledge.actions[name]}
+    assert differing == {"Grab"}  # which takes seats that somebody rests on, as it did
+    ours, theirs = (known.actions["Grab"].preconditions for known in (knowledge, found))
+    assert [check for check in ours if check.option != "leaves_seat"] == list(theirs)
     for action, role in (("Cut", 0), ("Pour", 0), ("Pour", 1), ("Type", 0)):
         for name in knowledge.objects:
             assert found.affords(action, role, name) == knowledge.affords(action, role, name), (action, role, name)

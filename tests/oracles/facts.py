@@ -116,7 +116,10 @@ class Facts:
                     other = int(second)
                     forward[name, first] = _with(forward.get((name, first), frozenset()), other, kept)
                     backward[name, other] = _with(backward.get((name, other), frozenset()), first, kept)
-        memories = {**self.memories, **changes.remembered}
+        for node in changes.gone:
+            _nowhere(forward, backward, node)
+            states[node] = states[node] | {"GONE"}
+        memories = {**self.memories, **changes.remembered, **dict.fromkeys(changes.gone)}
         return replace(
             self,
             forward=forward,
@@ -130,6 +133,15 @@ class Facts:
         return frozenset(
             (source, relation, target) for (relation, source), targets in self.forward.items() for target in targets
         )
+
+
+def _nowhere(forward: dict, backward: dict, node: int) -> None:
+    """Take away every edge of a node."""
+    for out, into in ((forward, backward), (backward, forward)):
+        for relation, one in list(out):
+            if one == node:
+                for other in out.pop((relation, node)):
+                    into[relation, other] = _with(into[relation, other], node, False)
 
 
 def _with(members: frozenset[T], member: T, kept: bool) -> frozenset[T]:

@@ -70,6 +70,7 @@ class Changes:
     removed: frozenset[Fact]
     added: frozenset[Fact]
     remembered: Mapping[int, Memory | None] = field(default_factory=dict)
+    gone: frozenset[int] = frozenset()
 
 
 def first_failure(
@@ -88,14 +89,17 @@ def first_failure(
     return None
 
 
-def changes(knowledge: Knowledge, view: View, action: Action, binding: Binding) -> Changes:
-    """What the action changes in this world, whether or not its preconditions hold."""
-    reading = _Reading(knowledge, view, action)
+def changes(
+    knowledge: Knowledge, view: View, action: Action, binding: Binding, options: frozenset[str] = frozenset()
+) -> Changes:
+    """What the action changes in this world, by these options, whether or not its preconditions hold."""
+    reading = _Reading(knowledge, view, action, options)
     draft = _Draft(reading)
     for effect in action.effects:
         for bound in reading.solutions(effect, dict(binding)):
             draft.note(effect, bound)
-    return Changes(frozenset(draft.removed - draft.added), frozenset(draft.added), draft.remembered)
+    gone = frozenset(draft.gone)
+    return Changes(frozenset(draft.removed - draft.added), frozenset(draft.added), draft.remembered, gone)
 
 
 def holds(knowledge: Knowledge, view: View, formula: Formula, binding: Binding, action: Action | None = None) -> bool:
@@ -111,6 +115,7 @@ class _Draft:
         self.removed: set[Fact] = set()
         self.added: set[Fact] = set()
         self.remembered: dict[int, Memory | None] = {}
+        self.gone: set[int] = set()
 
     def note(self, effect: Effect, bound: Mapping[str, int]) -> None:
         """Add what one effect changes under one binding."""
@@ -118,7 +123,9 @@ class _Draft:
         first = self.reading.thing(terms[0], bound)
         if first is None:
             return
-        if name == "REMEMBERS":
+        if name == "gone":
+            self.gone.add(first)
+        elif name == "REMEMBERS":
             self.remembered[first] = None if delete else self.reading.view.place(first)
         elif name == "state":
             self._state(first, terms[1].name, delete)

@@ -14,6 +14,9 @@ def grab(w: World, o: int, _: int | None, options: Options) -> None:
     hand = w.free_hand()
     need(hand, Code.NO_FREE_HAND)
     assert hand
+    if options.leaves_seat and o in w.to["ON"][w.me]:
+        need(not w.is_(w.me, "SITTING"), Code.SITTING)
+        need(not w.is_(w.me, "LYING"), Code.LYING)
     place = origin(w, o)
     room = w.room(w.me)
     w.isolate(o, "ON", "INSIDE", "CLOSE")

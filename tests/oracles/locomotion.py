@@ -103,6 +103,7 @@ def sit(w: World, o: int, _: int | None, options: Options) -> None:
     need(not w.is_(w.me, "SITTING"), Code.SITTING)
     need(w.has(o, "SITTABLE"), Code.NOT_AFFORDED)
     need(len(taken(w, o, options)) < SEATS.get(w.name[o], 1), Code.OCCUPIED)
+    leave_seats(w, options)
     w.link(w.me, "ON", o)
     for x in list(w.to["FACING"][o]):
         w.link(w.me, "FACING", x)
@@ -114,6 +115,7 @@ def lie(w: World, o: int, _: int | None, options: Options) -> None:
     need(not w.is_(w.me, "LYING"), Code.LYING)
     need(w.has(o, "LIEABLE"), Code.NOT_AFFORDED)
     need(len(taken(w, o, options)) < BEDS.get(w.name[o], 1), Code.OCCUPIED)
+    leave_seats(w, options)
     w.link(w.me, "ON", o)
     w.enter(w.me, "LYING")
 
@@ -124,9 +126,16 @@ def taken(w: World, o: int, options: Options) -> list[int]:
     return [x for x in w.back["ON"][o] if not made or w.name[x] not in BEDDING]
 
 
-def stand_up(w: World, *_: object) -> None:
+def stand_up(w: World, _: int | None, __: int | None, options: Options) -> None:
     need(w.resting(), Code.NOT_SITTING_OR_LYING)
     w.states[w.me] -= {"SITTING", "LYING"}
+    leave_seats(w, options)
+
+
+def leave_seats(w: World, options: Options) -> None:
+    for x in list(w.to["ON"][w.me]):
+        if options.leaves_seat and w.has(x, "SITTABLE", "LIEABLE"):
+            w.unlink(w.me, "ON", x)
 
 
 def sleep(w: World, *_: object) -> None:

@@ -141,7 +141,7 @@ class World:
 
 class Options:
     """Whether doors stop walks, what is off can't be watched, the bedding on a bed takes no room, hands reach into no
-    other room, walks are those of `evolving_graph`, and what is held is not grabbed again.
+    other room, walks are those of `evolving_graph`, what is held is not grabbed again, and a seat is left.
     """
 
     def __init__(
@@ -152,6 +152,7 @@ class Options:
         near_hands: bool = True,
         today: bool = False,
         one_grip: bool = False,
+        leaves_seat: bool = True,
     ) -> None:
         self.doors = doors
         self.watch_needs_on = watch_needs_on
@@ -159,6 +160,7 @@ class Options:
         self.near_hands = near_hands
         self.today = today
         self.one_grip = one_grip
+        self.leaves_seat = leaves_seat
 
 
 def _copied(relations: dict[str, dict[int, set[int]]]) -> dict[str, dict[int, set[int]]]:

@@ -33,7 +33,7 @@ THINGS = {
     "face": (("BODY_PART",), "", "INSIDE kitchen"),
     "man": (("PERSON",), "", "INSIDE kitchen"),
     "bed": (("LIEABLE", "SITTABLE"), "", "INSIDE bedroom"),
-    "chair": (("SITTABLE",), "", "INSIDE bedroom, FACING television"),
+    "chair": (("SITTABLE", "GRABBABLE"), "", "INSIDE bedroom, FACING television"),
     "bench": (("LIEABLE", "SITTABLE"), "", "INSIDE bedroom"),
     "book": (("GRABBABLE", "READABLE"), "", "INSIDE bedroom, ON bench"),
     "dress": (("GRABBABLE", "CLOTHES"), "", "INSIDE bedroom, ON bench"),

@@ -103,7 +103,7 @@ def test_engine_mask_plain_engine_literals_and_conditions_agree(seed):
 
 def test_every_option_of_the_knowledge_is_a_rule():
     named = {check.option for action in KNOWN.actions.values() for check in action.preconditions} - {""}
-    assert options(KNOWN) == ["made_bed", "near_hands"] and named | {"made_bed"} <= {*DEFAULT._fields}
+    assert options(KNOWN) == ["leaves_seat", "made_bed", "near_hands"] and named | {"made_bed"} <= {*DEFAULT._fields}
 
 
 def test_the_bedding_of_the_knowledge_are_its_classes_of_bedding():
@@ -123,11 +123,16 @@ def test_a_planning_problem_states_the_rule(rules):
     assert ("(option-made-bed)" in problem(task)) is rules.made_bed
 
 
+LATER = ("leaves_seat", "near_hands", "made_bed")
+
+
 def test_datasets_and_episodes_from_before_are_read_with_the_bedding_counted():
-    made = ["near_hands", "near_hands_watching_off", "made_bed", "made_bed_watching_off"]
+    made = [f"{name}{end}" for name in ("consequences", *LATER) for end in ("", "_watching_off")]
     assert [name for name, rules in RULES.items() if rules.made_bed] == made
-    assert [name for name, rules in RULES.items() if rules.near_hands] == made[:2]
-    assert RULES["default"] == DEFAULT._replace(made_bed=False, near_hands=False) and not RULES["watching_off"].made_bed
+    assert [name for name, rules in RULES.items() if rules.near_hands] == made[:6]
+    assert [name for name, rules in RULES.items() if rules.leaves_seat] == made[:4]
+    before = DEFAULT._replace(made_bed=False, near_hands=False, leaves_seat=False)
+    assert RULES["default"] == before and not RULES["watching_off"].made_bed
     assert not read({"origin": "sensible", "watch_needs_on": True, "doors": True}).made_bed
     assert len(set(RULES.values())) == len(RULES)
 

@@ -24,7 +24,8 @@ def agree(seed: int, steps: int = 30, choices: tuple[Rules, ...] = (DEFAULT, REP
     graph = random_graph(rng)
     rules = rng.choice(choices)
     today = rules.near == "evolving_graph"
-    options = Options(rules.doors, rules.watch_needs_on, rules.made_bed, rules.near_hands, today, rules.one_grip)
+    switches = (rules.doors, rules.watch_needs_on, rules.made_bed, rules.near_hands)
+    options = Options(*switches, today, rules.one_grip, rules.leaves_seat)
     world, plain = World.start(Home.from_graph(graph, "", default())), PlainWorld(graph, rules.origin == "release")
     done = 0
     for number in range(steps):

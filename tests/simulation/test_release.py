@@ -57,7 +57,11 @@ def test_so_does_the_plain_reading(real_data, knowledge, every):
     for name, program, start, end in cases(real_data, knowledge, every):
         world = PlainWorld(from_release(start), release=True)
         assert (
-            reference.run(world, program, Options(doors=False, watch_needs_on=False, made_bed=False, near_hands=False))
+            reference.run(
+                world,
+                program,
+                Options(doors=False, watch_needs_on=False, made_bed=False, near_hands=False, leaves_seat=False),
+            )
             is None
         ), name
         edges, states = facts(end)

@@ -17,13 +17,14 @@ from hearth.simulation.engine import act, tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.positions import placed, spot
 from hearth.simulation.observation.views import view
-from hearth.simulation.rules import DEFAULT, RULES
+from hearth.simulation.rules import RULES
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 GOLDEN = "simulation.json"
-BODIES = DEFAULT._replace(bodies=True)
+WHEN_WRITTEN = RULES["near_hands"]
+BODIES = WHEN_WRITTEN._replace(bodies=True)
 MOVES = ("Walktowards", "Walktowards", "Walkforward", "Turnleft", "Grab", "PutBack", "PutIn", "Open", "Close", "Sit")
 
 
@@ -55,7 +56,7 @@ def _large(name: str, seed: int) -> Iterator[tuple[str, str]]:
         chosen = {}
         for agent in (0, 1):
             wanted = chooser.choice(MOVES)
-            options = [each for each in legal(world, agent, actions=EVERY) if each.action == wanted]
+            options = [each for each in legal(world, agent, WHEN_WRITTEN, actions=EVERY) if each.action == wanted]
             if options:
                 chosen[agent] = chooser.choice(options)
         world, failures = tick(world, chosen, BODIES)
@@ -66,7 +67,7 @@ def _large(name: str, seed: int) -> Iterator[tuple[str, str]]:
                 point and tuple(round(value, 6) for value in point)
                 for point in (spot(world, i) for i in range(len(home)))
             ]
-            options = sorted(map(full, legal(world, number // 4 % 2, actions=_actions())))
+            options = sorted(map(full, legal(world, number // 4 % 2, WHEN_WRITTEN, actions=_actions())))
             facts = (digest(world), poses, spots, seen.ids, full(seen.me), full(seen.others), options)
             yield f"{number}", " ".join(map(short, (*facts, sorted(failures.items(), key=str))))
 

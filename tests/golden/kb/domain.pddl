@@ -1,6 +1,7 @@
 (define (domain hearth)
   (:requirements :adl :derived-predicates)
   (:predicates
+    (option-leaves-seat)
     (option-made-bed)
     (option-near-hands)
     (bed-limit-1 ?x)
@@ -91,6 +92,7 @@
     (room-to-lie ?o)
     (room-to-sit ?o)
     (same-room ?a ?x)
+    (seat ?x)
     (seated ?a)
     (turned-back ?x ?o)
   )
@@ -126,6 +128,8 @@
     (or (and (seat-limit-1 ?o) (not (exists (?x1) (and (and (on ?x1 ?o) (not (turned-back ?x1 ?o))))))) (and (seat-limit-2 ?o) (not (exists (?x1 ?x2) (and (and (on ?x1 ?o) (not (turned-back ?x1 ?o))) (and (on ?x2 ?o) (not (turned-back ?x2 ?o))) (not (= ?x1 ?x2)))))) (and (seat-limit-4 ?o) (not (exists (?x1 ?x2 ?x3 ?x4) (and (and (on ?x1 ?o) (not (turned-back ?x1 ?o))) (and (on ?x2 ?o) (not (turned-back ?x2 ?o))) (and (on ?x3 ?o) (not (turned-back ?x3 ?o))) (and (on ?x4 ?o) (not (turned-back ?x4 ?o))) (not (= ?x1 ?x2)) (not (= ?x1 ?x3)) (not (= ?x1 ?x4)) (not (= ?x2 ?x3)) (not (= ?x2 ?x4)) (not (= ?x3 ?x4))))))))
   (:derived (same-room ?a ?x)
     (exists (?r0) (and (in-room ?a ?r0) (exists (?r1) (and (in-room ?x ?r1) (= ?r0 ?r1))))))
+  (:derived (seat ?x)
+    (or (p-sittable ?x) (p-lieable ?x)))
   (:derived (seated ?a)
     (or (is-sitting ?a) (is-lying ?a)))
   (:derived (turned-back ?x ?o)
@@ -225,6 +229,7 @@
     :parameters (?a ?o)
     :precondition (and (loosely-close ?a ?o) (not (is-lying ?a)) (p-lieable ?o) (room-to-lie ?o))
     :effect (and
+      (forall (?x) (when (and (option-leaves-seat) (seat ?x)) (not (on ?a ?x))))
       (on ?a ?o)
       (is-lying ?a)
       (not (is-sitting ?a))
@@ -400,6 +405,7 @@
     :parameters (?a ?o)
     :precondition (and (loosely-close ?a ?o) (not (is-sitting ?a)) (p-sittable ?o) (room-to-sit ?o))
     :effect (and
+      (forall (?x) (when (and (option-leaves-seat) (seat ?x)) (not (on ?a ?x))))
       (on ?a ?o)
       (forall (?x) (when (facing ?o ?x) (facing ?a ?x)))
       (is-sitting ?a)
@@ -421,6 +427,7 @@
     :effect (and
       (not (is-sitting ?a))
       (not (is-lying ?a))
+      (forall (?x) (when (and (option-leaves-seat) (seat ?x)) (not (on ?a ?x))))
     ))
   (:action SwitchOff
     :parameters (?a ?o)

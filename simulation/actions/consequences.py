@@ -1,0 +1,191 @@
+"""The actions of action set 3: those of set 2 with their consequences, and the acts that only set 3 executes.
+
+An act that only set 3 executes has no function of its own: its checks and effects are read from its row of
+`actions.yaml`. Where set 2 has a function for a check, that is used, with its words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+from hearth.kb.formula import Formula, free
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge_records import Action as Known
+from hearth.kb.knowledge_records import Condition, Consequence
+from hearth.schemas.failures import Code, Failure
+from hearth.simulation.actions import common
+from hearth.simulation.actions.common import Action, Masks, refuse
+from hearth.simulation.actions.literal_effects import done
+from hearth.simulation.actions.locomotion import need_legs
+from hearth.simulation.actions.readings import Bound, Reading
+from hearth.simulation.actions.registry import ACTIONS, EVERY
+from hearth.simulation.actions.situation import Situation
+from hearth.simulation.rules import Rules
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.world import World
+
+
+@lru_cache(maxsize=16)
+def actions(knowledge: Knowledge, placed: bool) -> Mapping[str, Action]:
+    """Every action of set 3 by name, of characters at places or of others."""
+    found = dict(EVERY if placed else ACTIONS)
+    for name, known in knowledge.actions.items():
+        later = known.later
+        if later is None:
+            continue
+        if name in EVERY:
+            if name in found:
+                found[name] = _followed(found[name], later)
+        elif later.like:
+            found[name] = _followed(found[later.like]._replace(name=name), later)
+        else:
+            found[name] = _by_literals(known, later)
+    return found
+
+
+def _followed(action: Action, later: Consequence) -> Action:
+    """An action of set 2 with the additions of set 3."""
+    if not later.effects:
+        return action
+
+    bare = all(str(e.literal) == "not ON(a, x)" or "holds(a, h)" in str(e.condition) for e in later.effects)
+
+    def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+        result = action.rule(world, number, o, s, rules)
+        if isinstance(result, Failure):
+            return result
+        agent = world.agents[number]
+        if bare and not (agent.on or agent.right or agent.left):
+            return result  # nothing to step down from, and nothing that is carried: a walk
+        return _after(world, result, number, (o, s), later, rules)
+
+    return Action(action.name, rule, action.mask)
+
+
+def _after(
+    before: World, world: World, number: int, objects: tuple[int, int], later: Consequence, rules: Rules
+) -> World:
+    agent = before.agents[number]
+    return done(later.effects, Reading(before, agent, rules), _bound(agent, objects), world)
+
+
+def _bound(agent: Agent, objects: tuple[int, int]) -> Bound:
+    return {"a": agent.index} | {name: i for name, i in zip("os", objects, strict=True) if i >= 0}
+
+
+def _by_literals(known: Known, later: Consequence) -> Action:
+    checks = tuple(_Check(condition, known) for condition in later.preconditions)
+
+    def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+        agent, objects = world.agents[number], (o, s)
+        if o == s and s >= 0:
+            return refuse(world, Code.NOT_AFFORDED, "two different things", "the same twice", o)
+        reading, bound = Reading(world, agent, rules, known.name), _bound(agent, objects)
+        for check in checks:
+            if not reading.holds(check.condition.formula, bound):
+                return check.refusal(world, agent, objects, rules)
+        return done(later.effects, reading, bound, world)
+
+    return Action(known.name, rule, lambda situation: _masks(situation, known, checks))
+
+
+@dataclass(frozen=True, slots=True)
+class _Check:
+    """A check of an act, the argument that it is about, and its failure."""
+
+    condition: Condition
+    action: Known
+
+    @property
+    def position(self) -> int:
+        """The argument that it is about: 0 or 1; -1 for the character alone."""
+        return max(("os".index(name) for name in free(self.condition.formula) & {*"os"}), default=-1)
+
+    def refusal(self, world: World, agent: Agent, objects: tuple[int, int], rules: Rules) -> Failure:
+        """The failure of a check that does not hold, in the words that set 2 has for it."""
+        code, at = self.condition.code, max(self.position, 0)
+        o = objects[at]
+        if code is Code.NOT_CLOSE and "close(a" in str(self.condition.formula) and self.position >= 0:
+            found = common.need_close(world, agent, o, near_hands=rules.near_hands)
+        elif code is Code.NOT_AFFORDED:
+            found = common.need_able(world, agent, o, self.action.name, at)
+        elif code is Code.NOT_HOLDING and self.position >= 0:
+            found = common.need_holding(world, agent, o)
+        elif code in (Code.SITTING, Code.LYING):
+            found = need_legs(world, agent, *[i for i in objects if i >= 0])
+        else:
+            found = _REFUSALS[code](world, agent, o) if code in _REFUSALS and o >= 0 else None
+        expected, actual = _wanted(str(self.condition.formula), world, objects[0])
+        return found or refuse(world, code, expected, actual, *[i for i in objects[:1] if i >= 0])
+
+
+_REFUSALS = {
+    Code.NO_FREE_HAND: common.need_free_hand,
+    Code.INSIDE_CLOSED: common.need_reachable,
+    Code.IS_CLOSED: lambda world, agent, o: common.need_open(world, o),
+}
+
+
+def _wanted(words: str, world: World, o: int) -> tuple[str, str]:
+    """A formula as an expectation, with the act that would be needed, and how it is instead."""
+    if not words.startswith("not state("):
+        return words, "not so"
+    name = words.rpartition(", ")[2].rstrip(")")
+    act = next(_undoing(name, world, o), "")
+    return f"not {name} ([{act}] would change that)" if act else f"not {name}, which nothing undoes", name
+
+
+def _undoing(state: str, world: World, o: int) -> Iterator[str]:
+    """The acts that bring a thing out of a state, if they can be done to it."""
+    knowledge = world.home.knowledge
+    others = {f"state(o, {other})" for other in knowledge.excludes(state)}
+    for known in knowledge.actions.values():
+        effects = known.later.effects if known.later else ()
+        if any(str(effect.literal) in others for effect in effects) and world.home.able(known.name) >> o & 1:
+            yield known.name
+
+
+def _masks(s: Situation, known: Known, checks: tuple[_Check, ...]) -> Masks:
+    """The objects for which the checks hold, each argument for itself."""
+    reading = Reading(s.world, s.me, s.rules, known.name)
+    bound = {"a": s.me.index}
+    if not all(reading.holds(check.condition.formula, bound) for check in checks if check.position < 0):
+        return None
+    masks = tuple(
+        _mask(s, reading, "os"[at], at, [check.condition.formula for check in checks if check.position == at])
+        for at in range(known.arity)
+    )
+    return masks if all(masks) else None
+
+
+def _mask(s: Situation, reading: Reading, name: str, at: int, formulas: list[Formula]) -> int:
+    found, slow = s.home.everything, []
+    for formula in formulas:
+        known = _known_mask(s, reading.action, str(formula).replace(f"({name}", "(o").replace(f" {name})", " o)"), at)
+        if known is None:
+            slow.append(formula)
+        else:
+            found &= known
+    for formula in slow:
+        found = mask_of(i for i in indices(found) if reading.holds(formula, {"a": s.me.index, name: i}))
+    return found
+
+
+def _known_mask(s: Situation, action: str, formula: str, at: int) -> int | None:
+    if formula == "affords(o)":
+        return s.able(action, at)
+    if formula == "close(a, o)":
+        return s.close
+    if formula == "holds(a, o)":
+        return s.held
+    if formula == "not hidden(o)":
+        return ~s.hidden
+    return None
+
+
+def executed(knowledge: Knowledge) -> Iterator[str]:
+    """The names of the actions that set 3 executes, those of characters at places among them."""
+    yield from sorted(actions(knowledge, placed=True))
