@@ -10,6 +10,7 @@ import typer
 from hearth.commands import (
     challenge_checks,
     challenge_export,
+    challenge_household,
     challenge_learning,
     challenge_online,
     challenge_pictures,
@@ -36,15 +37,23 @@ def tasks(
     out: Path | None = None,
     seed: int | None = None,
     limit: int | None = None,
+    workers: int = 0,
     as_json: bool = False,
 ) -> None:
     """Write the tasks of a challenge: the published ones, or, with a seed, others of the same kind.
+
+    Of `household`, also print instructions and goals; its splits are train, valid_seen, valid_unseen, valid_words,
+    test_seen and test_unseen, and a few hundred tasks take a minute.
 
     \b
     Examples:
       hearth challenge tasks wah --split test-1 --out test-1.json
       hearth challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
+      hearth challenge tasks household --split train --limit 5
     """
+    if name == challenge_household.HOUSEHOLD:
+        challenge_household.print_tasks(split, out, seed or 0, limit, workers, as_json)
+        return
     from hearth.challenges.published_tasks import PUBLISHED
     from hearth.challenges.task_files import suite, write
 
