@@ -42,7 +42,7 @@ def command(chooser: random.Random, admissible: list[str]) -> str:
 
 def lengths(home: str, ticks: int) -> tuple[list[int], float]:
     """Return the characters of the observations of a home, and the seconds of its steps."""
-    world, chooser = TextHome(home, goal_of(home), limit=200), random.Random(0)
+    world, chooser = TextHome(home, goal_of(home), limit=100), random.Random(0)
     text, info = world.reset(0)
     found, seconds, seed = [len(text)], 0.0, 0
     while len(found) < ticks:

@@ -198,19 +198,15 @@ class _Writer:
         groups: dict[tuple[str, str, str], list[str]] = {}
         nested: list[tuple[str, str]] = []
         for i, how in things:
-            state, name = self.states.get(i, ""), self.layout.names[i]
+            counted = detail >= COUNTED and not (self.wanted | self.layout.large | self.home.doors) >> i & 1
+            state, name = "" if counted else self.states.get(i, ""), self.layout.names[i]
             if i in below:
                 nested.append((how, f"{name}{state} [{self._listed(below[i], below, detail)}]"))
             else:
-                groups.setdefault((how, self.home.classes[i], state), []).append(self._number(i, detail))
+                groups.setdefault((how, self.home.classes[i], state), []).append("" if counted else str(self.home.ids[i]))
         every = [(how, f"{name}{_numbers(some)}{state}") for (how, name, state), some in groups.items()] + nested
         inside = ", ".join(text for how, text in every if how)
         return ", ".join([*(text for how, text in every if not how), *([f"in it {inside}"] if inside else [])])
-
-    def _number(self, i: int, detail: int) -> str:
-        """Return the number of a thing; none where unwanted things are only counted."""
-        counted = detail >= COUNTED and not (self.wanted | self.layout.large) >> i & 1
-        return "" if counted else str(self.home.ids[i])
 
     def commands(self, detail: int) -> str:
         """Return the sensible commands, without walks."""
