@@ -6,6 +6,7 @@ Their modules are those of `__init__.pyi`, which type checkers read too.
 
 from __future__ import annotations
 
+import sys
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
 
 __version__ = VERSION
 install()
+if "gymnasium" in sys.modules:  # its `make` then knows `hearth/Home-v0`; nobody else pays for it
+    from hearth.challenges.registration import register as _register
+
+    _register()
 
 
 @lru_cache(maxsize=1)
@@ -74,8 +79,6 @@ def _public() -> list[str]:
 
 def _rooms() -> set[str]:
     """The subpackages that are imported, which are attributes, too."""
-    import sys
-
     return {name.split(".")[1] for name in sys.modules if name.startswith(f"{__name__}.")}
 
 

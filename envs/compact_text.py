@@ -124,6 +124,7 @@ class _Writer:
         self.held = sum(1 << self.home.index[node] for pose in poses for node in {*pose.holding, *pose.wearing})
         self.kept = view.mask & ~self.layout.built & (~self.layout.fixtures | self.wanted)
         self.states = self._states()
+        self.tree = self._tree()
 
     def _name(self, node: int) -> str:
         return self.layout.names[self.home.index[node]]
@@ -180,6 +181,11 @@ class _Writer:
 
     def here(self, detail: int) -> str:
         """Return the seen things, those on and in others behind these."""
+        top, below = self.tree
+        return f"Here: {self._listed(top, below, detail) or 'nothing'}"
+
+    def _tree(self) -> tuple[list[tuple[int, str]], dict[int, list[tuple[int, str]]]]:
+        """Return the seen things that are on and in nothing seen, and the others by their place."""
         world, shown = self.world, self.kept & ~self.held
         below: dict[int, list[tuple[int, str]]] = {}
         top: list[tuple[int, str]] = []
@@ -192,7 +198,7 @@ class _Writer:
             at = (place & -place).bit_length() - 1
             how = "in" if inside and self.layout.opened >> at & 1 else ""
             below.setdefault(at, []).append((i, how))
-        return f"Here: {self._listed(top, below, detail) or 'nothing'}"
+        return top, below
 
     def _listed(self, things: list[tuple[int, str]], below: dict[int, list[tuple[int, str]]], detail: int) -> str:
         groups: dict[tuple[str, str, str], list[str]] = {}

@@ -9,8 +9,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from hearth.envs.action_codes import ActionCode, Listed, Number, Triples, played, str_step
+from hearth.envs.action_codes import ActionCode, Listed, Number, Triples, fixed_list, played, str_step
 from hearth.envs.goal_arrays import check
+from hearth.envs.node_slots import Slots
 from hearth.envs.observation_arrays import Arrays, Encoder, Rows, Sizes
 from hearth.envs.rewards import Reward, Rewards, checked_reward
 from hearth.schemas.diagnostics import HearthError
@@ -39,7 +40,7 @@ Opening = Callable[[int], tuple[World, Goal]]
 MOST_TICKS = 250
 """Ticks after which an episode ends (thesis 6.5)."""
 
-CODES = ("triples", "listed")
+CODES = ("triples", "listed", "fixed")
 """Codes of actions by name; any other is given as an `ActionCode`."""
 
 
@@ -60,7 +61,8 @@ def opening(
     Raises:
         HearthError: UNKNOWN_HOME; BAD_ARGUMENT: no home or goal; every fault of a goal's text.
     """
-    homes = tuple(_empty(each) for each in ([home] if isinstance(home, (Home, str)) else home))
+    several = isinstance(home, Sequence) and not isinstance(home, str)
+    homes = tuple(_empty(each) for each in (home if several else [home]))
     given = [goal] if isinstance(goal, (Goal, str)) else goal
     if not homes or not given:
         message = f"{len(homes)} homes and {len(given)} goals"
@@ -127,7 +129,8 @@ class Setting:
     Attributes:
         opening: the start of an episode, and its goal.
         actions: names of the actions that may be tried; None: those of challenges (see `action_codes.played`).
-        code: how instructions are numbered (see `action_codes`): `triples`, `listed`, or an `ActionCode`.
+        code: how instructions are numbered (see `action_codes`): `triples`, `listed`, `fixed` (of `actions` and `things`), or an
+            `ActionCode`.
         partial: whether agents see only the area around them.
         told: numbers of the agents that know the goal; all of them where None.
         limit: ticks after which an episode is cut off.
@@ -135,6 +138,7 @@ class Setting:
         rules: of actions.
         sizes: of the arrays.
         things: the nodes of arrays and instructions (see `Slots.of`); all nodes where None.
+        arrays: names of the arrays that an observation has; all of them where None.
     """
 
     opening: Opening
@@ -147,6 +151,7 @@ class Setting:
     rules: Rules = DEFAULT
     sizes: Sizes = field(default_factory=Sizes)
     things: tuple[str | int, ...] | None = None
+    arrays: tuple[str, ...] | None = None
 
 
 def checked_setting(given: object) -> Setting:
@@ -187,18 +192,20 @@ class Session:
         if unknown := [name for name in self.names if name not in known.actions]:
             raise HearthError.of(Code.UNKNOWN_ACTION, f"`{unknown[0]}` is not a known action")
         check(goal, setting.sizes.literals)
-        self.code = self._code(setting.code)
+        self.code = self._code(setting.code, world.home)
         self.encoder = Encoder(replace(setting.sizes, agents=max(setting.sizes.agents, self.agents)), self.names, known)
         self.env = Env(setting.rules, setting.partial, known)
         self._rows: Rows | None = None
         self._begin(world, goal)
 
-    def _code(self, code: str | ActionCode) -> ActionCode:
+    def _code(self, code: str | ActionCode, home: Home) -> ActionCode:
         sizes = self.setting.sizes
         if code == "triples":
             return Triples(self.names, sizes.nodes)
         if code == "listed":
             return Listed(self.names, sizes.legal)
+        if code == "fixed":
+            return fixed_list(self.names, Slots.of(home, sizes.nodes, self.setting.things))
         if isinstance(code, str):
             raise HearthError.of(Code.BAD_ARGUMENT, f"no code of actions is called `{code}`",
                                  suggestion=" or ".join(CODES))  # fmt: skip
@@ -208,7 +215,7 @@ class Session:
         """Return the space of every agent's arrays."""
         from gymnasium.spaces import Dict
 
-        return Dict({**self.encoder.spaces(), **self.code.spaces()})
+        return Dict(self._kept({**self.encoder.spaces(), **self.code.spaces()}))
 
     def action_space(self) -> Space[Any]:
         """Return the space of every agent's numbers."""
@@ -263,7 +270,21 @@ class Session:
         told = self.setting.told is None or agent in self.setting.told
         time = len(self.env.ticks) / self.setting.limit
         arrays = self.encoder.arrays(view, self.rows, self.progress if told else None, time)
-        return {**arrays, **self.code.masks(legal, self.rows.slots)}
+        return self._kept({**arrays, **self.code.masks(legal, self.rows.slots)})
+
+    def _kept(self, arrays: dict[str, Any]) -> dict[str, Any]:
+        """Return the arrays, or spaces, that an observation has.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: there is no array of a name.
+        """
+        names = self.setting.arrays
+        if names is None:
+            return arrays
+        if unknown := [name for name in names if name not in arrays]:
+            message = f"no array is called `{unknown[0][:40]}`"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=", ".join(arrays))
+        return {name: arrays[name] for name in names}
 
     def info(self, agent: int) -> dict[str, Any]:
         """Return facts about an episode that the agent must not observe.
