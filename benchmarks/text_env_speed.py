@@ -1,4 +1,4 @@
-"""The text environment in figures: characters of an observation, steps a second, memory of many worlds.
+"""The text environment in figures: characters of an observation, steps a second and core, memory of many worlds.
 
     python benchmarks/text_env_speed.py                 all figures, about a minute
     python benchmarks/text_env_speed.py --ticks 2000    more commands in each home
@@ -41,15 +41,15 @@ def command(chooser: random.Random, admissible: list[str]) -> str:
 
 
 def lengths(home: str, ticks: int) -> tuple[list[int], float]:
-    """Return the characters of the observations of a home, and the seconds of its steps."""
+    """Return the characters of the observations of a home, and the seconds of a core that its steps take."""
     world, chooser = TextHome(home, goal_of(home), limit=100), random.Random(0)
     text, info = world.reset(0)
     found, seconds, seed = [len(text)], 0.0, 0
     while len(found) < ticks:
         chosen = command(chooser, list(info["admissible"]))
-        begin = time.perf_counter()
+        begin = time.process_time()
         text, _, terminated, truncated, info = world.step(chosen)
-        seconds += time.perf_counter() - begin
+        seconds += time.process_time() - begin
         found.append(len(text))
         if terminated or truncated:
             seed += 1

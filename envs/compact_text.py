@@ -5,6 +5,7 @@ Everything here depends on the seen nodes alone, and no name changes from tick t
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -100,12 +101,18 @@ def compact(view: View, legal: Legal, goal: Goal, protocol: Protocol, task: str 
     head = [writer.goal(task), writer.me(), *writer.others()]
     if note := last or writer.last():
         head.append(f"Last: {_cut(note, protocol.most_last)}")
-    text = ""
-    for detail in (FULL, WANTED, COUNTED):
-        text = "\n".join((*head, writer.here(detail), writer.commands(detail)))
-        if len(text) <= protocol.usual:
-            break
-    return _cut(text, protocol.most)
+    return _cut(_within(writer, "\n".join(head), protocol.usual), protocol.most)
+
+
+def _within(writer: _Writer, head: str, usual: int) -> str:
+    """Return the text with the most detail that keeps to the usual length; the shortest where none does."""
+    here = writer.here(FULL)
+    if len(head) + len(here) < usual:
+        for detail in (FULL, WANTED):
+            text = f"{head}\n{here}\n{writer.commands(detail)}"
+            if len(text) <= usual:
+                return text
+    return f"{head}\n{writer.here(COUNTED)}\n{writer.commands(COUNTED)}"
 
 
 def _cut(text: str, most: int) -> str:
@@ -124,7 +131,8 @@ class _Writer:
         self.held = sum(1 << self.home.index[node] for pose in poses for node in {*pose.holding, *pose.wearing})
         self.kept = view.mask & ~self.layout.built & (~self.layout.fixtures | self.wanted)
         self.states = self._states()
-        self.tree = self._tree()
+        self.stated = sum(1 << i for i in self.states)
+        self._place()
 
     def _name(self, node: int) -> str:
         return self.layout.names[self.home.index[node]]
@@ -181,38 +189,48 @@ class _Writer:
 
     def here(self, detail: int) -> str:
         """Return the seen things, those on and in others behind these."""
-        top, below = self.tree
-        return f"Here: {self._listed(top, below, detail) or 'nothing'}"
+        counted = 0 if detail < COUNTED else self.kept & ~(self.wanted | self.layout.large | self.home.doors)
+        return f"Here: {self._group(self.top, counted) or 'nothing'}"
 
-    def _tree(self) -> tuple[list[tuple[int, str]], dict[int, list[tuple[int, str]]]]:
-        """Return the seen things that are on and in nothing seen, and the others by their place."""
-        world, shown = self.world, self.kept & ~self.held
-        below: dict[int, list[tuple[int, str]]] = {}
-        top: list[tuple[int, str]] = []
+    def _place(self) -> None:
+        """Find the seen things that are on and in nothing seen, and the others by their place."""
+        world, shown, opened = self.world, self.kept & ~self.held, self.layout.opened
+        self.top = self.places = 0
+        self.on: dict[int, int] = {}
+        self.inside: dict[int, int] = {}
         for i in indices(shown):
             inside, on = rows.inside(world, i) & shown, rows.on(world, i) & shown
-            place = inside or on
+            place, bit = inside or on, 1 << i
             if not place:
-                top.append((i, ""))
+                self.top |= bit
                 continue
             at = (place & -place).bit_length() - 1
-            how = "in" if inside and self.layout.opened >> at & 1 else ""
-            below.setdefault(at, []).append((i, how))
-        return top, below
+            self.places |= 1 << at
+            below = self.inside if inside and opened >> at & 1 else self.on
+            below[at] = below.get(at, 0) | bit
 
-    def _listed(self, things: list[tuple[int, str]], below: dict[int, list[tuple[int, str]]], detail: int) -> str:
-        groups: dict[tuple[str, str, str], list[str]] = {}
-        nested: list[tuple[str, str]] = []
-        for i, how in things:
-            counted = detail >= COUNTED and not (self.wanted | self.layout.large | self.home.doors) >> i & 1
-            state, name = "" if counted else self.states.get(i, ""), self.layout.names[i]
-            if i in below:
-                nested.append((how, f"{name}{state} [{self._listed(below[i], below, detail)}]"))
-            else:
-                groups.setdefault((how, self.home.classes[i], state), []).append("" if counted else str(self.home.ids[i]))
-        every = [(how, f"{name}{_numbers(some)}{state}") for (how, name, state), some in groups.items()] + nested
-        inside = ", ".join(text for how, text in every if how)
-        return ", ".join([*(text for how, text in every if not how), *([f"in it {inside}"] if inside else [])])
+    def _group(self, things: int, counted: int) -> str:
+        """Return some things: those of a class and state together, then those that others are on or in."""
+        places = things & self.places
+        stated = things & self.stated & ~counted & ~places
+        bare = things & ~places & ~stated
+        found = [_by_class(self.home, bare & ~counted, ", ")] if bare & ~counted else []
+        if bare & counted:
+            found.append(_counted(self.home, bare & counted))
+        groups: dict[tuple[str, str], int] = {}
+        for i in indices(stated):
+            key = self.home.classes[i], self.states[i]
+            groups[key] = groups.get(key, 0) | 1 << i
+        found += [f"{_by_class(self.home, nodes, ', ')}{state}" for (_, state), nodes in groups.items()]
+        found += [self._with_things(i, counted) for i in indices(places)]
+        return ", ".join(found)
+
+    def _with_things(self, i: int, counted: int) -> str:
+        on = self._group(self.on.get(i, 0), counted)
+        inside = self._group(self.inside.get(i, 0), counted)
+        both = f"{on}, in it {inside}" if on and inside else f"in it {inside}" if inside else on
+        state = "" if counted >> i & 1 else self.states.get(i, "")
+        return f"{self.layout.names[i]}{state} [{both}]"
 
     def commands(self, detail: int) -> str:
         """Return the sensible commands, without walks."""
@@ -235,34 +253,39 @@ class _Writer:
         if len(masks) == 1:
             if action == "Grab":
                 first &= ~(self.layout.large | self.held)
-            return f"{action} {self._by_class(first)}" if first else ""
+            return f"{action} {_by_class(self.home, first)}" if first else ""
         places = masks[1] & keep & ((self.layout.large & ~self.layout.not_targets) | self.wanted)
         if action == "PutIn":
             places &= self.layout.opened
         if detail > WANTED:
             places &= self.wanted or places
         found = [
-            f"{action} {self.layout.names[i]}, {self._by_class(places & ~(1 << i))}"
+            f"{action} {self.layout.names[i]}, {_by_class(self.home, places & ~(1 << i))}"
             for i in indices(first) if places & ~(1 << i)
         ]  # fmt: skip
         return "; ".join(found)
 
-    def _by_class(self, nodes: int) -> str:
-        groups: dict[str, list[str]] = {}
-        for i in indices(nodes):
-            groups.setdefault(self.home.classes[i], []).append(str(self.home.ids[i]))
-        return " | ".join(f"{name} {_runs(ids)}" for name, ids in groups.items())
+
+@lru_cache(maxsize=65_536)
+def _by_class(home: Home, nodes: int, between: str = " | ") -> str:
+    """Return the classes of some nodes, each with its numbers."""
+    groups: dict[str, list[int]] = {}
+    for i in indices(nodes):
+        groups.setdefault(home.classes[i], []).append(home.ids[i])
+    return between.join(f"{name} {_runs(ids)}" for name, ids in groups.items())
 
 
-def _numbers(ids: list[str]) -> str:
-    """Return the numbers of some things of a class; how many there are where they are only counted."""
-    return f" {_runs(ids)}" if all(ids) else f" x{len(ids)}" if len(ids) > 1 else ""
+@lru_cache(maxsize=65_536)
+def _counted(home: Home, nodes: int) -> str:
+    """Return the classes of some nodes, each with how many there are."""
+    counts = Counter(home.classes[i] for i in indices(nodes))
+    return ", ".join(f"{name} x{number}" if number > 1 else name for name, number in counts.items())
 
 
-def _runs(ids: Iterable[str]) -> str:
+def _runs(ids: Iterable[int]) -> str:
     """Return ascending numbers, three and more in a row as the first and the last: `66-69 74`."""
     runs: list[list[int]] = []
-    for number in map(int, ids):
+    for number in ids:
         if runs and number == runs[-1][-1] + 1:
             runs[-1].append(number)
         else:
