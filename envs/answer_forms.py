@@ -64,7 +64,7 @@ def command_line(answer: str) -> str:
     text = fenced[-1] if fenced else answer
     if called := _called(text.strip()):
         return called
-    lines = [line.strip().strip("`") for line in text.splitlines() if line.strip()]
+    lines = [line.strip().strip("`*") for line in text.splitlines() if line.strip()]
     acts = [act for line in lines if (act := act_of(line))]
     return _called(acts[-1]) or acts[-1] if acts else lines[-1].removeprefix(">").strip() if lines else ""
 

@@ -143,9 +143,9 @@ class _Writer:
     def goal(self, task: str) -> str:
         """Return the line about the goal, with what is seen of it."""
         seen = list(seen_goal(self.wanted_goal, self.view))
-        said = task or "; ".join(said_literal(each, self.protocol.goals) for each in seen)
+        said = printable(task) or "; ".join(said_literal(each, self.protocol.goals) for each in seen)
         counts = ", ".join(f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None)
-        return f"Goal: {_cut(' '.join(said.split()), 300)}{'' if said.endswith('.') else '.'} You see {counts} done."
+        return f"Goal: {_cut(said, 300)}{'' if said.endswith(('.', '!', '?')) else '.'} You see {counts} done."
 
     def me(self) -> str:
         """Return the line about oneself and the rooms."""
@@ -291,6 +291,11 @@ def _runs(ids: Iterable[int]) -> str:
         else:
             runs.append([number])
     return " ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else " ".join(map(str, run)) for run in runs)
+
+
+def printable(text: str) -> str:
+    """Return a text on one line, with `?` for what a terminal would obey."""
+    return "".join(each if each.isprintable() else "?" for each in " ".join(text.split()))
 
 
 def said_step(text: str) -> str:

@@ -6,12 +6,13 @@ Worlds are values. What a world answers depends on its own task and commands alo
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from hearth.agents.agent_registry import MAIN
 from hearth.envs.action_codes import played
+from hearth.envs.answer_forms import WALK
 from hearth.envs.compact_text import said_step
 from hearth.envs.rewards import Reward, Rewards, checked_reward
 from hearth.envs.session import MOST_TICKS, Opening, opening
@@ -21,9 +22,11 @@ from hearth.envs.text_worlds import Play, Task, TextWorld, begun, commanded, obs
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
+from hearth.simulation.world import rows
 from hearth.simulation.world.world import World
 
 if TYPE_CHECKING:
@@ -261,8 +264,8 @@ class TextHomes:
     def _expert(self, place: _Place) -> str:
         if place.now.over:
             return "wait"
-        step = place.expert.act(*_all_seen(place, self._play))
-        return "wait" if step is None else said_step(plain(step))
+        step = place.expert.act(*seen(place.now, replace(self._play, partial=False)))
+        return "wait" if step is None else said_step(plain(_towards(step, place.shown[0])))
 
     def snapshot(self) -> tuple[TextWorld, ...]:
         """Return the worlds as they stand; values, which cost nothing to keep.
@@ -348,11 +351,19 @@ class TextHome:
         return texts[0], infos[0]
 
 
-def _all_seen(place: _Place, play: Play) -> tuple[View, Legal]:
-    """Return what the expert sees: everything, and the legal actions of the agent."""
-    from dataclasses import replace
-
-    return seen(place.now, replace(play, partial=False))
+def _towards(step: Step, view: View) -> Step:
+    """Return an expert's walk as somebody could say it who sees less: to the place of an unseen thing, or to its room."""
+    home, world = view.world.home, view.world
+    if step.action != WALK or step.objects[0].node is None or view.sees(step.objects[0].node):
+        return step
+    at = home.index[step.objects[0].node]
+    while not view.mask >> at & 1:
+        inside = rows.inside(world, at)
+        above = rows.on(world, at) | inside & ~home.rooms or inside
+        if not above:
+            break
+        at = (above & -above).bit_length() - 1
+    return Step(WALK, (ObjectRef(home.classes[at], 0, home.ids[at]),), step.agent)
 
 
 def _fault(fault: Any) -> Info:

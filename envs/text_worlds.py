@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from hearth.envs.answer_forms import WALK, read_answer
-from hearth.envs.compact_text import compact, wanted_nodes
+from hearth.envs.compact_text import compact, printable, wanted_nodes
 from hearth.envs.rewards import Reward, Rewards
 from hearth.envs.session import MOST_TICKS
 from hearth.envs.text_protocols import Protocol as Words
@@ -22,8 +23,7 @@ from hearth.simulation.observation.views import LastAction, View, view
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
-WALKS = frozenset({WALK, "Walkforward"})
-"""Actions that go on until one arrives."""
+_TICK = re.compile(r"^tick \d+, ")
 
 
 class Task(Protocol):
@@ -137,8 +137,7 @@ def observed(now: TextWorld, play: Play, shown: tuple[View, Legal] | None = None
 def reason(fault: Diagnostic) -> str:
     """Return why a command was refused and what to do, in characters that can be printed."""
     remedy = f" ({fault.suggestion})" if fault.suggestion else ""
-    text = f"{fault.code}: {fault.message}{remedy}"
-    return "".join(each if each.isprintable() else "?" for each in text)
+    return printable(f"{fault.code}: {_TICK.sub('', fault.message)}{remedy}")
 
 
 def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Legal]) -> tuple[TextWorld, float]:
@@ -156,7 +155,7 @@ def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Leg
     except HearthError as error:
         step, fault = None, error.diagnostics[0]
     after, reward = _ticked(replace(now, fault=fault, faults=now.faults + (fault is not None)), step, play)
-    if step is not None and step.action in WALKS and play.travel:
+    if step is not None and step.action == WALK and play.travel:
         after, more = _walked_on(after, step, play, shown[0])
         reward += more
     return after, reward
@@ -175,8 +174,6 @@ def _ticked(now: TextWorld, step: Step | None, play: Play) -> tuple[TextWorld, f
 def _walked_on(now: TextWorld, step: Step, play: Play, began: View) -> tuple[TextWorld, float]:
     """Walk on until one arrives, is stopped, or sees something wanted for the first time on this way."""
     total, place = 0.0, began.me.place
-    if step.action != WALK:
-        return now, total
     for _ in range(play.words.most_walked):
         here = now.world.agents[0].pose
         stopped = now.last is not None and now.last.failure is not None
