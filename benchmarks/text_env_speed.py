@@ -83,7 +83,9 @@ def main() -> None:
     for home in library.names():
         found, seconds = lengths(home, given.ticks)
         every, total = every + found, total + seconds
-        print(f"{home:10} mean {sum(found) / len(found):6.0f}  most {max(found):5,}  {len(found) / seconds:7,.0f} steps/s")
+        print(
+            f"{home:10} mean {sum(found) / len(found):6.0f}  most {max(found):5,}  {len(found) / seconds:7,.0f} steps/s"
+        )
     mean = sum(every) / len(every)
     print(f"{'all':10} mean {mean:6.0f}  most {max(every):5,}  {len(every) / total:7,.0f} steps/s")
     if given.worlds:

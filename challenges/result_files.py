@@ -120,9 +120,7 @@ class Results:
 
     def finished(self, helped: bool) -> Outcomes:
         """Return the same, without the episodes in which an agent could not go on: these are no scores."""
-        return by_task(
-            (each.task, each.metrics) for each in self.records if each.helped == helped and each.end is None
-        )
+        return by_task((each.task, each.metrics) for each in self.records if each.helped == helped and each.end is None)
 
     @property
     def unfinished(self) -> list[Record]:

@@ -84,8 +84,8 @@ def run_tasks(
 
     The agent that acts (--main) is one of ours, your own as FILE.py:CLASS, or the command of a program that reads and
     writes lines (docs/examples/agents.md). A run that was stopped goes on where it was; episodes in which an agent
-    could not go on are no scores: they are played once more, counted apart, and the status is 1. Helpers: none, random, hp, hp_true, hp_timed, hp_random, oracle_b,
-    oracle_ab, ..., or an agent of your own, as FILE.py:CLASS.
+    could not go on are no scores: they are played once more, counted apart, and the status is 1. Helpers: none, random,
+    hp, hp_true, hp_timed, hp_random, oracle_b, oracle_ab, ..., or an agent of your own, as FILE.py:CLASS.
 
     \b
     Examples:

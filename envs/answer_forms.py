@@ -1,4 +1,4 @@
-"""The forms in which language models answer: a command line, `Action:`, a JSON tool call, ALFWorld's strings, a sentence.
+"""The forms in which language models answer: a command, `Action:`, a JSON tool call, ALFWorld's strings, a sentence.
 
 Each form gives a command line, which `agent_answers.by_text` reads; nothing else reads commands.
 """
@@ -125,4 +125,6 @@ def _otherwise(line: str, view: View) -> Iterator[str]:
 def _plain(program: str) -> str:
     """Return a step of a program as a plain command: `[Grab] <milk> (149)` is `Grab milk 149`."""
     action = program[1 : program.index("]")]
-    return f"{action} {', '.join(f'{normal_name(name)} {number}' for name, number in _PROGRAM.findall(program))}".strip()
+    return (
+        f"{action} {', '.join(f'{normal_name(name)} {number}' for name, number in _PROGRAM.findall(program))}".strip()
+    )

@@ -6,7 +6,7 @@ Everything here depends on the seen nodes alone, and no name changes from tick t
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,6 +14,7 @@ from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, 
 from hearth.envs.text_protocol import USUAL, plain
 from hearth.envs.text_protocols import Protocol
 from hearth.schemas.goals import Goal
+from hearth.schemas.literals import Name
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, STATE_ID
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.motion.ground import UNTOUCHED
@@ -86,7 +87,9 @@ def wanted_nodes(goal: Goal, view: View) -> int:
     return found & view.mask & ~home.characters
 
 
-def compact(view: View, legal: Legal, goal: Goal, protocol: Protocol, task: str = "", last: str = "") -> str:
+def compact(
+    view: View, legal: Legal, goal: Goal, protocol: Protocol, task: str = "", last: str = "", *, stopped: bool = False
+) -> str:
     """Return an observation of at most `protocol.most` characters.
 
     Args:
@@ -96,8 +99,9 @@ def compact(view: View, legal: Legal, goal: Goal, protocol: Protocol, task: str 
         protocol: the words and limits.
         task: the goal as somebody says it; put into words where empty.
         last: a note about the last command, instead of what the view has about it.
+        stopped: whether the last command, a walk, ended early because something wanted came into sight.
     """
-    writer = _Writer(view, legal, goal, protocol)
+    writer = _Writer(view, legal, goal, protocol, stopped)
     head = [writer.goal(task), writer.me(), *writer.others()]
     if note := last or writer.last():
         head.append(f"Last: {_cut(note, protocol.most_last)}")
@@ -122,8 +126,9 @@ def _cut(text: str, most: int) -> str:
 class _Writer:
     """The lines of one observation."""
 
-    def __init__(self, view: View, legal: Legal, goal: Goal, protocol: Protocol) -> None:
+    def __init__(self, view: View, legal: Legal, goal: Goal, protocol: Protocol, stopped: bool) -> None:
         self.view, self.legal, self.wanted_goal, self.protocol = view, legal, goal, protocol
+        self.stopped = stopped
         self.world, self.home = view.world, view.world.home
         self.layout = layout(self.home, protocol)
         self.wanted = wanted_nodes(goal, view)
@@ -143,9 +148,22 @@ class _Writer:
     def goal(self, task: str) -> str:
         """Return the line about the goal, with what is seen of it."""
         seen = list(seen_goal(self.wanted_goal, self.view))
-        said = printable(task) or "; ".join(said_literal(each, self.protocol.goals) for each in seen)
+        said = printable(task) or "; ".join(self._said(each) for each in seen)
         counts = ", ".join(f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None)
         return f"Goal: {_cut(said, 300)}{'' if said.endswith(('.', '!', '?')) else '.'} You see {counts} done."
+
+    def _said(self, each: SeenLiteral) -> str:
+        """Return a counted literal in words, where the protocol has a phrase; as goals write it otherwise."""
+        literal, phrases = each.literal, self.protocol.goals
+        if literal.negated or literal.name not in phrases or len(literal.terms) != 2:
+            return str(literal) + (f": {each.wanted}" if each.wanted > 1 else "")
+        subject, target = (self._term(term) for term in literal.terms)
+        count = f"{each.wanted} " if each.wanted > 1 else ""
+        return phrases[literal.name].format(count=count, subject=subject, target=target)
+
+    def _term(self, term: Name) -> str:
+        """Return what a goal names, as observations name it; which furniture a goal is about is no secret."""
+        return self._name(term) if isinstance(term, int) and term in self.home.index else str(term)
 
     def me(self) -> str:
         """Return the line about oneself and the rooms."""
@@ -160,6 +178,8 @@ class _Writer:
         last = self.view.me.last
         if last is None:
             return ""
+        if self.stopped:
+            return f"{said_step(plain(last.instruction))} - on the way, for something wanted is in sight."
         failed = "" if last.failure is None else f"FAILED: {seen_failure(last.failure, self.view).message()}"
         return f"{said_step(plain(last.instruction))} - {failed or 'done'}."
 
@@ -301,12 +321,3 @@ def printable(text: str) -> str:
 def said_step(text: str) -> str:
     """Return an instruction as texts have it: `Walktowards` is said `Walk`."""
     return text.replace("Walktowards", "Walk", 1) if text.startswith("Walktowards") else text
-
-
-def said_literal(each: SeenLiteral, phrases: Mapping[str, str]) -> str:
-    """Return a counted literal in words, where the protocol has a phrase; as goals write it otherwise."""
-    literal, terms = each.literal, [str(term).replace("_", " ") for term in each.literal.terms]
-    if literal.negated or literal.name not in phrases or len(terms) != 2:
-        return str(literal) + (f": {each.wanted}" if each.wanted > 1 else "")
-    count = f"{each.wanted} " if each.wanted > 1 else ""
-    return phrases[literal.name].format(count=count, subject=terms[0], target=terms[1])

@@ -59,6 +59,9 @@ class Rewards:
         return found
 
 
+USUAL_REWARDS = Rewards()
+"""1 for the goal, and -0.004 a tick (thesis 6.5.1)."""
+
 HIERARCHICAL = Rewards(success=0.0, tick=-0.1, predicate=2.0)
 """Rewards of a policy over subgoals (B.3.3)."""
 

@@ -129,8 +129,8 @@ class Setting:
     Attributes:
         opening: the start of an episode, and its goal.
         actions: names of the actions that may be tried; None: those of challenges (see `action_codes.played`).
-        code: how instructions are numbered (see `action_codes`): `triples`, `listed`, `fixed` (of `actions` and `things`), or an
-            `ActionCode`.
+        code: how instructions are numbered (see `action_codes`): `triples`, `listed`, `fixed` (of `actions` and
+            `things`), or an `ActionCode`.
         partial: whether agents see only the area around them.
         told: numbers of the agents that know the goal; all of them where None.
         limit: ticks after which an episode is cut off.

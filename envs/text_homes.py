@@ -14,7 +14,7 @@ from hearth.agents.agent_registry import MAIN
 from hearth.envs.action_codes import played
 from hearth.envs.answer_forms import WALK
 from hearth.envs.compact_text import said_step
-from hearth.envs.rewards import Reward, Rewards, checked_reward
+from hearth.envs.rewards import USUAL_REWARDS, Reward, checked_reward
 from hearth.envs.session import MOST_TICKS, Opening, opening
 from hearth.envs.text_protocol import plain
 from hearth.envs.text_protocols import CURRENT, protocol
@@ -138,7 +138,7 @@ class TextHomes:
         group: int = 1,
         seed: int = 0,
         protocol: str = CURRENT,
-        reward: Reward = Rewards(),
+        reward: Reward = USUAL_REWARDS,
         travel: bool = True,
         *,
         limit: int = MOST_TICKS,
@@ -309,7 +309,9 @@ class TextHome:
         (True, None)
     """
 
-    def __init__(self, task: Task | str | Opening, goal: str | Goal | Sequence[str | Goal] = (), **options: Any) -> None:
+    def __init__(
+        self, task: Task | str | Opening, goal: str | Goal | Sequence[str | Goal] = (), **options: Any
+    ) -> None:
         self._options = options
         self._opening: Opening | None = None
         if isinstance(task, str):
@@ -352,7 +354,7 @@ class TextHome:
 
 
 def _towards(step: Step, view: View) -> Step:
-    """Return an expert's walk as somebody could say it who sees less: to the place of an unseen thing, or to its room."""
+    """Return an expert's walk in words for those who see less: to the place of an unseen thing, or to its room."""
     home, world = view.world.home, view.world
     if step.action != WALK or step.objects[0].node is None or view.sees(step.objects[0].node):
         return step

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
+from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -66,7 +67,7 @@ def protocol(name: str = CURRENT) -> Protocol:
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=", ".join(PROTOCOLS))
     file = Path(__file__).with_name(PROTOCOLS[name])
     data = packaged("hearth.envs", file.name)
-    sets = {each: frozenset(data[each]) for each in ("fixtures", "not_targets", "hidden", "walks")}
-    plain = {each: data[each] for each in ("usual", "most", "most_walked", "most_answer", "most_last", "goals")}
+    sets: dict[str, Any] = {each: frozenset(data[each]) for each in ("fixtures", "not_targets", "hidden", "walks")}
+    plain: dict[str, Any] = {each: data[each] for each in ("usual", "most", "most_walked", "most_answer", "most_last", "goals")}
     digest = blake2b(file.read_bytes(), digest_size=8).hexdigest()
     return Protocol(name, digest, data["instructions"].strip(), **plain, **sets)

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from hearth.envs.answer_forms import WALK, read_answer
 from hearth.envs.compact_text import compact, printable, wanted_nodes
-from hearth.envs.rewards import Reward, Rewards
+from hearth.envs.rewards import USUAL_REWARDS, Reward
 from hearth.envs.session import MOST_TICKS
 from hearth.envs.text_protocols import Protocol as Words
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -59,7 +59,7 @@ class Play:
     words: Words
     actions: frozenset[str]
     limit: int = MOST_TICKS
-    reward: Reward = Rewards()
+    reward: Reward = USUAL_REWARDS
     travel: bool = True
     rules: Rules = DEFAULT
     partial: bool = True
@@ -78,6 +78,7 @@ class TextWorld:
         fault: why the last command was not tried; None where it was.
         faults: how many commands were not tried.
         limit: ticks after which it ends.
+        stopped: whether the last walk ended early because something wanted came into sight.
     """
 
     task: Task
@@ -88,6 +89,7 @@ class TextWorld:
     fault: Diagnostic | None = None
     faults: int = 0
     limit: int = MOST_TICKS
+    stopped: bool = False
 
     @property
     def won(self) -> bool:
@@ -131,7 +133,8 @@ def observed(now: TextWorld, play: Play, shown: tuple[View, Legal] | None = None
     """Return the observation in words."""
     may = shown or seen(now, play)
     note = "" if now.fault is None else f"refused, you waited. {reason(now.fault)}"
-    return compact(*may, now.progress.goal, play.words, getattr(now.task, "instruction", ""), note)
+    task = getattr(now.task, "instruction", "")
+    return compact(*may, now.progress.goal, play.words, task, note, stopped=now.stopped)
 
 
 def reason(fault: Diagnostic) -> str:
@@ -154,7 +157,9 @@ def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Leg
         step, fault = read_answer(answer, *shown, play.words), None
     except HearthError as error:
         step, fault = None, error.diagnostics[0]
-    after, reward = _ticked(replace(now, fault=fault, faults=now.faults + (fault is not None)), step, play)
+    after, reward = _ticked(
+        replace(now, fault=fault, faults=now.faults + (fault is not None), stopped=False), step, play
+    )
     if step is not None and step.action == WALK and play.travel:
         after, more = _walked_on(after, step, play, shown[0])
         reward += more
@@ -177,14 +182,20 @@ def _walked_on(now: TextWorld, step: Step, play: Play, began: View) -> tuple[Tex
     for _ in range(play.words.most_walked):
         here = now.world.agents[0].pose
         stopped = now.last is not None and now.last.failure is not None
-        if stopped or now.over or here == place or _sights(now, play, began):
+        if stopped or now.over or here == place:
             break
-        if step not in legal(now.world, 0, play.rules, only_visible=play.partial, actions=frozenset({step.action})):
+        if _sights(now, play, began):
+            return replace(now, stopped=step in _may(now, step, play)), total
+        if step not in _may(now, step, play):
             break
         place = here
         now, reward = _ticked(now, step, play)
         total += reward
     return now, total
+
+
+def _may(now: TextWorld, step: Step, play: Play) -> Legal:
+    return legal(now.world, 0, play.rules, only_visible=play.partial, actions=frozenset({step.action}))
 
 
 def _sights(now: TextWorld, play: Play, began: View) -> bool:

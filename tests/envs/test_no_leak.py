@@ -139,7 +139,14 @@ def test_other_forms_of_answers_ask_nothing_about_what_is_unseen(seed, number, m
     def read(text, seen, may):
         return read_answer(text, seen, may, protocol())
 
-    for text in ("go to fridge 1", "Grab apple", "open the cupboard", "take milk 5 from fridge 3", "Walk bedroom", "fly"):
+    for text in (
+        "go to fridge 1",
+        "Grab apple",
+        "open the cupboard",
+        "take milk 5 from fridge 3",
+        "Walk bedroom",
+        "fly",
+    ):
         assert asked(text, seen, may, read) == asked(text, again, may_again, read), text
 
 

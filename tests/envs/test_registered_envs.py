@@ -9,8 +9,9 @@ import warnings
 
 import pytest
 
-gym = pytest.importorskip("gymnasium", reason="the extra `agents` is not installed")
+pytest.importorskip("gymnasium", reason="the extra `agents` is not installed")
 
+import gymnasium as gym
 import numpy as np
 from gymnasium.utils.env_checker import check_env, data_equivalence
 

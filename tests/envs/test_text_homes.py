@@ -1,4 +1,4 @@
-"""The text environment: the words of hearth-text/1, its forms of answers, its limits, and many worlds beside each other."""
+"""The text environment: the words of hearth-text/1, its forms of answers, its limits, and many worlds at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from hearth.envs.text_protocols import PROTOCOLS, protocol
 from hearth.homes import library
 from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
-from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.world.home import Home
 
@@ -47,7 +46,8 @@ def test_one_brings_the_milk_in_six_commands(home):
 @pytest.mark.parametrize(
     "answer",
     [
-        "Walk fridge 137", "walk to the fridge 137", "go to fridge 137", "> go to fridge 137", "[Walktowards] <fridge> (1)",
+        "Walk fridge 137", "walk to the fridge 137", "go to fridge 137", "> go to fridge 137",
+        "[Walktowards] <fridge> (1)",
         "Thought: the milk is cold.\nAction: Walk fridge 137", "I will go there.\nWalk fridge 137",
         '{"name": "act", "arguments": {"command": "Walk fridge 137"}}',
         '{"function": {"name": "act", "arguments": "{\\"command\\": \\"Walk fridge 137\\"}"}}',
@@ -77,10 +77,13 @@ def test_words_of_other_games_and_sentences_are_read(home, answer, said):
 @pytest.mark.parametrize(
     ("answer", "code"),
     [
-        ("", "EMPTY"), ("\n \n", "EMPTY"), (None, "NOT_TEXT"), (b"wait", "NOT_TEXT"), ("x" * 10_000_000, "LINE_TOO_LONG"),
-        ("\x07\x1b[2J", "NOT_UNDERSTOOD"), ("Grab milk 142", "NOT_SEEN"), ("Grab milk", "NOT_SEEN"), ("17", "NOT_UNDERSTOOD"),
+        ("", "EMPTY"), ("\n \n", "EMPTY"), (None, "NOT_TEXT"), (b"wait", "NOT_TEXT"),
+        ("x" * 10_000_000, "LINE_TOO_LONG"),
+        ("\x07\x1b[2J", "NOT_UNDERSTOOD"), ("Grab milk 142", "NOT_SEEN"), ("Grab milk", "NOT_SEEN"),
+        ("17", "NOT_UNDERSTOOD"),
         ("fly to the moon", "UNKNOWN_ACTION"), ("Walk zebra", "UNKNOWN_OBJECT"), ("Open couch 51", "NOT_AFFORDED"),
-        ("aller à la cuisine", "NOT_UNDERSTOOD"), ("{" * 400, "NOT_UNDERSTOOD"), ("a" * 5000, "LINE_TOO_LONG"), ('{"command": 3}', "NOT_UNDERSTOOD"),
+        ("aller à la cuisine", "NOT_UNDERSTOOD"), ("{" * 400, "NOT_UNDERSTOOD"),
+        ("a" * 5000, "LINE_TOO_LONG"), ('{"command": 3}', "NOT_UNDERSTOOD"),
     ],
 )  # fmt: skip
 def test_what_is_refused_says_why_and_takes_a_tick(home, answer, code):
@@ -190,7 +193,7 @@ def test_the_expert_solves_its_tasks():
     homes = TextHomes(WAH[:2], worlds=2, expert=True, travel=False)
     _, infos = homes.reset(indices=[0, 1])
     for _ in range(250):
-        _, _, won, over, infos = homes.step([info["expert"] for info in infos])
+        _, _, won, _, infos = homes.step([info["expert"] for info in infos])
         assert all(info["fault"] is None or info["won"] for info in infos)
         if all(won):
             break
@@ -200,7 +203,7 @@ def test_the_expert_solves_its_tasks():
 def test_a_reward_is_any_function_of_a_tick():
     world = TextHome("maple", MILK, reward=lambda before, after, agent: 10.0 + agent)
     world.reset(4)
-    text, reward, *_, info = world.step("Walk kitchen")
+    _, reward, *_, info = world.step("Walk kitchen")
     assert reward == 10.0 * info["ticks"]
     assert TextHome("maple", MILK, reward=Rewards(tick=-1.0)).reset(0)
 
@@ -228,7 +231,8 @@ def test_the_sentence_of_a_task_is_its_goal():
     [
         (lambda: TextHomes([]), "no tasks"), (lambda: TextHomes([3]), "no tasks"), (lambda: TextHomes(7), "no tasks"),
         (lambda: TextHomes(WAH, worlds=0), "`worlds`"), (lambda: TextHomes(WAH, worlds=5, group=2), "no whole groups"),
-        (lambda: TextHomes(WAH, protocol="hearth-text/9"), "no text protocol"), (lambda: TextHomes(WAH, reward=3), "reward"),
+        (lambda: TextHomes(WAH, protocol="hearth-text/9"), "no text protocol"),
+        (lambda: TextHomes(WAH, reward=3), "reward"),
         (lambda: TextHomes(WAH, worlds=1).step(["wait"]), "no world has begun"),
         (lambda: TextHomes(WAH, worlds=1).reset(indices=[99]), "no task 99"),
         (lambda: TextHomes(WAH, worlds=1).reset(indices=[0, 1]), "2 values"),
@@ -255,7 +259,8 @@ def begun():
     ("answer", "line"),
     [
         ("Walk a", "Walk a"), ("think\n\nWalk a\n", "Walk a"), ("Action: Walk a\nObservation: you are there", "Walk a"),
-        ('{"arguments": "Walk a"}', "Walk a"), ("{}", "{}"), ("", ""), ("[1, 2]", "[1, 2]"), ("```\nWalk a\n```", "Walk a"),
+        ('{"arguments": "Walk a"}', "Walk a"), ("{}", "{}"), ("", ""), ("[1, 2]", "[1, 2]"),
+        ("```\nWalk a\n```", "Walk a"),
     ],
 )  # fmt: skip
 def test_the_command_in_an_answer_is_found(answer, line):
@@ -264,7 +269,10 @@ def test_the_command_in_an_answer_is_found(answer, line):
 
 def test_the_transcripts_are_those_that_were_kept():
     """Golden: two episodes word for word, and the fingerprint of the protocol under which they were made."""
-    kept = {"protocols": {name: protocol(name).fingerprint for name in PROTOCOLS}, "instructions": protocol().instructions}
+    kept = {
+        "protocols": {name: protocol(name).fingerprint for name in PROTOCOLS},
+        "instructions": protocol().instructions,
+    }
     answers = (*WAY[:3], "Grab milk", "dance", *WAY[3:])
     world = TextHome("maple", MILK)
     kept["milk"] = [world.reset(4)[0], *([f"> {row[0]}", row[1]] for row in played(world, answers))]
