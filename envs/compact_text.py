@@ -13,10 +13,12 @@ from functools import lru_cache
 from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, seen_instances
 from hearth.envs.text_protocol import USUAL, plain
 from hearth.envs.text_protocols import Protocol
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Name
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, STATE_ID
 from hearth.simulation.actions.legal import Legal
+from hearth.simulation.actions.registry import EVERY
 from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation.views import Pose, View
 from hearth.simulation.world import rows
@@ -255,9 +257,9 @@ class _Writer:
     def commands(self, detail: int) -> str:
         """Return the sensible commands, without walks."""
         lines = ["Walk <room or thing>"]
-        for action in sorted(self.legal.masks.keys() - self.protocol.hidden):
-            masks = self.legal.masks[action]
-            if line := self._command(action, masks, detail):
+        for action in _listed_actions(self.home.knowledge, self.protocol):
+            masks = self.legal.masks.get(action)  # the masks of walks, which are dear, are not asked for
+            if masks is not None and (line := self._command(action, masks, detail)):
                 lines.append(line)
         return f"Do: {'; '.join([*lines, 'wait'])}"
 
@@ -284,6 +286,12 @@ class _Writer:
             for i in indices(first) if places & ~(1 << i)
         ]  # fmt: skip
         return "; ".join(found)
+
+
+@lru_cache(maxsize=64)
+def _listed_actions(knowledge: Knowledge, protocol: Protocol) -> tuple[str, ...]:
+    """Return the actions that `Do:` may list."""
+    return tuple(sorted(name for name in EVERY if name in knowledge.actions and name not in protocol.hidden))
 
 
 @lru_cache(maxsize=65_536)

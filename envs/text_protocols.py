@@ -68,6 +68,8 @@ def protocol(name: str = CURRENT) -> Protocol:
     file = Path(__file__).with_name(PROTOCOLS[name])
     data = packaged("hearth.envs", file.name)
     sets: dict[str, Any] = {each: frozenset(data[each]) for each in ("fixtures", "not_targets", "hidden", "walks")}
-    plain: dict[str, Any] = {each: data[each] for each in ("usual", "most", "most_walked", "most_answer", "most_last", "goals")}
+    plain: dict[str, Any] = {
+        each: data[each] for each in ("usual", "most", "most_walked", "most_answer", "most_last", "goals")
+    }
     digest = blake2b(file.read_bytes(), digest_size=8).hexdigest()
     return Protocol(name, digest, data["instructions"].strip(), **plain, **sets)
