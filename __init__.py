@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __version__ = VERSION
 install()
 if "gymnasium" in sys.modules:  # its `make` then knows `hearth/Home-v0`; nobody else pays for it
-    from hearth.challenges.registration import register as _register
+    from hearth.challenges.named_task_envs import register as _register
 
     _register()
 

@@ -58,7 +58,7 @@ def lengths(home: str, ticks: int) -> tuple[list[int], float]:
 
 
 def memory(worlds: int) -> float:
-    """Return the megabytes that so many worlds add, after three commands each."""
+    """Return the megabytes that a number of worlds adds, after three commands each."""
     from hearth.challenges.published_tasks import tasks
 
     chosen = tasks("wah", "train", limit=64)

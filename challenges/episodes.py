@@ -82,7 +82,7 @@ class Record:
 
 
 TRIES = 2
-"""How often an episode is played whose agent can't go on: what fails once, as a server does, may not fail again."""
+"""Times that an episode is played whose agent can't go on: a server that fails once may not fail again."""
 
 PASSING = frozenset({Code.AGENT_FAILED, Code.DISCONNECTED})
 """The failures of agents after which their episode is played again."""

@@ -1,4 +1,4 @@
-"""The results of a run as the terminal and machines get them: metrics, a table by goal set, and what did not finish."""
+"""The results of a run as the terminal and machines get them: metrics, a table by goal set, and unfinished episodes."""
 
 from __future__ import annotations
 
@@ -80,6 +80,6 @@ def _print_unfinished(reasons: list[dict[str, Any]]) -> None:
     """Print why agents could not go on; their episodes are no scores."""
     for each in reasons[:MOST_PRINTED]:
         count = output.counted(each["episodes"], "episode")
-        print(f"{count} not finished, and no scores: {each['code']}: {each['message']}")
+        print(f"{count} not finished, without a score: {each['code']}: {each['message']}")
     if len(reasons) > MOST_PRINTED:
         print(f"and {len(reasons) - MOST_PRINTED:,} other reasons (--json has all)")

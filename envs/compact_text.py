@@ -29,7 +29,7 @@ FURNISHING = frozenset({"Furniture", "Appliances"})
 """Categories of things that others are put on or in, and that nobody carries."""
 
 FULL, WANTED, COUNTED = range(3)
-"""Degrees of detail, by what is left out to keep to the length.
+"""Degrees of detail; each leaves out more to keep to the length.
 
 Nothing; commands about small things that are not wanted; the numbers of those things, and commands about furniture.
 """
@@ -100,7 +100,7 @@ def compact(
         goal: its goal.
         protocol: the words and limits.
         task: the goal as somebody says it; put into words where empty.
-        last: a note about the last command, instead of what the view has about it.
+        last: a note about the last command, instead of the view's own.
         stopped: whether the last command, a walk, ended early because something wanted came into sight.
     """
     writer = _Writer(view, legal, goal, protocol, stopped)
@@ -148,7 +148,7 @@ class _Writer:
         return ", ".join(map(self._name, nodes)) or "nothing"
 
     def goal(self, task: str) -> str:
-        """Return the line about the goal, with what is seen of it."""
+        """Return the line about the goal, with the parts of it that are seen."""
         seen = list(seen_goal(self.wanted_goal, self.view))
         said = printable(task) or "; ".join(self._said(each) for each in seen)
         counts = ", ".join(f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None)
@@ -322,7 +322,7 @@ def _runs(ids: Iterable[int]) -> str:
 
 
 def printable(text: str) -> str:
-    """Return a text on one line, with `?` for what a terminal would obey."""
+    """Return a text on one line, with `?` for characters that a terminal would obey."""
     return "".join(each if each.isprintable() else "?" for each in " ".join(text.split()))
 
 

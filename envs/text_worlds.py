@@ -1,4 +1,4 @@
-"""A world that is played in text, as a value: where it stands, and what a command does to it."""
+"""A world that is played in text, as a value: its state, and the effect of a command."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def observed(now: TextWorld, play: Play, shown: tuple[View, Legal] | None = None
 
 
 def reason(fault: Diagnostic) -> str:
-    """Return why a command was refused and what to do, in characters that can be printed."""
+    """Return the reason for a refusal and its remedy, in characters that can be printed."""
     remedy = f" ({fault.suggestion})" if fault.suggestion else ""
     return printable(f"{fault.code}: {_TICK.sub('', fault.message)}{remedy}")
 

@@ -108,7 +108,7 @@ def test_a_failure_is_printed_and_counted_apart(mine, tmp_path):
     words = ("run", "t.json", "--main", f"{mine}:Limited", "--out", "r.jsonl")
     done = command_line(*words, cwd=tmp_path)
     assert done.returncode == 1, done.stderr
-    assert "1 episode not finished, and no scores: AGENT_FAILED: RuntimeError: 429 rate limited" in done.stdout
+    assert "1 episode not finished, without a score: AGENT_FAILED: RuntimeError: 429 rate limited" in done.stdout
     shown = json.loads(command_line("score", "r.jsonl", "--json", cwd=tmp_path).stdout)
     assert (shown["episodes"], shown["success"], shown["unfinished"][0]["episodes"]) == (0, None, 1)
 

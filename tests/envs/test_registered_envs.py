@@ -15,7 +15,7 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
-from hearth.challenges.registration import REGISTERED, register
+from hearth.challenges.named_task_envs import REGISTERED, register
 from hearth.envs.gymnasium_env import HomeEnv
 from hearth.envs.rewards import Rewards
 from hearth.envs.session import Session, Setting, opening

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from hearth.schemas.goals import Goal
     from hearth.simulation.world.home import Home
 
-REGISTERED = {"hearth/Home-v0": "hearth.envs.registration:home_env"}
-"""Function that makes the environment of each id; those of tasks are in `challenges.registration`."""
+REGISTERED = {"hearth/Home-v0": "hearth.envs.named_envs:home_env"}
+"""Function that makes the environment of each id; those of tasks are in `challenges.named_task_envs`."""
 
 
 def register(ids: Mapping[str, str] = REGISTERED) -> None:

@@ -1,6 +1,6 @@
 """Environments of tasks by name, as `gymnasium.make` takes them: `hearth/WatchAndHelp-v0`, `hearth/Household-v0`.
 
-`import hearth` after `import gymnasium` registers them; `gym.make("hearth.challenges.registration:hearth/Home-v0")`
+`import hearth` after `import gymnasium` registers them; `gym.make("hearth.challenges.named_task_envs:hearth/Home-v0")`
 does in any order.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from hearth.envs import registration
+from hearth.envs import named_envs
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
     from hearth.simulation.world.world import World
 
 REGISTERED = {
-    **registration.REGISTERED,
-    "hearth/WatchAndHelp-v0": "hearth.challenges.registration:watch_and_help_env",
-    "hearth/Household-v0": "hearth.challenges.registration:household_env",
+    **named_envs.REGISTERED,
+    "hearth/WatchAndHelp-v0": "hearth.challenges.named_task_envs:watch_and_help_env",
+    "hearth/Household-v0": "hearth.challenges.named_task_envs:household_env",
 }
 """Function that makes the environment of each id."""
 
 ROLES = ("main", "helper")
-"""The roles of a learner in Watch-And-Help: alone with the goal, or beside a human-like agent that has it."""
+"""The roles of a learner in Watch-And-Help: alone with the goal, or as the helper of a human-like agent that has it."""
 
 
 def register() -> None:
     """Give Gymnasium the ids that it does not have yet."""
-    registration.register(REGISTERED)
+    named_envs.register(REGISTERED)
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def watch_and_help_env(
 
     Args:
         split: of the tasks.
-        role: `main`, alone with the goal; or `helper`, with the goal beside a human-like agent that has it, too.
+        role: `main`, alone with the goal; or `helper` of a human-like agent; both have the goal.
         name: of the challenge.
         limit_tasks: the first tasks only.
         render_mode: as of `gymnasium_env.HomeEnv`.
@@ -95,7 +95,7 @@ def watch_and_help_env(
     usual = {"actions": sorted(which.allowed(default())), "limit": which.ticks, "rules": which.rules}
     helps = role == "helper"
     begin = TaskOpening(_some(tasks(name, split, limit=limit_tasks)), 1 + helps)
-    setting = registration.setting_of(begin, {**usual, "partial": which.partial, **settings})
+    setting = named_envs.setting_of(begin, {**usual, "partial": which.partial, **settings})
     return HomeEnv(setting, [HumanLike()] if helps else (), int(helps), render_mode)
 
 
@@ -120,7 +120,7 @@ def household_env(
 
     household: Any = import_module("hearth.challenges.household")
     begin = TaskOpening(_some(household.household_tasks(split, limit_tasks, seed)), 1)
-    return HomeEnv(registration.setting_of(begin, settings), render_mode=render_mode)
+    return HomeEnv(named_envs.setting_of(begin, settings), render_mode=render_mode)
 
 
 def _some(tasks: Sequence[Task] | Any) -> tuple[Any, ...]:
