@@ -193,10 +193,8 @@ web: $(READY)  ## fetch Blockly and three.js with npm, for the pages of `serve`
 wheel: $(READY)  ## dist/: the package for installation
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
 
-sbom: $(READY)  ## dist/: the bill of materials of .venv, CycloneDX as JSON
-	@[ -x build/sbom/bin/cyclonedx-py ] || { $(PYTHON) -m venv build/sbom && build/sbom/bin/python -m pip install -q 'cyclonedx-bom>=7'; }
-	@mkdir -p dist && build/sbom/bin/cyclonedx-py environment .venv/bin/python --pyproject pyproject.toml --mc-type library \
-	  --output-reproducible -o dist/hearth-sbom.cdx.json && ls dist/hearth-sbom.cdx.json
+sbom: $(READY)  ## dist/: the bill of materials of requirements.lock, CycloneDX as JSON; needs no network
+	@$(PY) docs/hooks/bill_of_materials.py dist/hearth-sbom.cdx.json && ls dist/hearth-sbom.cdx.json
 
 # torch is in no lock; its line is written by hand.
 licences:  ## docs/licences.md: the licence of every library of both locks

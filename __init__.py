@@ -33,7 +33,7 @@ if "gymnasium" in sys.modules:  # its `make` then knows `hearth/Home-v0`; nobody
 
 @lru_cache(maxsize=1)
 def _modules() -> dict[str, str]:
-    """The module of each entry point."""
+    """Return the module of each entry point."""
     import re
 
     return {name: module for module, name in re.findall(r"^from (\S+) import (\w+) as \2$", _stub(), re.MULTILINE)}
@@ -46,7 +46,7 @@ def _stub() -> str:
 
 
 def __getattr__(name: str) -> Any:
-    """An entry point, imported when it is first used."""
+    """Return an entry point, imported when it is first used."""
     from importlib import import_module
 
     if name == "__all__":
@@ -65,25 +65,25 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """The entry points, and the names that every module has: notebooks complete them."""
+    """Return the entry points, and the names that every module has: notebooks complete them."""
     ours = (name for name in globals() if name.startswith("__"))
     return sorted({*ours, *_public(), *_rooms()})
 
 
 def _public() -> list[str]:
-    """The entry points, sorted: `__all__`, made when it is asked for."""
+    """Return the entry points, sorted: `__all__`, made when it is asked for."""
     import re
 
     return sorted({*_modules(), *re.findall(r"^def (\w+)", _stub(), re.MULTILINE)})
 
 
 def _rooms() -> set[str]:
-    """The subpackages that are imported, which are attributes, too."""
+    """Return the subpackages that are imported, which are attributes, too."""
     return {name.split(".")[1] for name in sys.modules if name.startswith(f"{__name__}.")}
 
 
 def _env() -> type[Env]:
-    """The environment, by default with our own knowledge."""
+    """Return the environment, by default with our own knowledge."""
     from hearth.simulation import env
     from hearth.simulation.rules import DEFAULT, Rules
 

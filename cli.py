@@ -108,7 +108,7 @@ COMMANDS_BY_NAME = {name: entry for section in COMMANDS.values() for name, entry
 
 
 def load(name: str) -> Any:
-    """The command of that name; imports its module."""
+    """Return the command of that name; imports its module."""
     import importlib
 
     module, attribute = COMMANDS_BY_NAME[name].place.split(":")
@@ -138,7 +138,7 @@ class Commands(TyperGroup):
         return list(COMMANDS_BY_NAME)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """The command of that name, or None."""
+        """Return the command of that name, or None."""
         return load(cmd_name) if cmd_name in COMMANDS_BY_NAME else None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
@@ -170,7 +170,7 @@ class Commands(TyperGroup):
         except KeyboardInterrupt as stop:
             kept = ctx.invoked_subcommand in COMMANDS["Make a dataset"]
             after = " Complete parts are kept: the same command continues from there." if kept else ""
-            print(f"Stopped.{after}", file=sys.stderr)
+            sys.stderr.write(f"Stopped.{after}\n")
             raise typer.Exit(TERMINATED if isinstance(stop, Terminated) else STOPPED) from None
         except Exception as error:
             if ctx.params.get("debug") or _is_of_typer(error):
@@ -204,9 +204,7 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
         faults = (_of_the_machine(error),)
     else:
         what = f"{type(error).__name__}: {error}"
-        print(
-            f"An error in Hearth, not in your input: {what}\n`--debug` before the command shows where.", file=sys.stderr
-        )
+        output.note(f"An error in Hearth, not in your input: {what}\n`--debug` before the command shows where.")
         raise typer.Exit(output.BAD_INPUT) from error
     if as_json:
         output.emit({"errors": faults})
@@ -221,7 +219,7 @@ NAMED = (Code.UNKNOWN_HOME, Code.UNKNOWN_ID, Code.UNSUPPORTED_FILE)
 
 
 def _of_the_machine(error: OSError) -> Diagnostic:
-    """The diagnostic of a file that is missing or can't be read, or of a folder that can't be written."""
+    """Return the diagnostic of a file that is missing or can't be read, or of a folder that can't be written."""
     import errno
 
     name = str(error.filename or "")

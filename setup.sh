@@ -58,15 +58,18 @@ with_uv() {
 # Byte code is compiled when a module is first imported; most of these modules are never imported.
 with_pip() { .venv/bin/python -m pip install -qq --no-compile --disable-pip-version-check "$@"; }
 
+# Every package, those that build ours too, is what the lock says by its hash; what is another is not installed.
 install_packages() {
-    # An old pip takes twice as long as a new one, including its upgrade; uv does not need it.
-    command -v uv >/dev/null || with_pip --upgrade pip || true
-    if with_uv --no-deps -r requirements.lock || with_pip --no-deps -r requirements.lock; then
-        with_uv --no-deps --no-build-isolation -e . || with_pip --no-deps --no-build-isolation -e .
-    else
-        say "The locked versions can't be installed; installing versions allowed by pyproject.toml instead."
-        with_uv -e '.[agents,pictures,web,test]' || with_pip -e '.[agents,pictures,web,test]'
-    fi
+    with_uv --no-deps --require-hashes -r requirements.lock ||
+        with_pip --no-deps --require-hashes -r requirements.lock || refuse
+    with_uv --no-deps --no-build-isolation -e . || with_pip --no-deps --no-build-isolation -e . || refuse
+}
+
+refuse() {
+    say "The locked versions can't be installed, so nothing more is: a file that does not fit its hash, no network, or a"
+    say "system without files in the lock. the message above says which. Without the lock, and at your own risk:"
+    say "    .venv/bin/python -m pip install -e '.[agents,pictures,web,test]'"
+    exit 1
 }
 
 # Only rendering needs these; everything else works without them.

@@ -223,8 +223,9 @@ class Regression:
 
 @lru_cache(maxsize=512)
 def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple[tuple[Action, tuple[str, ...]], ...]:
-    """The actions that make a literal true, or false, with the variables of its terms: those that the thesis animates
-    first, and none that only does more than a plainer one.
+    """Return the actions that make a literal true, or false, with the variables of its terms.
+
+    Those that the thesis animates first, and none that only does more than a plainer one.
     """
     found = _effects(knowledge, HANDS[0] if name == HOLDS else name, terms, negated)
     if not found and negated and terms == 1:  # only effects that make its opposite true make it false

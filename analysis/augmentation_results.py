@@ -134,7 +134,7 @@ def _conditions(data: Any, name: str) -> dict[str, dict[str, float]]:
 
 
 def _near_duplicates(data: Any) -> int:
-    """Number of augmented programs with the steps of a sibling in the same home."""
+    """Return the number of augmented programs with the steps of a sibling in the same home."""
     query = """
         WITH child AS (SELECT DISTINCT p.program_id, p.parent_id, e.home, p.steps
                        FROM programs p JOIN executions e USING (program_id) WHERE p.parent_id IS NOT NULL),

@@ -101,7 +101,10 @@ def by_set(results: Results) -> dict[str, dict[str, float]]:
 
 
 def rows(found: Sequence[Method]) -> list[dict[str, Any]]:
-    """The table: means over tasks with half the width of their 95 % intervals, and paired tests against the first."""
+    """Return the table.
+
+    Means over tasks with half the width of their 95 % intervals, and paired tests against the first.
+    """
     table = []
     for method in found:
         row: dict[str, Any] = {"method": method.name}

@@ -73,22 +73,22 @@ def divergence(one: Counter[str], other: Counter[str]) -> float:
 
 
 def actions(found: Iterable[Sample]) -> Counter[str]:
-    """Number of steps with each action."""
+    """Return the number of steps with each action."""
     return Counter(step.partition(" ")[0] for one in found for step in one.steps)
 
 
 def objects(found: Iterable[Sample]) -> Counter[str]:
-    """Number of steps with each object."""
+    """Return the number of steps with each object."""
     return Counter(name for one in found for step in one.steps for name in step.split(" ")[1:])
 
 
 def lengths(found: Iterable[Sample]) -> Counter[str]:
-    """Number of programs with each number of steps."""
+    """Return the number of programs with each number of steps."""
     return Counter(str(len(one.steps)) for one in found)
 
 
 def words(found: Iterable[Sample]) -> Counter[str]:
-    """Number of times each word is in descriptions."""
+    """Return the number of times each word is in descriptions."""
     return Counter(word for one in found for word in one.words)
 
 
@@ -188,7 +188,10 @@ def _halves(found: Sequence[Sample], chance: Random, by_activity: bool) -> tuple
 
 
 def portrait(found: Sequence[Sample]) -> dict[str, float | int | None]:
-    """A corpus by itself: sizes, lengths, similarity within activities (table 3.1), and statistics of its words."""
+    """Return a corpus by itself.
+
+    Sizes, lengths, similarity within activities (table 3.1), and statistics of its words.
+    """
     texts = list(dict.fromkeys(one.words for one in found if one.words))
     sizes = [len(one.steps) for one in found]
     counts = [len(text) for text in texts]

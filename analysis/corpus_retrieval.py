@@ -80,7 +80,9 @@ def _described(found: Corpus) -> list[SplitProgram]:
 
 
 def _apart(test: Sequence[SplitProgram], train: Sequence[SplitProgram]) -> set[str]:
-    """The ids of the training programs that are of other activities than the tests and not near duplicates of any."""
+    """Return the ids of the training programs that are of other activities than the tests and not near duplicates of
+    any.
+    """
     # Both corpora may have programs of one id.
     every = [replace(one, program_id=str(number).zfill(9)) for number, one in enumerate((*test, *train))]
     known = SplitPrograms.of(every)

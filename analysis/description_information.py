@@ -68,7 +68,9 @@ def mean_lcs(asked: Sequence[Reading], grammar: Grammar) -> float:
 
 
 def figures(programs: Sequence[Synthetic], rows: Sequence[SplitText], grammar: Grammar) -> dict[str, float]:
-    """The mean LCS of ideal readers, to three digits: of first descriptions in all, and in the test of each split.
+    """Return the mean LCS of ideal readers, to three digits.
+
+    Of first descriptions in all, and in the test of each split.
 
     Args:
         programs: in the order of their numbers.

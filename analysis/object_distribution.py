@@ -140,7 +140,7 @@ def overall(found: Mapping[str, tuple[float, int, int]]) -> float | None:
 
 
 def diversity(program: Program, homes: Homes, name: str, samples: int, seed: int = 0) -> dict[str, Any]:
-    """Number of different environments among samples of one program, and their conditions by class."""
+    """Return the number of different environments among samples of one program, and their conditions by class."""
     conditions = infer(program, homes.knowledge)
     if isinstance(conditions, Failure):
         return {"samples": 0, "distinct": 0, "impossible": conditions.message()}

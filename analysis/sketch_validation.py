@@ -31,7 +31,10 @@ def _by_base(train: Sequence[Example], base: SketchModel | None, seed: int) -> C
 
 
 def _majority(place: int) -> Learned:
-    """Steps whose name at a place (0: the action, 1: with its objects) is kept more often than not, else by action."""
+    """Return steps whose name at a place (0.
+
+    The action, 1: with its objects) is kept more often than not, else by action.
+    """
 
     def learned(train: Sequence[Example], base: SketchModel | None, seed: int) -> Callable[[Example], Keep]:
         margins: Counter[str] = Counter()

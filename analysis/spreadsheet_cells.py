@@ -1,10 +1,9 @@
 """CSV for spreadsheets, in which cells of text never run as formulas."""
 
-import csv
 import io
 from collections.abc import Iterable
 
-from hearth.storage.csv_files import safe_cell
+from hearth.storage.csv_files import rows_writer
 
 
 def original_cell(text: str) -> str:
@@ -15,7 +14,5 @@ def original_cell(text: str) -> str:
 def sheet_of(rows: Iterable[Iterable[object]]) -> str:
     """Rows as CSV with safe text cells."""
     out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    for row in rows:
-        writer.writerow([safe_cell(cell) if isinstance(cell, str) else cell for cell in row])
+    rows_writer(out)(rows)
     return out.getvalue()

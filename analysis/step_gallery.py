@@ -74,7 +74,7 @@ def gallery(
     programs: Sequence[Program], knowledge: Knowledge, count: int = 24, seed: int = 0,
     size: tuple[int, int] = (320, 240), quality: str = "draft",
 ) -> Iterator[Pictured]:  # fmt: skip
-    """Steps in as many homes.
+    """Yield steps in as many homes.
 
     Args:
         programs: from which steps are chosen.

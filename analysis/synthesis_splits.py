@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import re
 from collections import Counter
@@ -15,6 +14,7 @@ from hearth.analysis.synthesis import Synthetic
 from hearth.datasets.format.near_duplicates import near_texts
 from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.schemas.rng import derive
+from hearth.storage.csv_files import rows_writer
 from hearth.storage.files import write_bytes
 
 SPLITS = {
@@ -42,7 +42,8 @@ class SplitText(NamedTuple):
 
 
 def splits(programs: Sequence[Synthetic], seed: int = 0) -> list[SplitText]:
-    """The part of every description in every split, by number of the program, from 1, and of its description, from 0.
+    """Return the part of every description in every split, by number of the program, from 1, and of its description,
+    from 0.
 
     Args:
         programs: in the order of their numbers.
@@ -138,7 +139,7 @@ def of_first(rows: Sequence[SplitText]) -> dict[int, dict[str, str | None]]:
 def write(rows: Sequence[SplitText], seed: int, path: Path) -> None:
     """Write the parts of descriptions as CSV: split, program id, number of the description, part."""
     table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(("split", "program_id", "description", "part"))
-    writer.writerows((row.split, f"synthetic:{seed}:{row.program}", row.description, row.part or "") for row in rows)
+    write_rows = rows_writer(table)
+    write_rows([("split", "program_id", "description", "part")])
+    write_rows((row.split, f"synthetic:{seed}:{row.program}", row.description, row.part or "") for row in rows)
     write_bytes(path, table.getvalue().encode())

@@ -158,7 +158,8 @@ class Speaker:
         self.last = ""
 
     def clause(self, template: str, objects: Mapping[str, str], subject: str = "") -> str:
-        """A clause with names of its objects, each called the same throughout, or `it` if it was the last one named.
+        """Return a clause with names of its objects, each called the same throughout, or `it` if it was the last one
+        named.
 
         Args:
             template: with slots of objects.
@@ -187,7 +188,7 @@ class Speaker:
         return f"{whose} {like}{noun}"
 
     def sentences(self, clauses: Sequence[str], aims: Sequence[str], join: float) -> list[str]:
-        """The clauses as sentences, some joined, some in the other order, with a purpose or time here and there."""
+        """Return the clauses as sentences, some joined, some in the other order, some with a purpose or time."""
         chance, rest = self.chance, list(clauses)
         found: list[str] = []
         aim = chance.randrange(len(rest)) if chance.random() < PURPOSE else -1

@@ -12,7 +12,7 @@ FILE = Path(__file__).parent.parent / "data_raw" / "synthetic.csv"
 
 
 def described(file: Path = FILE) -> Iterator[dict[str, Any]]:
-    """The described programs as lines of JSON Lines that `ingest` reads, as `synthesis.record` gives drawn ones."""
+    """Yield the described programs as JSON Lines that `ingest` reads, as `synthesis.record` gives drawn ones."""
     with file.open(encoding="utf-8", newline="") as opened:
         for row in csv.DictReader(opened):
             yield {

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-import signal
 import socket
-import subprocess
 import threading
 import time
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
+from hearth.challenges.agent_process import end, start
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -211,9 +210,7 @@ class ProcessChannel(Channel):
         if not argv:
             raise HearthError.of(Code.EMPTY, "an agent's command is empty")
         try:
-            self.process = subprocess.Popen(
-                list(argv), stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, start_new_session=True
-            )
+            self.process = start(argv)
         except (OSError, ValueError) as error:
             message = f"the agent can't be started: {getattr(error, 'strerror', None) or error}"
             raise HearthError.of(Code.MISSING_FILE, message, file=argv[0][:200]) from error
@@ -224,23 +221,7 @@ class ProcessChannel(Channel):
     def close(self, patience: float = 2.0) -> None:
         """Close its input and wait some seconds for its end; then end the process and its children."""
         super().close()
-        for end in (None, *_ENDS):
-            if end is not None:
-                with contextlib.suppress(ProcessLookupError, PermissionError):
-                    end(self.process)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self.process.wait(patience)
-                break
-
-
-def _ends() -> tuple[Callable[[subprocess.Popen[bytes]], None], ...]:
-    """Return the functions that end a process, and its children where processes have groups."""
-    if os.name == "nt":
-        return subprocess.Popen.terminate, subprocess.Popen.kill
-    return tuple(lambda process, by=by: os.killpg(process.pid, by) for by in (signal.SIGTERM, signal.SIGKILL))
-
-
-_ENDS = _ends()
+        end(self.process, patience)
 
 
 class StandardChannel(Channel):

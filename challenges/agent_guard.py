@@ -75,8 +75,10 @@ class Guarded:
         """
         with self._watched():
             step = self.agent.act(observation, legal)
-            if step is None or (isinstance(step, Message) and self.messages and read_message(str(step)) == step):
-                return step
+            if step is None:
+                return None
+            if isinstance(step, Message) and self.messages and (said := read_message(str(step))) == step:
+                return said  # one of ours, whatever class the agent's is of
             if not isinstance(step, Step):
                 wanted = "a Step, a message that can be read, or None"
                 raise HearthError.of(Code.BAD_ARGUMENT, f"the answer is {type(step).__name__}, not {wanted}")
@@ -111,19 +113,29 @@ class Guarded:
         except _Late:
             message = f"no answer within {self.seconds:g} s"
             raise AgentError(Diagnostic(Code.TIMED_OUT, message), self.number) from None
-        except (Exception, SystemExit, CancelledError, GeneratorExit) as error:
+        except _FAULTS as error:
             raise AgentError(_fault_of(error), self.number) from error
 
 
+_FAULTS = (Exception, SystemExit, CancelledError, GeneratorExit)
+"""Raised by an agent, they are its fault; an interrupt of the keyboard is ours."""
+
+
 def _fault_of(error: BaseException) -> Diagnostic:
-    """Return the diagnostic of an error that an agent raised; its text may itself fail."""
-    if isinstance(error, HearthError) and error.diagnostics:
-        return error.diagnostics[0]
+    """Return the diagnostic of an error that an agent raised; its name, text and attributes may themselves fail."""
     try:
-        text = f": {error}"
-    except Exception:
-        text = ""
-    return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}{text}"[:300])
+        if type(error) is HearthError and error.diagnostics:
+            return error.diagnostics[0]
+        return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}: {error}"[:300])
+    except _FAULTS:
+        return Diagnostic(Code.AGENT_FAILED, _name_of(error))
+
+
+def _name_of(error: BaseException) -> str:
+    try:
+        return str(type.__dict__["__name__"].__get__(type(error)))[:300]
+    except _FAULTS:
+        return "an exception without a name"
 
 
 @contextmanager

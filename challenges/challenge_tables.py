@@ -19,12 +19,13 @@ from hearth.challenges.result_files import Results, episode_data
 from hearth.challenges.tasks import Task
 from hearth.datasets.damage import reading
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.catalog import SQL, limited, quoted
+from hearth.datasets.format.catalog import SQL
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tables import comment_of, struct
+from hearth.storage.databases import limited, open_database, quoted, without_patterns
 from hearth.storage.files import read_json, value_digest, write_bytes
 from hearth.storage.manifest import NAME, describe
 from hearth.storage.names import inside
@@ -129,8 +130,6 @@ class ChallengeData(Dataset):
 
     @cached_property
     def _attached(self) -> Any:
-        import duckdb
-
         root = f"{self.folder.resolve()}/"
         for table in TABLES:  # a query would wait for a pipe
             path = inside(self.folder, f"{table}.parquet")
@@ -138,8 +137,8 @@ class ChallengeData(Dataset):
                 remedy = "fetch or build the challenge again"
                 raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(path), suggestion=remedy)
         with reading(self.folder):
-            connection = duckdb.connect()
-            connection.execute(_sql(root))
+            connection = open_database()
+            connection.execute(_sql(f"{without_patterns(self.folder)}/"))
             return limited(connection, root)
 
     @cached_property

@@ -171,7 +171,7 @@ def is_own(place: str) -> bool:
 
 
 def partial_of(agent: Any) -> bool | None:
-    """Return whether an agent sees only its surroundings, for `Player`.
+    """Return whether an agent sees only the part around it, for `Player`.
 
     Our oracles see everything, near-sighted agents never do; the challenge decides for all others.
     """

@@ -45,26 +45,26 @@ def augmented(
     if as_json:
         output.emit(found)
         return
-    print(f"Augmented by the strength `{found['strength']}`.\n")
+    output.line(f"Augmented by the strength `{found['strength']}`.\n")
     _print_table(found["table"])
     if circumstances:
         _print_circumstances(found["circumstances"])
-    print(f"\nNear-duplicates of a sibling in the same home: {found['near_duplicates']}")
-    print(f"Programs with an environment they run in: {_percent(found['executable_share'])}")
-    print(f"Bytes of an execution, with program, environment and repairs: {found['bytes_a_program']}")
+    output.line(f"\nNear-duplicates of a sibling in the same home: {found['near_duplicates']}")
+    output.line(f"Programs with an environment they run in: {_percent(found['executable_share'])}")
+    output.line(f"Bytes of an execution, with program, environment and repairs: {found['bytes_a_program']}")
     for file in found.get("files", ()):
-        print(f"Drawn: {file}")
+        output.line(f"Drawn: {file}")
     before, after = found["lengths"]["executable"], found["lengths"]["augmented"]
-    print("\nPrograms by length")
+    output.line("\nPrograms by length")
     output.table(("steps", "originals", "augmented"), [(name, before[name], after[name]) for name in before])
     for name, conditions in found["conditions"].items():
         if not conditions:
-            print(f"\nNo condition of the start names a {name.replace('_', ' ')}.")
+            output.line(f"\nNo condition of the start names a {name.replace('_', ' ')}.")
             continue
-        print(f"\nConditions of the start that name a {name.replace('_', ' ')}: before and after augmenting")
+        output.line(f"\nConditions of the start that name a {name.replace('_', ' ')}: before and after augmenting")
         for condition, shares in conditions.items():
             for label, share in shares.items():
-                print(f"  {condition if label == 'before' else '':12} {label:7} {_bar(share)} {_percent(share)}")
+                output.line(f"  {condition if label == 'before' else '':12} {label:7} {_bar(share)} {_percent(share)}")
 
 
 def _published(folder: Path) -> Path:
@@ -78,20 +78,20 @@ def _print_table(table: dict[str, Any]) -> None:
         for who, row in compared.items()
     ]
     output.table(("programs", "", "how many", "length", "nodes", "edges"), rows)
-    print("The thesis's 1,387 and 27,284 add up to 28,671; it states 32,761.")
+    output.line("The thesis's 1,387 and 27,284 add up to 28,671; it states 32,761.")
 
 
 def _print_circumstances(found: dict[str, Any]) -> None:
-    print("\nIn the circumstances of the original")
+    output.line("\nIn the circumstances of the original")
     for what in ("programs", "steps"):
         counts = found[what]
-        print(f"  {what:8} {counts['as_original']:,} of {counts['all']:,}, {_percent(counts['share'])}")
+        output.line(f"  {what:8} {counts['as_original']:,} of {counts['all']:,}, {_percent(counts['share'])}")
     output.table(
         ("done in a seat by the original", "programs", "never in a seat"),
         [(action, *counts.values()) for action, counts in found["seats"].items()],
     )
     for name in found["odd"]:
-        print(f"In others: {name}")
+        output.line(f"In others: {name}")
 
 
 def _bar(share: float) -> str:

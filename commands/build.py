@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping
 from inspect import Signature, signature
 from pathlib import Path
@@ -271,19 +270,19 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
         )
         for name, counts in found.stages.items()
     ]
-    sys.stdout.write("\n")
+    output.line()
     for line in found.guesses:
-        print(output.shown(line))
+        output.line(output.shown(line))
     if fuzzy := found.fuzzy:
-        print(f"Read with words corrected or left out: {output.counted(fuzzy, 'step')}; `--strict` refuses them.")
+        output.line(f"Read with words corrected or left out: {output.counted(fuzzy, 'step')}; `--strict` refuses them.")
     for line in found.unread:
-        print(output.shown(f"Not read: {line}"))
+        output.line(output.shown(f"Not read: {line}"))
     head = ("records in", "passed", "rejected", "parts rejected", "rows out", "records are", "reasons")
     output.table(("stage", *head), rows)
     if whole and found.dataset:
-        print(f"\nThe dataset is in {found.dataset}. Try next:")
+        output.line(f"\nThe dataset is in {found.dataset}. Try next:")
         for line in _NEXT:
-            print(f"  {program_name()} {line.format(out=out)}")
+            output.line(f"  {program_name()} {line.format(out=out)}")
 
 
 _NEXT = (

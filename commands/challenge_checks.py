@@ -30,7 +30,7 @@ def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bo
     else:
         output.report(faults)
         which = "the published tasks" if found.header.suite.published else "other tasks than the published ones"
-        print(f"{len(found.records):,} episodes of {which} replayed: {len(faults)} differ")
+        output.line(f"{len(found.records):,} episodes of {which} replayed: {len(faults)} differ")
     output.status(len(faults), strict=True)
 
 
@@ -70,7 +70,7 @@ def solvable(
     else:
         output.figures(figures)
         for fault in faults:
-            print(fault)
+            output.line(fault)
     output.status(len(faults), strict=True)
 
 

@@ -32,9 +32,9 @@ def infer(results: Path, *, workers: int = 0, as_json: bool = False) -> None:
         return
     over = [(row["share"], row["f1"], row["f1_se"], row["log_loss"], row["log_loss_se"]) for row in found["over_time"]]
     output.table(("of the time alone", "F1", "±", "log loss", "±"), over)
-    print()
+    output.line()
     output.records(found["calibration"])
-    print(f"\ncalibration error {found['calibration_error']}, {output.counted(found['episodes'], 'episode')}")
+    output.line(f"\ncalibration error {found['calibration_error']}, {output.counted(found['episodes'], 'episode')}")
 
 
 def people(

@@ -28,11 +28,11 @@ def print_results(results: Results, as_json: bool) -> None:
     )
     alone = not results.header.helped[-1]
     measured = [name for name in figures if f"{name}_se" in figures and (not alone or name in ALONE)]
-    print()
+    output.line()
     rows = [(name.replace("_", " "), figures[name], figures[f"{name}_se"]) for name in measured]
     output.table(("metric", "mean over tasks", "standard error"), rows)
     if alone:
-        print()
+        output.line()
         output.records(figures["by_set"])
     _print_unfinished(figures["unfinished"])
 
@@ -80,6 +80,6 @@ def _print_unfinished(reasons: list[dict[str, Any]]) -> None:
     """Print why agents could not go on; their episodes are no scores."""
     for each in reasons[:MOST_PRINTED]:
         count = output.counted(each["episodes"], "episode")
-        print(f"{count} not finished, without a score: {each['code']}: {each['message']}")
+        output.line(f"{count} not finished, without a score: {each['code']}: {each['message']}")
     if len(reasons) > MOST_PRINTED:
-        print(f"and {len(reasons) - MOST_PRINTED:,} other reasons (--json has all)")
+        output.line(f"and {len(reasons) - MOST_PRINTED:,} other reasons (--json has all)")

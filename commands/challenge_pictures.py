@@ -35,9 +35,9 @@ def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None
     for kind, places in found.everything.items():
         shown = ", ".join(f"{place} {number / places.total():.0%}" for place, number in places.most_common(6))
         mean = sum(number * tasks for number, tasks in found.numbers[kind].items()) / found.numbers[kind].total()
-        print(f"{kind:12} {mean:.2f} a task: {shown}")
+        output.line(f"{kind:12} {mean:.2f} a task: {shown}")
     rooms = ", ".join(f"{room} {number / found.agents.total():.0%}" for room, number in found.agents.most_common())
-    print(f"agents start in {rooms}")
+    output.line(f"agents start in {rooms}")
 
 
 def show(
@@ -90,7 +90,7 @@ def show(
     if as_json:
         output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})
         return
-    print(f"{task} in {one.home}: {one.goal}\n")
+    output.line(f"{task} in {one.home}: {one.goal}\n")
     output.records(rows)
     reached = "reached" if record.metrics["success"] else "not reached"
-    print(f"\n{reached} after {record.metrics['ticks']} ticks")
+    output.line(f"\n{reached} after {record.metrics['ticks']} ticks")

@@ -158,7 +158,7 @@ def _json(checked: Checked) -> dict[str, Any]:
 
 def _print(checked: list[Checked], faults: int, *, summary: bool) -> None:
     for each in checked:
-        sys.stdout.write(each.diff)
+        output.line(each.diff, end="")
     kinds = [(kind, [fault for each in checked for fault in in_order(getattr(each, f"{name}s"))])
              for kind, name in (("error", "fault"), ("warning", "warning"))]  # fmt: skip
     if summary:
@@ -171,4 +171,4 @@ def _print(checked: list[Checked], faults: int, *, summary: bool) -> None:
     result += f", {output.counted(warnings, 'warning')}" if warnings else ""
     read = "source" if any(Path(each.file).is_dir() for each in checked) else "file"
     counts = [output.counted(len(checked), read), output.counted(programs, "program"), output.counted(steps, "step")]
-    print(f"{', '.join(counts)}: {result}")
+    output.line(f"{', '.join(counts)}: {result}")

@@ -134,7 +134,7 @@ def stats(
     else:
         _print_stats(found, alike)
         for file in files:
-            print(file)
+            output.line(file)
 
 
 def _stats_json(found: Corpus, alike: Similarities, files: list[Path]) -> dict[str, Any]:
@@ -228,7 +228,7 @@ def fuzz(seconds: float = 300, seed: int = 0, most: int | None = None, as_json: 
         _print("Mutated input by reader", columns, rows)
         _print("Reasons of refusals", ("code", "times"), [*report.codes.most_common()])
         for crash in report.crashes[:20]:
-            print(crash)
+            output.line(crash)
     output.status(sum(not one.adds_up or one.tracebacks for one in report.table()), strict=True)
 
 
@@ -268,7 +268,7 @@ def sheet(
 
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
-    """Some valid programs, the same for the same seed."""
+    """Return some valid programs, the same for the same seed."""
     from hearth.analysis import corpus_statistics as numbers
     from hearth.schemas.program import Program
     from hearth.schemas.rng import rng
@@ -316,7 +316,7 @@ def completeness(
         return
     _print("Completeness of programs", ("", "programs", *completeness_ratings.SAID.values()), table)
     if agree is not None:
-        print(f"Estimate and median agree on {agree:.0%} of the programs that have both.")
+        output.line(f"Estimate and median agree on {agree:.0%} of the programs that have both.")
 
 
 def _shares(classes: dict[str, Any]) -> list[float]:
@@ -327,4 +327,4 @@ def _shares(classes: dict[str, Any]) -> list[float]:
 
 def _print(title: str, columns: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
     output.table(columns, rows, title)
-    print()
+    output.line()

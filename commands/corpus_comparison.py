@@ -56,7 +56,7 @@ def realism(
         })  # fmt: skip
         return
     _print_realism(found, portraits, files)
-    print(f"{draws} draws from {len(drawn):,} programs; halves by {halves}; {numbers.SMOOTHING}.")
+    output.line(f"{draws} draws from {len(drawn):,} programs; halves by {halves}; {numbers.SMOOTHING}.")
 
 
 def _print_realism(found: dict[str, Any], portraits: dict[str, dict[str, Any]], files: list[Path]) -> None:
@@ -64,11 +64,11 @@ def _print_realism(found: dict[str, Any], portraits: dict[str, dict[str, Any]], 
         (name, *(_interval(kinds.get(kind)) for kind in ("ours", "theirs", "ratio"))) for name, kinds in found.items()
     ]
     output.table(("asked about the second half", "ours", "theirs", "ratio"), rows)
-    print()
+    output.line()
     names = portraits["ours"]
     output.table(("corpus", *portraits), [(name, *(one[name] for one in portraits.values())) for name in names])
     for file in files:
-        print(f"Drawn: {file}")
+        output.line(f"Drawn: {file}")
 
 
 def _interval(found: dict[str, float] | None) -> str:
@@ -117,4 +117,4 @@ def retrieval(
     rows = [(name, one["programs"], *(_interval(one["scores"][score]) for score in study.SCORES)) for name, one in
             found["trained_on"].items()]  # fmt: skip
     output.table(("trained on", "programs", *study.SCORES), rows)
-    print(f"{found['tested']} held-out descriptions of {found['activities']} activities.")
+    output.line(f"{found['tested']} held-out descriptions of {found['activities']} activities.")

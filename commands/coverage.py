@@ -38,7 +38,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
         figures["failures_by_code"] = ", ".join(f"{k} {n:,}" for k, n in figures["failures_by_code"].items()) or "none"
         output.figures(figures)
         for one in (*_impossible(found, homes), *_failures(found)):
-            print(f"{one['place']} in {one['home']}: {one['message']}")
+            output.line(f"{one['place']} in {one['home']}: {one['message']}")
     output.status(len(found.failed), strict=strict)
 
 

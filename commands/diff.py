@@ -25,13 +25,13 @@ def diff(first: Path, second: Path, rows: int = 5, strict: bool = False, as_json
     if as_json:
         output.emit([_json(each) for each in found])
     elif not found:
-        print("no differences")
+        output.line("no differences")
     else:
         columns = ["table", f"only in {first}", f"only in {second}", "changed"]
         output.table(columns, [[each.table, *each.counts] for each in found])
-        print()
+        output.line()
         for each in found:
-            print("\n".join(_lines(each)))
+            output.line("\n".join(_lines(each)))
     output.status(len(found), strict=strict)
 
 

@@ -236,7 +236,7 @@ def doctor(libraries: bool = False, as_json: bool = False) -> None:
     """
     if libraries:
         wanted = [] if "open3d" in lacking("pictures") else missing_libraries()
-        output.emit(wanted) if as_json else print("\n".join(wanted), end="\n" if wanted else "")
+        output.emit(wanted) if as_json else output.line("\n".join(wanted), end="\n" if wanted else "")
         return
     findings = [check() for check in CHECKS]
     broken = sum(finding.state == BROKEN for finding in findings)

@@ -43,9 +43,9 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
         if as_json:
             output.emit({"impossible": found.message(), "steps": steps})
         else:
-            print(found.message())
+            output.line(found.message())
             for step in steps:
-                print(f"  step {step['step']}, line {step['line']}: {step['text']}")
+                output.line(f"  step {step['step']}, line {step['line']}: {step['text']}")
         output.status(1, strict=True)
         return
     ours = [{"step": c.step + 1, "condition": str(c), "needed": c.hard} for c in found]
@@ -56,7 +56,7 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
     output.table(("step", "condition", "because"), [
         (o["step"], o["condition"], "the step needs it" if o["needed"] else "it is usual")
         for o in ours])  # fmt: skip
-    print()
+    output.line()
     output.table(("by the release's rules", "among ours"), [(t["condition"], t["why"] or "yes") for t in theirs])
 
 
@@ -84,7 +84,7 @@ def rules(source: Path, limit: int | None = None, as_json: bool = False) -> None
     rows = found["conditions"]
     output.table(tuple(name.replace("_", " ") for name in rows[0]) if rows else ("condition",),
                  [tuple(row.values()) for row in rows])  # fmt: skip
-    print(f"{found['programs']} programs, {found['impossible']} impossible")
+    output.line(f"{found['programs']} programs, {found['impossible']} impossible")
 
 
 @app.command("sample")
@@ -123,7 +123,7 @@ def sample_one(
     if as_json:
         output.emit({"home": home, "seed": seed, "nodes": nodes_found, "edges": edges, "file": out, **drawn.facts})
         return
-    print(f"{nodes_found:,} nodes, {edges:,} edges" + (f"; {out}" if out else ""))
+    output.line(f"{nodes_found:,} nodes, {edges:,} edges" + (f"; {out}" if out else ""))
     for name in ("objects", "conditions", "goal"):
         output.records(drawn.facts.get(name) or ())
 
@@ -164,8 +164,8 @@ def realism(
         return
     for what, by_class in (("places", places), ("states", states)):
         output.table((what, "distance", "in the release", "sampled"), [(k, *row) for k, row in by_class.items()])
-        print(f"{what}: {means[what]} on average\n")
-    print(f"places of objects on or in something in both: {means['places_held']} on average")
+        output.line(f"{what}: {means[what]} on average\n")
+    output.line(f"places of objects on or in something in both: {means['places_held']} on average")
 
 
 @app.command()
@@ -225,7 +225,7 @@ def preconditions(
         )
         return
     for name in names:
-        print(name)
+        output.line(name)
         for group, found in groups.items():
             _bars(group, found[name])
 
@@ -243,7 +243,7 @@ def _bars(group: str, counts: Any) -> None:
     """One bar for each condition, as long as its share."""
     total = counts.total()
     for condition, count in sorted(counts.items(), key=lambda pair: (-pair[1], pair[0])):
-        print(f"  {group:10} {condition:12} {'#' * round(40 * count / total):40} {count:,}")
+        output.line(f"  {group:10} {condition:12} {'#' * round(40 * count / total):40} {count:,}")
 
 
 def _homes(names: list[str] | None, folder: Path | None) -> AllHomes:

@@ -93,10 +93,12 @@ def _beside(
 
 def printed(found: dict[str, Any]) -> None:
     """Print the steps with their times, and whether they run."""
-    print(f"{output.counted(found['clips'], 'clip')} of {output.shown(str(found['film']))}")
+    output.line(f"{output.counted(found['clips'], 'clip')} of {output.shown(str(found['film']))}")
     for row in found["steps"]:
-        print(f"  {row['time']:7.1f} s  {row['step']}")
+        output.line(f"  {row['time']:7.1f} s  {row['step']}")
     failure = found["failure"]
-    print(f"It runs in {found['home']}." if found["executable"] else f"Nothing runs: {failure and failure.message()}")
+    output.line(
+        f"It runs in {found['home']}." if found["executable"] else f"Nothing runs: {failure and failure.message()}"
+    )
     if found["pages"]:
-        print(f"Films: {', '.join(found['pages'])}")
+        output.line(f"Films: {', '.join(found['pages'])}")

@@ -52,7 +52,7 @@ def report(
     for first, *others in groups(faults, key):
         output.report([first], stream, kind)
         if others:
-            print(f"    + {len(others):,} more: {_places(first, others)}", file=stream or sys.stderr)
+            output.line(f"    + {len(others):,} more: {_places(first, others)}", file=stream or sys.stderr)
 
 
 def _places(first: Diagnostic, others: list[Diagnostic]) -> str:

@@ -67,9 +67,9 @@ def show(home: str, out: Path | None = None, homes: Path | None = None, as_json:
         return
     for room in rooms:
         things = ", ".join(f"{name} {count}" if count > 1 else name for name, count in room["things"].items())
-        print(f"{room['room']} ({room['id']}): {things}")
+        output.line(f"{room['room']} ({room['id']}): {things}")
     figures = _figures(graph)
-    print(f"{figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; floor plan in {out}" if out else ""))
+    output.line(f"{figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; floor plan in {out}" if out else ""))
 
 
 @app.command()
@@ -107,11 +107,13 @@ def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bo
             output.note(sentence)
         if made is not None:
             for fault in made.unmet:
-                print(f"{fault.message} ({fault.suggestion})")
+                output.line(f"{fault.message} ({fault.suggestion})")
             output.table(("of the graph", "there are", "shown by the layout"), [
                 (row["what"], row["all"], row["shown"]) for row in met(made)])  # fmt: skip
         codes = ", ".join(f"{code} {count}" for code, count in _codes(faults).items())
-        print(f"{home}: {output.counted(len(faults), 'fault')} of the graph itself" + (f": {codes}" if codes else ""))
+        output.line(
+            f"{home}: {output.counted(len(faults), 'fault')} of the graph itself" + (f": {codes}" if codes else "")
+        )
     output.status(len(faults), strict=True)
 
 
@@ -315,7 +317,7 @@ def _homes_in(folder: Path | None) -> list[EnvironmentGraph]:
 
 
 def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
-    """The mean placement distance of each home to all others."""
+    """Return the mean placement distance of each home to all others."""
     from statistics import fmean
 
     from hearth.homes.home_statistics import placement_distance, places

@@ -66,7 +66,8 @@ class Given(NamedTuple):
     def at_home(
         self, name: str, graph: Path | None, homes: Path | None, known: Knowledge
     ) -> tuple[Program, Home, bool]:
-        """The program, where it takes place, and whether that is the graph that came with it, to which it is bound.
+        """Return the program, where it takes place, and whether that is the graph that came with it, to which it is
+        bound.
 
         Raises:
             HearthError: UNKNOWN_HOME, or a fault of a graph.

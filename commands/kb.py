@@ -93,7 +93,7 @@ def find(
     output.table(
         ("object", "kind", "rooms", "what it is"), [(o.name, o.hypernym, " ".join(o.rooms), o.gloss) for o in found]
     )
-    print(output.counted(len(found), "object"))
+    output.line(output.counted(len(found), "object"))
 
 
 @app.command()
@@ -116,9 +116,11 @@ def path(first: str, second: str, kb: Path | None = None, as_json: bool = False)
         output.emit({"links": links})
         return
     for link in links:
-        print(f"{link}  ({link.evidence})" if link.evidence else link)
+        output.line(f"{link}  ({link.evidence})" if link.evidence else link)
     if not links:
-        print("they are one" if known.object_class(first) == known.object_class(second) else "nothing relates them")
+        output.line(
+            "they are one" if known.object_class(first) == known.object_class(second) else "nothing relates them"
+        )
 
 
 @app.command()
@@ -137,8 +139,10 @@ def lint(kb: Path | None = None, as_json: bool = False) -> None:
         output.emit({"findings": found, "checks": list(CHECKS)})
     else:
         for finding in found:
-            print(f"{finding.check}: {finding.subject} {finding.message}")
-        print(f"{len(CHECKS)} checks: {output.counted(len(found), 'contradiction') if found else 'no contradictions'}")
+            output.line(f"{finding.check}: {finding.subject} {finding.message}")
+        output.line(
+            f"{len(CHECKS)} checks: {output.counted(len(found), 'contradiction') if found else 'no contradictions'}"
+        )
     output.status(len(found), strict=True)
 
 
@@ -162,7 +166,7 @@ def diff(other: Path, every: bool = False, kb: Path | None = None, as_json: bool
         output.emit({**_comparison(found), "random_steps_rejected": rejected, "missing_without_reason": unexplained})
     else:
         _print_comparison(found, every)
-        print(f"random steps the grammar rejects: {rejected:.1%}")
+        output.line(f"random steps the grammar rejects: {rejected:.1%}")
     output.status(unexplained, strict=True)
 
 
@@ -186,9 +190,9 @@ def mine(dataset: Path, least: int = 3, confidence: float = 0.3, kb: Path | None
     rows = [(p.kind, p.subject, p.relation, p.other, p.seen, p.confidence, p.lift) for p in new]
     output.table(("kind", "subject", "relation", "other", "programs", "confidence", "lift"), rows)
     for file, lines in as_lines(found).items():
-        print(f"\n--- {file}")
-        print("\n".join(f"+{line}" for line in lines))
-    print(f"\n{output.counted(len(found), 'fact')}, {len(found) - len(new)} of them known")
+        output.line(f"\n--- {file}")
+        output.line("\n".join(f"+{line}" for line in lines))
+    output.line(f"\n{output.counted(len(found), 'fact')}, {len(found) - len(new)} of them known")
 
 
 @app.command()
@@ -203,7 +207,7 @@ def export(form: str, to: Path | None = None, kb: Path | None = None) -> None:
 
     text = write(read_knowledge(kb), form, to)
     if text:
-        print(text, end="")
+        output.line(text, end="")
 
 
 def _show(sheet: dict[str, Any], every: bool, as_json: bool) -> None:
@@ -216,10 +220,10 @@ def _show(sheet: dict[str, Any], every: bool, as_json: bool) -> None:
     for key, rows in sheet.items():
         if _is_rows(rows):
             shown = rows if every else rows[:_SHOWN]
-            print()
+            output.line()
             output.records(shown, key)
             if len(shown) < len(rows):
-                print(f"... {len(rows) - len(shown)} more with --all")
+                output.line(f"... {len(rows) - len(shown)} more with --all")
 
 
 def _is_rows(value: Any) -> bool:
@@ -257,7 +261,9 @@ def _print_comparison(found: Comparison, every: bool) -> None:
     output.table(("facts", "theirs", "held", "missing, why", "missing", "added, why", "added"), rows)
     for position, counts in sorted(found.cells.items()):
         words = ", ".join(f"{number:,} {name}" for name, number in counts.items())
-        print(f"affordances of argument {int(position) + 1}: {words}")
+        output.line(f"affordances of argument {int(position) + 1}: {words}")
     for difference in found.differences:
         if every or not difference.why or difference.kind == "missing":
-            print(f"{difference.kind} {difference.table}: {' '.join(difference.fact)}: {difference.why or 'NO REASON'}")
+            output.line(
+                f"{difference.kind} {difference.table}: {' '.join(difference.fact)}: {difference.why or 'NO REASON'}"
+            )

@@ -190,7 +190,7 @@ def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: b
     rows.append(["rank correlation", None, *(found.correlations[name] for name in JUDGES)])
     output.table(["LCS", "programs", *JUDGES], rows)
     for file in files:
-        print(f"Drawn: {file}")
+        output.line(f"Drawn: {file}")
 
 
 @app.command("examples")
@@ -308,5 +308,5 @@ def show(
     else:
         model_output.printed(shown)
         for name, made in films.items():
-            print(f"Film in {name}: {', '.join(made['pages'])}")
+            output.line(f"Film in {name}: {', '.join(made['pages'])}")
     output.status(sum(each.failure is not None for each in shown.values()), strict=True)

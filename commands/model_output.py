@@ -124,18 +124,18 @@ def printed(found: Mapping[str, Shown]) -> None:
     from hearth.schemas.syntax import print_step
 
     first = next(iter(found.values()))
-    print(f"Words: {output.shown(' '.join(first.words)) or 'none'}")
-    print("Sketch:", *(f"  {print_step(step)}" for step in first.sketch), sep="\n")
+    output.line(f"Words: {output.shown(' '.join(first.words)) or 'none'}")
+    output.line("Sketch:", *(f"  {print_step(step)}" for step in first.sketch), sep="\n")
     for home, one in found.items():
         for step, failure in one.completion.left_out:
-            print(f"  left out in {home}: {print_step(step)}: {failure.message()}")
+            output.line(f"  left out in {home}: {print_step(step)}: {failure.message()}")
     if len(found) == 2:
         _print_beside(found)
     for home, one in found.items():
         if len(found) != 2:
-            print(f"Program in {home}:", *(f"  {line}" for line in document(one)["program"]), sep="\n")
+            output.line(f"Program in {home}:", *(f"  {line}" for line in document(one)["program"]), sep="\n")
         runs = document(one)["executable"]
-        print("It runs." if runs else f"Nothing runs: {one.failure and one.failure.message()}")
+        output.line("It runs." if runs else f"Nothing runs: {one.failure and one.failure.message()}")
 
 
 def _print_beside(found: Mapping[str, Shown]) -> None:
@@ -146,10 +146,10 @@ def _print_beside(found: Mapping[str, Shown]) -> None:
 
     (one, left), (other, right) = found.items()
     console = Console(width=2 * WIDTH + 4, highlight=False)
-    console.print(f"  {one:<{WIDTH}}  {other}", soft_wrap=True)
+    console.print(Text(output.shown(f"  {one:<{WIDTH}}  {other}")), soft_wrap=True)
     for line in side_by_side(*(each.completion.execution.program.steps for each in (left, right))):
         text = f"{'=' if line.common else ' '} {_cell(line.left)}  {_cell(line.right)}".rstrip()
-        console.print(Text(text, style="green" if line.common else ""), soft_wrap=True)
+        console.print(Text(output.shown(text), style="green" if line.common else ""), soft_wrap=True)
 
 
 def _cell(step: Step | None) -> str:

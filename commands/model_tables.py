@@ -122,9 +122,9 @@ def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketch
     for title, rows in (("Descriptions of", found.by_words), ("Activity", found.by_activity)):
         shown = [[row.group, row.programs, *(f"{value:.3f}" for value in row.lcs), row.easier] for row in rows]
         output.table([title, "programs", *found.models, "easier from pictures"], shown)
-        print()
-    print(f"Easier from pictures: {found.easier} of {found.programs}; their descriptions have {found.words_easier:.1f} "
-          f"words on average, the others {found.words_others:.1f}.")  # fmt: skip
+        output.line()
+    words = f"{found.words_easier:.1f} words on average, the others {found.words_others:.1f}"
+    output.line(f"Easier from pictures: {found.easier} of {found.programs}; their descriptions have {words}.")
 
 
 def tables(
@@ -169,7 +169,7 @@ def tables(
         output.emit({"models": len(missing), "tables": found})
         return
     for number, (name, rows) in enumerate(found.items()):
-        print("\n" * bool(number) + f"Table {name}")
+        output.line("\n" * bool(number) + f"Table {name}")
         _print_films(name, rows) if name in FILMS else _print(rows, _columns(name.partition("-")[0]))
 
 

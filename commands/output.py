@@ -9,6 +9,8 @@ from typing import Any, TextIO
 import typer
 
 from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.terminal import shown as shown  # noqa: PLC0414 - commands take it from here
+from hearth.schemas.terminal import shown_json
 
 OK = 0
 """Done; rejected records are reported, not fatal."""
@@ -32,7 +34,7 @@ def status(rejected: int, *, strict: bool) -> None:
 
 def emit(value: Any) -> None:
     """Print one JSON document: keys in the given order, dataclasses and paths converted, a line break at the end."""
-    sys.stdout.write(_document(value).decode())
+    sys.stdout.write(shown_json(_document(value).decode()))
     sys.stdout.flush()
 
 
@@ -51,14 +53,9 @@ def _document(value: Any) -> bytes:
     return orjson.dumps(value, default=_plain, option=options)
 
 
-_CONTROL = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"} | {
-    code: f"\\u{code:04x}" for code in (*range(0x202A, 0x202F), *range(0x2066, 0x206A))
-}
-
-
-def shown(text: str) -> str:
-    """Return a text for a terminal: characters that would move its cursor, color it or turn it around are escaped."""
-    return text if text.isprintable() else text.translate(_CONTROL)
+def line(*values: object, sep: str = " ", end: str = "\n", file: TextIO | None = None, flush: bool = False) -> None:
+    """Print values as `print` does, safe for a terminal: the way of all text of commands that is not a table."""
+    print(shown(sep.join(map(str, values))), end=end, file=file, flush=flush)
 
 
 def _plain(value: Any) -> Any:
@@ -77,12 +74,12 @@ def _plain(value: Any) -> Any:
 
 def say(text: str, document: Any, as_json: bool) -> None:
     """Print a text, or the same as a JSON document."""
-    emit(document) if as_json else print(text)
+    emit(document) if as_json else line(text)
 
 
 def note(text: str) -> None:
     """Print information about the work itself, apart from its result."""
-    print(shown(text), file=sys.stderr)
+    line(text, file=sys.stderr)
 
 
 def records(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
@@ -104,7 +101,7 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], title: str = ""
         _rich_table(columns, cells, numeric, title)
         return
     if title:
-        print(title)
+        line(title)
     widths = [max(map(len, column)) for column in zip(columns, *cells, strict=True)]
     for row in [list(columns), *cells]:
         parts = (_aligned(cell, width, right) for cell, width, right in zip(row, widths, numeric, strict=True))
@@ -116,7 +113,7 @@ def _rich_table(columns: Sequence[str], rows: list[list[str]], numeric: list[boo
     from rich.table import Table
     from rich.text import Text
 
-    drawn = Table(title=title or None, title_justify="left", header_style="bold")
+    drawn = Table(title=shown(title) or None, title_justify="left", header_style="bold")
     for name, right in zip(columns, numeric, strict=True):
         drawn.add_column(name, justify="right" if right else "left", overflow="fold")
     for row in rows:

@@ -28,7 +28,7 @@ def plan(dataset: Path, problems: int = 200, workers: int = 0, as_json: bool = F
         rows = [["problems read", found.problems], ["solved", found.solved], ["plans that run", found.ran]]
         output.table(["what", "number"], [*rows, ["plans that reach the goal", found.reached], *found.statuses.items()])
         things = f"{found.objects[0]:.1f} of {found.objects[1]:.0f} things in a problem"
-        print(f"\n{things}; {found.steps:.1f} steps in a plan")
+        output.line(f"\n{things}; {found.steps:.1f} steps in a plan")
         for line in found.disagreements:
-            print(line)
+            output.line(line)
     output.status(len(found.disagreements), strict=True)

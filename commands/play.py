@@ -105,7 +105,7 @@ FORMS = {"graph": ("graph",), "text": ("text",), "both": ("graph", "text")}
 
 
 def _seats(given: list[str]) -> list[_Seat]:
-    """The agents by number; those between that are not named wait."""
+    """Return the agents by number; those between that are not named wait."""
     found: dict[int, str] = {}
     for each in given:
         number, equals, spec = each.partition("=")
@@ -169,7 +169,7 @@ def _asked_at_terminal(as_json: bool) -> Callable[[str], str]:
 
     def ask(prompt: str) -> str:
         stream = sys.stderr if as_json else sys.stdout
-        print(f"{prompt}> ", end="", file=stream, flush=True)
+        output.line(f"{prompt}> ", end="", file=stream, flush=True)
         line = sys.stdin.readline()
         if not line:
             raise EOFError
@@ -247,10 +247,10 @@ def _print(result: dict[str, Any], as_json: bool) -> None:
         output.emit(result)
         return
     ticks = output.counted(result["ticks"], "tick")
-    print(f"Goal: {'reached' if result['reached'] else 'not reached'} after {ticks}.")
+    output.line(f"Goal: {'reached' if result['reached'] else 'not reached'} after {ticks}.")
     if not result["reached"]:
-        print(f"Unmet: {output.shown(result['unmet'])}.")
+        output.line(f"Unmet: {output.shown(result['unmet'])}.")
     faults = [{"agent": each["agent"], **fault} for each in result["agents"] for fault in each["faults"]]
     output.records(faults[:20], "Answers that could not be used:")
     if faults[20:]:
-        print(f"... and {len(faults) - 20} more; --json has all")
+        output.line(f"... and {len(faults) - 20} more; --json has all")

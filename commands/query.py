@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from hearth.commands import output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.terminal import shown_json
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
@@ -24,6 +26,7 @@ def query(
     parquet: Path | None = None,
     out: Path | None = None,
     as_json: bool = False,
+    within: float = 60,
 ) -> None:
     """Query a published dataset in SQL.
 
@@ -44,25 +47,49 @@ def query(
       hearth query data_out "DESCRIBE programs"
     """
     from hearth.challenges.challenge_tables import ChallengeData
+    from hearth.commands.bounded_process import bound_memory, ended_within
     from hearth.datasets.dataset import Dataset
-    from hearth.datasets.written_answers import distinct, plain
+    from hearth.storage.databases import memory_limit
 
     if (csv and tsv) or (as_json and (csv or tsv)):
         raise typer.BadParameter("only one of --csv, --tsv and --json can be written")
     text = sys.stdin.read() if sql == "-" else sql
     challenge = ChallengeData.found(dataset)
     opened = Dataset.open(dataset, remembers=False) if challenge is None else challenge
-    if _write(opened, text, (out, parquet), "," if csv else "\t" if tsv else ""):
-        return
-    columns, found = opened.rows(text, rows + 1 if rows and not as_json else None)
-    if as_json:
-        names = distinct(columns)
-        output.emit([dict(zip(names, map(plain, row), strict=True)) for row in found])
-        return
+    opened.within = within
+    bound_memory(memory_limit())
+    with ended_within(within):
+        if _write(opened, text, (out, parquet), "," if csv else "\t" if tsv else ""):
+            return
+        if as_json:
+            _document(opened, text)
+        else:
+            _table(opened, text, rows)
+
+
+def _document(dataset: Dataset, text: str) -> None:
+    """Print an answer as JSON; a fault that comes after some rows goes to the standard error, for JSON has begun."""
+    from hearth.datasets.written_answers import document
+
+    begun = False
+    try:
+        for piece in document(dataset, text):
+            sys.stdout.write(shown_json(piece))
+            begun = True
+    except HearthError as error:
+        if not begun:
+            raise
+        output.report(error.diagnostics)
+        raise typer.Exit(output.BAD_INPUT) from error
+
+
+def _table(dataset: Dataset, text: str, rows: int) -> None:
+    """Print an answer as a table, with a last line where it has more rows than asked for."""
+    columns, found = dataset.rows(text, rows + 1 if rows else None)
     more = bool(rows) and len(found) > rows
     output.table(columns, ([_cell(cell) for cell in row] for row in (found[:rows] if more else found)))
     if more:
-        print(f"... more than {rows:,} rows; --rows 0 prints all")
+        output.line(f"... more than {rows:,} rows; --rows 0 prints all")
 
 
 def _write(dataset: Dataset, text: str, files: Sequence[Path | None], separator: str) -> bool:

@@ -67,19 +67,19 @@ def program(
         output.emit({**facts, **made})
     else:
         note = place.note(home)
-        print(note, end="\n" if note else "")
-        print(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
-        if made.get("visible") is not None:
-            print(f"Steps with all objects visible: {made['visible']:.1%}")
+        output.line(note, end="\n" if note else "")
+        output.line(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
+        if "shows" in made:
+            output.line(_shown(made["shows"]))
         for page in made.get("pages", ()):
-            print(f"Open {page} in a browser.")
+            output.line(f"Open {page} in a browser.")
         if failure:
-            print(f"Stopped: {failure}")
+            output.line(f"Stopped: {failure}")
     output.status(failure is not None, strict=True)
 
 
 def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) -> tuple[str, EnvironmentGraph]:
-    """The name and the scene graph of where a program is pictured."""
+    """Return the name and the scene graph of where a program is pictured."""
     from hearth.homes import library
 
     if graph is not None:
@@ -134,10 +134,27 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
         files += _write(shooting.out, shot, modalities)
         if shot.camera.name != TOP:
             frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
-            seen.append(shot.seen)
-    visible = [share for share in seen if share is not None]
+            seen.append(shot)
+    visible = [shot.seen for shot in seen if shot.seen is not None]
     found = round(sum(share == 1 for share in visible) / len(visible), 4) if visible else None
-    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(shooting, frames)}
+    shows = {
+        "pictures": len(seen),
+        "with_person": sum(shot.person for shot in seen),
+        "steps_with_objects": len(visible),
+        "with_all_objects": sum(share == 1 for share in visible),
+    }
+    sheet = _sheet(shooting, frames)
+    return {"pictures": len(files), "files": files, "visible": found, "shows": shows, "sheet": sheet}
+
+
+def _shown(shows: Mapping[str, int]) -> str:
+    """Return the line that counts what the pictures of the contact sheet show."""
+    line = f"The contact sheet shows the person in {shows['with_person']} of {shows['pictures']} pictures"
+    if not shows["steps_with_objects"]:
+        return f"{line}."
+    return (
+        f"{line}, and all objects of {shows['with_all_objects']} of the {shows['steps_with_objects']} steps with any."
+    )
 
 
 def videos(
@@ -271,20 +288,20 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
     if as_json:
         output.emit({"programs": programs, **share._asdict(), "unseen": missed})
         return
-    print(
+    output.line(
         f"{share.shown:.1%} of the steps of {programs} programs are shown: one recognises the person and the objects,"
     )
-    print("which cover at least 1.5 % and 0.1 % of the chosen picture and are less than half hidden.")
-    print(f"{share.steps} steps name objects. All of these are visible to the chosen camera in")
-    print(
+    output.line("which cover at least 1.5 % and 0.1 % of the chosen picture and are less than half hidden.")
+    output.line(f"{share.steps} steps name objects. All of these are visible to the chosen camera in")
+    output.line(
         f"{share.chosen:.1%} of the steps, to it or from above in {share.either:.1%}; and in {share.open_:.1%} of the"
     )
-    print("steps without an object in a closed container.")
+    output.line("steps without an object in a closed container.")
     output.table(("program", "tick", "not visible"), missed)
 
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
-    """Executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
+    """Yield executable programs drawn by the seed, each in the next of our homes, with its objects' visibility."""
     from itertools import islice
 
     from hearth.analysis.program_home_pairs import pairs

@@ -91,33 +91,33 @@ def _strength(name: str, kinds: list[str] | None) -> Strength:
 
 
 def _print(program: Program, found: Augmented, home: str, known: Knowledge) -> None:
-    print(f"{program.title or 'A program'}, in {home}")
-    print(f"  goal: {'; '.join(map(str, found.goal)) or 'nothing'}")
+    output.line(f"{program.title or 'A program'}, in {home}")
+    output.line(f"  goal: {'; '.join(map(str, found.goal)) or 'nothing'}")
     if not found.pairs:
-        print("  It has no precondition that can be perturbed.")
+        output.line("  It has no precondition that can be perturbed.")
     for pair in found.pairs:
         _print_pair(pair, known)
 
 
 def _print_pair(pair: Pair, known: Knowledge) -> None:
     for perturbation in pair.perturbations:
-        print(f"\nPerturbed: {perturbation}")
+        output.line(f"\nPerturbed: {perturbation}")
     for attempt in pair.attempts:
         _print_attempt(attempt, known)
     if pair.failure is not None:
-        print(f"\nGiven up. {pair.failure.message()}" if pair.attempts else f"\n{pair.failure.message()}")
+        output.line(f"\nGiven up. {pair.failure.message()}" if pair.attempts else f"\n{pair.failure.message()}")
         return
-    print(f"\nRepaired: {output.counted(len(pair.program.steps), 'step')}.")
+    output.line(f"\nRepaired: {output.counted(len(pair.program.steps), 'step')}.")
     before, after = _texts(pair.environment.program.steps), _texts(pair.program.steps)
-    print("\n".join(f"  {line}" for line in _difference(before, after, every=True)))
+    output.line("\n".join(f"  {line}" for line in _difference(before, after, every=True)))
 
 
 def _print_attempt(attempt: Attempt, known: Knowledge) -> None:
     row = known.repairs.get(attempt.handler)
-    print(f"\n{attempt.number + 1:3}  {attempt.failure.message()}")
-    print(f"     {attempt.handler}{': ' + row.say if row is not None and row.say else ''}")
+    output.line(f"\n{attempt.number + 1:3}  {attempt.failure.message()}")
+    output.line(f"     {attempt.handler}{': ' + row.say if row is not None and row.say else ''}")
     for line in _difference(_texts(attempt.before), _texts(attempt.after or attempt.before)):
-        print(f"       {line}")
+        output.line(f"       {line}")
 
 
 def _texts(steps: Iterable[Step]) -> list[str]:
@@ -127,7 +127,7 @@ def _texts(steps: Iterable[Step]) -> list[str]:
 
 
 def _difference(before: list[str], after: list[str], *, every: bool = False) -> Iterator[str]:
-    """Inserted (`+`) and removed (`-`) lines, and with `every` also the others."""
+    """Yield inserted (`+`) and removed (`-`) lines, and with `every` also the others."""
     for line in ndiff(before, after):
         if line[0] in "+-" or (every and line[0] == " "):
             yield line

@@ -113,14 +113,14 @@ def _json(one: Replayed) -> dict[str, Any]:
 
 
 def _explain(one: Replayed) -> None:
-    print(f"\n{one.program_id} in {one.home}:")
+    output.line(f"\n{one.program_id} in {one.home}:")
     for fault in one.faults:
-        print(output.explain(fault))
+        output.line(output.explain(fault))
     if one.failure is not None:
-        print(f"  {one.failure.message()}")
+        output.line(f"  {one.failure.message()}")
     for sign, edges in (("missing", one.difference.added), ("surplus", one.difference.removed)):
         for edge in edges:
-            print(f"  {sign}: {edge.source} {edge.relation} {edge.target}")
+            output.line(f"  {sign}: {edge.source} {edge.relation} {edge.target}")
     for sign, states in (("missing", one.difference.set_states), ("surplus", one.difference.cleared_states)):
         for node_id, name in states:
-            print(f"  {sign}: {node_id} {name}")
+            output.line(f"  {sign}: {node_id} {name}")

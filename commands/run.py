@@ -67,7 +67,7 @@ def run(
     else:
         show(outcome, explain)
         if progress:
-            print("Goal: reached." if progress.satisfied else f"Goal: not reached; unmet: {progress.unmet()}.")
+            output.line("Goal: reached." if progress.satisfied else f"Goal: not reached; unmet: {progress.unmet()}.")
     failure = outcome.trial.execution.failure
     not_reached = progress is not None and not progress.satisfied
     output.status(failure is not None or not_reached or bool(given.faults), strict=True)

@@ -48,24 +48,24 @@ def show(outcome: Outcome, explain: bool) -> None:
     """Print a run: the binding, each step with its changes, and at the end why it stopped."""
     from hearth.repair.remedies import stop_reason
 
-    print(f"{outcome.program.title or 'A program'}, in {outcome.place.name}")
+    output.line(f"{outcome.program.title or 'A program'}, in {outcome.place.name}")
     execution = outcome.trial.execution
     if outcome.as_it_is:
-        print(f"  as it is, {outcome.as_it_is}")
+        output.line(f"  as it is, {outcome.as_it_is}")
     for line in outcome.additions().lines():
-        print(f"  {line}")
+        output.line(f"  {line}")
     _print_binding(execution)
     _print_steps(execution, explain)
     done = sum(len(steps) for steps in _ticks(execution)[: len(execution.worlds) - 1])
     if execution.failure is None:
-        print(f"Done: {output.counted(done, 'step')}.")
+        output.line(f"Done: {output.counted(done, 'step')}.")
         return
-    print(stop_reason(execution))
+    output.line(stop_reason(execution))
     if outcome.unsampled:
-        print(f"Sampling does not help: {outcome.unsampled}")
+        output.line(f"Sampling does not help: {outcome.unsampled}")
     left = len(execution.program.steps) - len(_reached(execution))
     if left > 0:
-        print(f"{output.counted(left, 'later step')} {'was' if left == 1 else 'were'} not run.")
+        output.line(f"{output.counted(left, 'later step')} {'was' if left == 1 else 'were'} not run.")
 
 
 def document(outcome: Outcome, explain: bool) -> dict[str, Any]:
@@ -129,22 +129,22 @@ def _print_binding(execution: Execution) -> None:
     for ref in execution.program.with_steps(_reached(execution)).objects():
         index = home.index.get(ref.node or -1, -1)
         what = f"{home.classes[index]} ({ref.node})" if index >= 0 else "not bound"
-        print(f"  <{ref.name}> ({ref.instance}) is {what}")
+        output.line(f"  <{ref.name}> ({ref.instance}) is {what}")
 
 
 def _print_steps(execution: Execution, explain: bool) -> None:
     poses = _poses(execution) if explain else ()
     number = 1
     for tick, steps in enumerate(_ticks(execution)):
-        print(f"{number:3}  {_text(steps)}")
+        output.line(f"{number:3}  {_text(steps)}")
         if tick + 1 == len(execution.worlds):
-            print("     FAILED")
+            output.line("     FAILED")
             if explain:
                 _print_fault(execution, steps)
             return
         _print_changes(execution.worlds[tick], execution.worlds[tick + 1])
         for pose in poses[tick] if poses else ():
-            print(f"       {_pose(pose)}")
+            output.line(f"       {_pose(pose)}")
         if explain:
             for step in steps:
                 _print_checks(_checks(execution, tick, step))
@@ -157,7 +157,7 @@ def _print_changes(before: World, after: World) -> None:
     change, moves = after.changes(before), list(_moved(before, after))
     said = [summary(change, before)] if change or not moves else []
     for line in (*said, *moves):
-        print(f"     {line}")
+        output.line(f"     {line}")
 
 
 def _print_fault(execution: Execution, steps: tuple[Step, ...]) -> None:
@@ -171,7 +171,7 @@ def _print_fault(execution: Execution, steps: tuple[Step, ...]) -> None:
     nodes = (*failure.objects, *(ref.node for step in steps for ref in step.objects if ref.node is not None))
     if failure.agent < len(execution.final.agents):
         for line in facts(execution.final, failure.agent, nodes):
-            print(f"         {line}")
+            output.line(f"         {line}")
 
 
 def _checks(execution: Execution, tick: int, step: Step) -> list[Check]:
@@ -186,9 +186,9 @@ def _checks(execution: Execution, tick: int, step: Step) -> list[Check]:
 def _print_checks(found: list[Check]) -> None:
     for check in found:
         if check.held:
-            print(f"       {check.literal}{'  by  ' + check.by if check.by else ''}")
+            output.line(f"       {check.literal}{'  by  ' + check.by if check.by else ''}")
         else:
-            print(f"     x {check.literal}  does not hold:")
+            output.line(f"     x {check.literal}  does not hold:")
 
 
 def _poses(execution: Execution) -> tuple[tuple[HandAndBasePose, ...], ...]:

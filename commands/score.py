@@ -71,8 +71,8 @@ def lcs(
         table.append([name, *(found[place] for found in means.values()), ""])
     output.table(["id", *(name.replace("_", " ") for name in means), ""], table)
     noted = ", ".join(f"{counts[name]} {words}" for name, words in NOTES.items())
-    print(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
-    print("\n".join(signatures))
+    output.line(f"\n{output.counted(len(pairs), 'reference')}; predictions: {noted}")
+    output.line("\n".join(signatures))
     score_output.end(rejects)
 
 
@@ -216,9 +216,11 @@ def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_js
         output.emit({"split": split, "thesis_note": THESIS_NOTE, "here": found, "thesis": THESIS})
         return
     output.table([name.replace("_", " ") for name in Result._fields], [*found, *THESIS])
-    print(f"\n{THESIS_NOTE}")
+    output.line(f"\n{THESIS_NOTE}")
     if not found:
-        print(f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities")
+        output.line(
+            f"\nsplit `{split}` has no original programs to learn from or to test on: build from more activities"
+        )
 
 
 @app.command("graphs")
@@ -253,4 +255,4 @@ def graphs(
         return
     rows = [["states", *found.states], ["relations", *found.relations], ["both", *found.both]]
     output.table(["", "precision", "recall", "f1"], rows)
-    print(f"\n{signature}{'' if found.exact else '; a lower bound'}")
+    output.line(f"\n{signature}{'' if found.exact else '; a lower bound'}")

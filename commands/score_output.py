@@ -26,7 +26,7 @@ def show(scored: Sequence[Scored], how: Options, by: str | None, rejects: FirstF
 def _signatures(scored: Sequence[Scored], how: Options) -> dict[str, str]:
     from hearth.scoring.evaluate import given_goal, signatures
 
-    return signatures(how, sum(given_goal(each.pair) is not None for each in scored))
+    return signatures(how, sum(given_goal(each.pair) is not None and not each.goal_faults for each in scored))
 
 
 def _program_json(
@@ -48,6 +48,7 @@ def _program_json(
             "fuzzy": each.pair.fuzzy,
             "error": each.execution and each.execution.error,
             "code": each.execution and each.execution.code,
+            "goal_fault": each.goal_faults[0].code if each.goal_faults else None,
             "failed_line": each.execution and each.execution.failed_line,
         }
         for each in scored
@@ -63,7 +64,17 @@ def _summary_json(summary: Summary) -> dict[str, Any]:
     return counts | found
 
 
-COUNTS = ("count", "missing", "empty", "unreferenced", "fuzzy", "reached_before", "incomparable", "inexact")
+COUNTS = (
+    "count",
+    "missing",
+    "empty",
+    "unreferenced",
+    "fuzzy",
+    "unread_goals",
+    "reached_before",
+    "incomparable",
+    "inexact",
+)
 """Counts of a summary."""
 
 
@@ -73,9 +84,9 @@ def rejects_json(rejects: FirstFaults) -> dict[str, Any]:
 
 
 def end(rejects: FirstFaults) -> None:
-    """Report the rows that were refused, and end with status 1 if there are any."""
+    """Report the rows and goals that were refused, and end with status 1 if there are any."""
     output.report(rejects)
-    output.status(rejects.rows, strict=True)
+    output.status(rejects.rows + rejects.notes, strict=True)
 
 
 def warn_missing(scored: Sequence[Scored]) -> None:
@@ -93,18 +104,18 @@ def _print_program(
 ) -> None:
     output.table(["score", "mean", "95% from", "to"], [[name, *found] for name, found in summary.means.items()])
     if by:
-        print()
+        output.line()
         columns = list(summary.means)
         rows = [[name, group.count, *_means(group, columns)] for name, group in groups.items()]
         output.table([by, "rows", *columns], rows)
     if summary.errors:
-        print()
+        output.line()
         output.table(["first failure", "programs"], summary.errors.items())
-        print()
+        output.line()
         output.table(["code", "programs"], summary.codes.items())
-    print(f"\n{_sentence(summary)}{_refused(rejects)}")
+    output.line(f"\n{_sentence(summary)}{_refused(rejects)}")
     shown = tuple(summary.means)
-    print("\n".join(text for name, text in signed.items() if any(each.startswith(name) for each in shown)))
+    output.line("\n".join(text for name, text in signed.items() if any(each.startswith(name) for each in shown)))
 
 
 def _means(group: Summary, columns: Sequence[str]) -> list[float | None]:
@@ -112,7 +123,7 @@ def _means(group: Summary, columns: Sequence[str]) -> list[float | None]:
 
 
 def _refused(rejects: FirstFaults) -> str:
-    return f"; {output.counted(rejects.rows, 'row')} refused" if rejects else ""
+    return f"; {output.counted(rejects.rows, 'row')} refused" if rejects.rows else ""
 
 
 def _sentence(summary: Summary) -> str:
@@ -125,6 +136,8 @@ def _sentence(summary: Summary) -> str:
         parts.append(
             f"{output.counted(summary.fuzzy, 'step')} with words corrected or left out (--fuzzy off refuses them)"
         )
+    if summary.unread_goals:
+        parts.append(f"{output.counted(summary.unread_goals, 'goal')} that can't be read, left out of `goal`")
     if summary.reached_before:
         parts.append(f"{summary.reached_before} left out of `goal`, because nothing of it was left to do at the start")
     if summary.incomparable:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from ipaddress import ip_address
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -20,6 +21,7 @@ def serve(
     study: Path | None = None,
     films: Path | None = None,
     public: str = "",
+    proxy: str = "",
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
@@ -35,6 +37,7 @@ def serve(
       hearth serve
       hearth serve --study people-alone
       hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
+      hearth serve --public https://homes.example.org --proxy 127.0.0.1
     """
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
@@ -46,6 +49,7 @@ def serve(
     from hearth.web.store import Store, default_url
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
+    proxy = _proxy(proxy, public)
     if study is not None:
         check_helpers(named(str(study)))
     where = listening(port)
@@ -58,11 +62,11 @@ def serve(
     lines = f"Hearth answers at {address}\nThe researcher's desk: {desk}"
     output.say(lines, {"address": address, "desk": desk, "out": str(out), "missing": missing()}, as_json)
     sys.stdout.flush()
-    run(app, where)
+    run(app, where, proxy)
 
 
 def _hosts(public: str) -> tuple[str, ...]:
-    """The name in a public address.
+    """Return the name in a public address.
 
     Raises:
         HearthError: BAD_ARGUMENT.
@@ -73,3 +77,21 @@ def _hosts(public: str) -> tuple[str, ...]:
     if not name or not public.startswith("https://"):
         raise HearthError.of(Code.BAD_ARGUMENT, f"`{public[:100]}` is not an address", suggestion="https://NAME")
     return (name,)
+
+
+def _proxy(given: str, public: str) -> str:
+    """Return the address of the proxy, as sockets have it.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is not an IP address; or people come by a proxy of which none is given, so that
+            limits by address would count all of them as one.
+    """
+    if not given and not public:
+        return ""
+    try:
+        return str(ip_address(given))
+    except ValueError:
+        remedy = "--proxy 127.0.0.1 for a proxy on this machine"
+        message = f"`{given[:60]}` is not the IP address of a proxy" if given else "people who come by --public share"
+        message += "" if given else " the address of the proxy, which --proxy has to name"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy) from None

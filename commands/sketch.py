@@ -97,9 +97,9 @@ def _show(
 
 
 def _print_steps(heading: str, steps: list[str], keep: tuple[bool, ...]) -> None:
-    print(heading)
+    output.line(heading)
     for step, kept in zip(steps, keep, strict=True):
-        print(f"  {'*' if kept else ' '} {step}")
+        output.line(f"  {'*' if kept else ' '} {step}")
 
 
 def _judge(
@@ -132,11 +132,11 @@ def _print_judgement(found: SketchEvaluation, every: bool) -> None:
     ]
     output.table(("sketch", "precision", "recall", "F1"), rows)
     lengths = ", ".join(f"{name} {value}" for name, value in summary["average_length"].items())
-    print(f"\n{summary['programs']} programs, {summary['steps']} steps; {summary['alike']} sketches equal.")
-    print(f"Steps on average: {lengths}.")
+    output.line(f"\n{summary['programs']} programs, {summary['steps']} steps; {summary['alike']} sketches equal.")
+    output.line(f"Steps on average: {lengths}.")
     for action, kinds_of in summary["disagreements_by_action"].items():
-        print(f"  {action:10} {', '.join(f'{kind} {count}' for kind, count in kinds_of.items())}")
+        output.line(f"  {action:10} {', '.join(f'{kind} {count}' for kind, count in kinds_of.items())}")
     for one in found.disagreements() if every else ():
-        print(f"\n{one['title']}: {one['description']}")
+        output.line(f"\n{one['title']}: {one['description']}")
         for step in one["steps"]:
-            print(f"  {'*' if step['inferred'] else ' '}{'p' if step['people'] else ' '} {step['step']}")
+            output.line(f"  {'*' if step['inferred'] else ' '}{'p' if step['people'] else ' '} {step['step']}")

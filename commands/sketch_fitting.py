@@ -59,7 +59,9 @@ def _print(report: dict[str, Any], folds: int) -> None:
     ]  # fmt: skip
     if rows:
         output.table(("way", "precision", "recall", "F1", "lead", "95% interval"), rows)
-        print(f"\nCross-validated in {folds} parts of whole activities; the lead is over the majority of each action.")
-    print(f"{report['programs']} programs, {report['steps']} steps.")
+        output.line(
+            f"\nCross-validated in {folds} parts of whole activities; the lead is over the majority of each action."
+        )
+    output.line(f"{report['programs']} programs, {report['steps']} steps.")
     if "file" in report:
-        print(f"Fitted: {report['file']}")
+        output.line(f"Fitted: {report['file']}")

@@ -222,8 +222,8 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
         output.emit({**for_machines(found), "out": None if out is None else str(out)})
         return
     marked = "simulated: agents in people's places" if found.simulated else "people"
-    print(f"{found.study.title} ({marked}): {found.people} finished, {found.left} left before the end")
-    print("\n".join(["", *failures(found)]))
+    output.line(f"{found.study.title} ({marked}): {found.people} finished, {found.left} left before the end")
+    output.line("\n".join(["", *failures(found)]))
     who_in_words = names_of(found)
     rows = [
         [group, who_in_words[who], metric, each.count, each.mean, each.error]
@@ -231,11 +231,11 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
         if (each := found.figure(who, group, metric)) is not None
     ]
     output.table(("of", "who", "figure", "tasks", "mean", "standard error"), rows)
-    print()
+    output.line()
     columns = ("of", "one", "other", "pairs", "difference", "t", "p", "d", "K2, p", "Wilcoxon p", "thesis")
     output.table(columns, [test_row(each) for each in found.comparisons])
     for name, (rho, p) in found.correlations.items():
-        print(f"\nSpearman's correlation of normalised LCS and {name}: {rho:.2f}, p = {p:.2g}")
+        output.line(f"\nSpearman's correlation of normalised LCS and {name}: {rho:.2f}, p = {p:.2g}")
 
 
 @app.command()

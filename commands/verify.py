@@ -23,7 +23,7 @@ def verify(dataset: Path, workers: int = 0, strict: bool = False, as_json: bool 
         found = checked(dataset, workers, seen)
     if not as_json:
         if found.note:
-            print(f"Note: {found.note}", file=sys.stderr)
+            output.line(f"Note: {found.note}", file=sys.stderr)
         output.report(found.faults)
         output.report(found.unknown, kind="error" if strict else "warning")
     faults = (*found.faults, *(found.unknown if strict else ()))

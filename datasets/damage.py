@@ -55,6 +55,10 @@ _UNKNOWN = re.compile(
 """Messages of DuckDB for a column, table or function that does not exist."""
 
 
+_OF_FILES = frozenset({"InvalidInputException", "ConversionException"})
+"""Errors of DuckDB that are about a file, where they name one: it is damaged, or its columns have other types."""
+
+
 def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) -> HearthError:
     """Return the error of a question that DuckDB did not answer: it, or a table of the folder, is at fault.
 
@@ -64,12 +68,28 @@ def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) 
         names: of all columns, tables and views, which may have been meant by an unknown one.
     """
     message = str(error).split("\n\n", 1)[0]
-    if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
+    if isinstance(error, MemoryError) or type(error).__name__ == "OutOfMemoryException":
+        return too_big(message)
+    if "arquet" in message and str(folder) in message and type(error).__name__ in _OF_FILES:
         return unreadable(error, folder)
     unbound = type(error).__name__ in ("BinderException", "CatalogException")
     if unbound and (found := _UNKNOWN.search(message.split("\n", 1)[0].rstrip("!"))):
         return _unknown(found["column"] or found["name"], (found["kind"] or "column").split()[-1].lower(), names)
     return HearthError.of(Code.SYNTAX, message)
+
+
+def too_slow(seconds: float | None) -> HearthError:
+    """Return the error of a question that was not answered in time."""
+    remedy = "ask for less, or give more time with --within (0: no limit)"
+    return HearthError.of(Code.TIMED_OUT, f"the question took longer than {seconds:g} s", suggestion=remedy)
+
+
+def too_big(message: str) -> HearthError:
+    """Return the error of a question whose answer needs more memory or disk than a question may take."""
+    said = message.partition("\n")[0]
+    remedy = "ask for less: fewer columns, a LIMIT, or a WHERE"
+    return HearthError.of(Code.FILE_TOO_LARGE, f"the question needs more memory than it may take: {said}".rstrip(": "),
+                          suggestion=remedy)  # fmt: skip
 
 
 def _unknown(name: str, kind: str, names: Iterable[str]) -> HearthError:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hearth.datasets.damage import reading, refused_question, using
+from hearth.datasets.damage import reading, refused_question, too_slow, using
 from hearth.datasets.file_ranges import reading_between
 from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, define_as, describe, without_zones
 from hearth.datasets.format.ids import names_of
@@ -16,12 +17,14 @@ from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
 from hearth.datasets.stored_homes import StoredHome
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.published_rows import StoredRunRow
 from hearth.schemas.short_repr import cut
 from hearth.schemas.tables import TABLES
 from hearth.storage.manifest import NAME
+from hearth.storage.time_limits import TimeLimit
 
 if TYPE_CHECKING:
     from hearth.datasets.tensors import Tensors
@@ -37,6 +40,9 @@ class Dataset:
 
     Each table is an attribute: `ds.programs` is a DuckDB relation, with `.df()` for pandas and `.to_arrow_table()`.
     `ds["release:..."]` is one program with its runs.
+
+    Attributes:
+        within: seconds in which a question to `rows` or `batches` must be answered; None for no limit.
 
     Examples:
         >>> dataset = hearth.load(folder)
@@ -54,6 +60,7 @@ class Dataset:
         self.manifest = manifest
         self.failures = failures
         self.remembers = remembers
+        self.within: float | None = None
         self._version = version(folder)
 
     @classmethod
@@ -136,7 +143,7 @@ class Dataset:
 
     @explained
     def sql(self, query: str, **parameters: Any) -> Any:
-        """A query as a DuckDB relation; `$name` in it is the parameter of that name.
+        """Return a query as a DuckDB relation; `$name` in it is the parameter of that name.
 
         Raises:
             HearthError: SYNTAX, with DuckDB's own words, or when the query would change something; BAD_ARGUMENT, where
@@ -159,34 +166,47 @@ class Dataset:
 
     @explained
     def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
-        """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too."""
-        import duckdb
+        """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too.
+
+        Raises:
+            HearthError: as of `sql`; TIMED_OUT, after `within` seconds; FILE_TOO_LARGE, where memory is short.
+        """
 
         def ask() -> tuple[list[str], list[tuple[Any, ...]]]:
-            relation = self.sql(query, **parameters)
-            try:
+            with self._asking():
+                relation = self.sql(query, **parameters)
                 found = relation if limit is None or self._explains(query) else relation.limit(limit)
                 return list(relation.columns), without_zones(found).fetchall()
-            except duckdb.Error as error:
-                raise refused_question(error, self.folder, self._names()) from error
 
         return steady(self.folder, ask)
 
     @explained
-    def batches(self, query: str, size: int, **parameters: Any) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
-        """Column names of a query and its rows, of which `size` are read at a time; errors as of `sql`."""
-        import duckdb
+    def batches(self, query: str, size: int, **parameters: Any) -> tuple[list[str], Iterator[Any]]:
+        """Column names of a query and its rows as Arrow's batches of `size` rows; errors as of `rows`.
 
-        relation = without_zones(self.sql(query, **parameters))
+        One batch is in memory at a time. The time limit runs until the last one is taken.
+        """
+        with self._asking():
+            relation = without_zones(self.sql(query, **parameters))
 
-        def rows() -> Iterator[tuple[Any, ...]]:
+        def found() -> Iterator[Any]:
+            with self._asking():
+                yield from relation.to_arrow_reader(size)
+
+        return list(relation.columns), found()
+
+    @contextmanager
+    def _asking(self) -> Iterator[None]:
+        """End what takes longer than `within`, and raise DuckDB's errors as ours."""
+        with TimeLimit(self.connection, self.within) as limit:
             try:
-                for batch in relation.to_arrow_reader(size):
-                    yield from zip(*(column.to_pylist() for column in batch.columns), strict=True)
-            except duckdb.Error as error:
+                yield
+            except Exception as error:  # Arrow has errors of its own for DuckDB's while rows are read
+                if limit.over:
+                    raise too_slow(limit.seconds) from error
+                if isinstance(error, HearthError):
+                    raise
                 raise refused_question(error, self.folder, self._names()) from error
-
-        return list(relation.columns), rows()
 
     def _names(self) -> list[str]:
         """Every name of a column, table or view, for questions that name none."""
@@ -210,7 +230,7 @@ class Dataset:
         return int(self.read("SELECT count(*) AS number FROM programs")[0]["number"])
 
     def __iter__(self) -> Iterator[str]:
-        """The ids of all programs, sorted."""
+        """Yield the ids of all programs, sorted."""
         query = "SELECT program_id::VARCHAR AS program_id FROM programs ORDER BY 1"  # a stranger's may be bytes
         yield from (row["program_id"] for row in self.read(query))
 
@@ -218,11 +238,16 @@ class Dataset:
         return any(self._rows("SELECT 1 FROM programs WHERE program_id = $id", name) for name in names_of(program_id))
 
     def __getitem__(self, program_id: str) -> Entry:
-        """A program with its runs, repairs and sketches; ids of the embedded corpus may be those of another version.
+        """Return a program with its runs, repairs and sketches.
+
+        Ids of the embedded corpus may be those of another version.
 
         Raises:
             KeyError: the id is unknown; it names those that are like it.
+            TypeError: the key is not a text: programs have ids instead of places.
         """
+        if not isinstance(program_id, str):
+            raise TypeError(self._no_id(program_id))
         return steady(self.folder, lambda: self._entry(program_id))
 
     def _entry(self, program_id: str) -> Entry:
@@ -241,6 +266,15 @@ class Dataset:
             runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         return Entry(found[0], tuple(map(self.run_of, runs)), tuple(repairs), tuple(sketches))
 
+    def _no_id(self, key: object) -> str:
+        """Return the message for a key that is not an id: which keys there are."""
+        first = next(iter(self), None)
+        example = f"dataset[{first!r}]" if first else "there is none here"
+        return (
+            f"a program is found by its id, a text, not by {cut(repr(key), 40)}: {example}; "
+            "list(dataset) has all ids, dataset.programs all programs as a table"
+        )
+
     def _unknown(self, program_id: str) -> str:
         """Return the message for an id that no program has: ids like it, or where ids are found."""
         query = "SELECT program_id FROM programs ORDER BY jaro_winkler_similarity(program_id, $id) DESC, 1 LIMIT 3"
@@ -253,7 +287,7 @@ class Dataset:
         return "true" if self.failures else "executable"
 
     def home(self, name: str) -> EnvironmentGraph:
-        """The graph of a home, the base of its environments.
+        """Return the graph of a home, the base of its environments.
 
         Raises:
             KeyError: the name is unknown.
@@ -261,7 +295,7 @@ class Dataset:
         return self.stored_home(name).graph
 
     def run_of(self, row: StoredRunRow) -> Run:
-        """The execution of a row."""
+        """Return the execution of a row."""
         return Run(row, self.stored_home, self.folder)
 
     @cached_property
@@ -310,7 +344,7 @@ class Dataset:
         return self.read(query, {"id": value})
 
     def read(self, query: str, asked: dict[str, Any] | None = None, table: str = "") -> list[Any]:
-        """The rows of a query of ours, by name of column.
+        """Return the rows of a query of ours, by name of column.
 
         Args:
             query: the query.

@@ -6,9 +6,10 @@ from typing import Any
 
 from hearth.datasets.damage import using
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.catalog import absent_tables, earlier, limited, quoted, reading
+from hearth.datasets.format.catalog import absent_tables, earlier, reading
 from hearth.datasets.format.ids import OURS
 from hearth.schemas.tables import KEYS, TABLES
+from hearth.storage.databases import identifier, limited, open_database, quoted, without_patterns
 
 MORE = {"repairs": ("parent_id", "home", "perturbations")}
 """Further key columns in format 1, where repairs that led to no program have no environment."""
@@ -60,13 +61,11 @@ def compare(first: str | Path, second: str | Path, limit: int | None = None) -> 
     Raises:
         HearthError: one of them is not a dataset, or a newer version wrote it; or its tables cannot be read.
     """
-    import duckdb
-
     a, b = Dataset.open(first), Dataset.open(second)
     for each in (a, b):
         absent_tables(each.folder, each.manifest)  # refuses pipes, which a query would wait for
     found = []
-    with using(f"{a.folder}, {b.folder}"), duckdb.connect() as connection:
+    with using(f"{a.folder}, {b.folder}"), open_database() as connection:
         limited(connection, *(f"{each.folder.resolve()}/" for each in (a, b)))
         for table in TABLES:
             difference = _table(connection, table, (a, b), limit)
@@ -80,7 +79,7 @@ def _table(connection: Any, table: str, both: tuple[Dataset, Dataset], limit: in
     for name, dataset in zip("ab", both, strict=True):
         there = any((dataset.folder / table).glob("*.parquet"))  # else it is of a version without the table
         format = dataset.manifest["format"]
-        files = reading(table, format, f"{dataset.folder.resolve()}/")
+        files = reading(table, format, f"{without_patterns(dataset.folder)}/")
         there = there or "query" in earlier(format).get(table, {})
         rows = connection.sql(f"FROM {files}") if there else connection.from_arrow(TABLES[table].empty_table())
         rows.project(", ".join(map(_current, rows.columns))).create_view(name)
@@ -95,34 +94,29 @@ def _table(connection: Any, table: str, both: tuple[Dataset, Dataset], limit: in
 
 
 def _current(column: str) -> str:
-    """A column, ids as this version has them."""
+    """Return a column, ids as this version has them."""
     is_id = column == "found" or (column.endswith("_id") and column != "activity_id")
-    name = _identifier(column)
+    name = identifier(column)
     return f"regexp_replace({name}, '{OURS}', 'written\\1') AS {name}" if is_id else name
 
 
-def _identifier(column: str) -> str:
-    """The name of a column as SQL has it: strangers call theirs as they like."""
-    return '"' + column.replace('"', '""') + '"'
-
-
 def _same_key(keys: tuple[str, ...]) -> str:
-    return " AND ".join(f"a.{_identifier(key)} IS NOT DISTINCT FROM b.{_identifier(key)}" for key in keys)
+    return " AND ".join(f"a.{identifier(key)} IS NOT DISTINCT FROM b.{identifier(key)}" for key in keys)
 
 
 def _only(connection: Any, one: str, other: str, keys: tuple[str, ...]) -> tuple[tuple[Any, ...], ...]:
-    names = ", ".join(f"{one}.{_identifier(key)}" for key in keys)
+    names = ", ".join(f"{one}.{identifier(key)}" for key in keys)
     query = f"SELECT DISTINCT {names} FROM {one} ANTI JOIN {other} ON {_same_key(keys)} ORDER BY ALL"
     return tuple(connection.execute(query).fetchall())
 
 
 def _changed(connection: Any, keys: tuple[str, ...], common: list[str], odd: list[str]) -> tuple[Changed, ...]:
-    named = [(_identifier(name), quoted(name)) for name in common]
+    named = [(identifier(name), quoted(name)) for name in common]
     tests = [f"CASE WHEN a.{name} IS DISTINCT FROM b.{name} THEN {text} END" for name, text in named]
     tests += [quoted(name) for name in odd]
     if not tests:
         return ()
-    names = ", ".join(f"a.{_identifier(key)}" for key in keys)
+    names = ", ".join(f"a.{identifier(key)}" for key in keys)
     differing = f"list_filter([{', '.join(tests)}], lambda name: name IS NOT NULL)"
     query = f"""SELECT {names}, differing FROM (
         SELECT {names}, {differing} AS differing FROM a JOIN b ON {_same_key(keys)}

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import glob
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hearth.datasets.format.catalog import quoted
 from hearth.datasets.steady import version
 from hearth.schemas.tables import KEYS
+from hearth.storage.databases import limited, open_database, pattern_of, quoted, without_patterns
 
 _LAST = "\U0010ffff"
 """No id is greater."""
@@ -42,9 +41,9 @@ def reading_between(folder: Path, table: str, low: str, high: str) -> str:
         high: greatest id.
     """
     (key,) = KEYS[table]
-    ranges = _ranges(str(folder.resolve()), table, key, version(folder))
+    ranges = _ranges(without_patterns(folder), table, key, version(folder))
     found = [each.path for each in ranges if each.low <= high and low <= each.high]
-    names = ", ".join(quoted(glob.escape(path)) for path in found)
+    names = ", ".join(quoted(pattern_of(path)) for path in found)
     return f"read_parquet([{names}])" if found else table
 
 
@@ -56,12 +55,10 @@ def _ranges(folder: str, table: str, key: str, _: tuple[int, int] | None) -> tup
 
     DuckDB reads the footers, because pyarrow ends the process where one has damaged statistics of sizes.
     """
-    import duckdb
-
     paths = sorted(str(path) for path in Path(folder, table).glob("*.parquet"))
     if not paths:
         return ()
-    with duckdb.connect() as connection:
-        found = connection.execute(_FOOTERS, {"paths": [glob.escape(path) for path in paths], "key": key}).fetchall()
+    with limited(open_database(), f"{Path(folder).resolve()}/") as connection:
+        found = connection.execute(_FOOTERS, {"paths": [pattern_of(path) for path in paths], "key": key}).fetchall()
     ranges = {path: Range(low, high, path) for path, low, high, whole in found if whole}
     return tuple(ranges.get(path, Range("", _LAST, path)) for path in paths)

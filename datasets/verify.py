@@ -12,6 +12,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_homes import own_homes
 from hearth.datasets.dataset_knowledge import other_base
 from hearth.datasets.format.catalog import earlier
+from hearth.datasets.format.image_tables import other_images
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify_folder import AGAIN, manifest_faults, other_files, unknown
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -91,7 +92,7 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
         return Verdict(files, 0, 0, faults, note, odd)
     rows = sum(_count(dataset, table) for table in TABLES if (dataset.folder / table).is_dir())
     wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset), *_sketches(dataset)]
-    wrong = wrong or list(manifest_faults(dataset))
+    wrong = wrong or [*_images(dataset), *manifest_faults(dataset)]
     if wrong:
         return Verdict(files, rows, 0, tuple(wrong), note, odd)
     return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)), note, odd)
@@ -190,6 +191,12 @@ def _sketches(dataset: Dataset) -> Iterator[Diagnostic]:
     yield from _listed(
         dataset, Code.BAD_TABLE, "sketches", query, "that of {value} has not a flag for each of its steps"
     )
+
+
+def _images(dataset: Dataset) -> Iterator[Diagnostic]:
+    """Check that pictures as values are those of the files."""
+    for path, message in other_images(dataset.folder, dataset.manifest["files"]):
+        yield Diagnostic(Code.BAD_TABLE, message, str(path), suggestion=AGAIN)
 
 
 def _count(dataset: Dataset, table: str) -> int:

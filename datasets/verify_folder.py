@@ -14,6 +14,7 @@ from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, published
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.databases import limited, open_database
 from hearth.storage.files import read_json, value_digest
 from hearth.storage.input_files import read_input
 from hearth.storage.manifest import NAME, TIMING
@@ -106,7 +107,7 @@ def other_files(folder: Path) -> Iterator[Diagnostic]:
 
 
 def _known_sql(folder: Path) -> str | None:
-    """The SQL that the catalog was made by, if it is ours: that of strangers is never run."""
+    """Return the SQL that the catalog was made by, if it is ours: that of strangers is never run."""
     try:
         text = read_input(folder / SQL).decode()
     except (HearthError, UnicodeDecodeError):
@@ -136,9 +137,9 @@ def _holds(path: Path) -> list[Any]:
     """All that a catalog defines; its error, where DuckDB cannot open it. Nothing in it is run."""
     import duckdb
 
-    closed = {"enable_external_access": "false", "autoload_known_extensions": "false"}
     try:
-        with duckdb.connect(str(path), read_only=True, config=closed) as connection:
+        with open_database(path, {"access_mode": "READ_ONLY"}) as connection:
+            limited(connection)
             return [connection.execute(query).fetchall() for query in _HOLDS]
     except duckdb.Error as error:
         return [str(error)]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from datetime import date, datetime, time
 from decimal import Decimal
+from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Any
@@ -16,7 +17,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import without_zones
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.csv_files import writer_of
+from hearth.storage.csv_files import rows_writer
 from hearth.storage.files import replacing
 from hearth.storage.names import numbered
 
@@ -36,7 +37,7 @@ def plain(value: Any) -> Any:
 
 
 def line_of(value: Any) -> Any:
-    """A value for a cell: nested ones as JSON."""
+    """Return a value for a cell: nested ones as JSON."""
     return orjson.dumps(plain(value)).decode() if isinstance(value, list | dict) else value
 
 
@@ -53,18 +54,48 @@ def write_separated(
 ) -> int:
     """Write an answer as lines of cells, and return how many rows it has.
 
-    No cell of text is a formula to a spreadsheet, or moves a terminal's cursor: see `storage.csv_files.writer_of`.
+    No cell of text is a formula to a spreadsheet, or moves a terminal's cursor: see `storage.csv_files.rows_writer`.
 
     Raises:
         HearthError: as of `Dataset.sql`.
     """
-    columns, rows = dataset.batches(query, _BATCH, **asked)
-    write = writer_of(to, separator)
-    write(distinct(columns))
-    number = 0
-    for number, row in enumerate(rows, 1):  # noqa: B007 - the last number is the count
-        write([line_of(cell) for cell in row])
+    columns, batches = dataset.batches(query, _BATCH, **asked)
+    write, number, first = rows_writer(to, separator), 0, next(batches, None)
+    write([distinct(columns)])
+    for batch in () if first is None else chain([first], batches):
+        write(zip(*(_each(column, line_of) for column in batch.columns), strict=True))
+        number += batch.num_rows
     return number
+
+
+def _each(column: Any, form: Callable[[Any], Any]) -> Any:
+    """Return the values of a column in a form; what every form leaves as it is, is not looked at one by one."""
+    import pyarrow.types as kinds
+
+    kind, values = column.type, column.to_pylist()
+    kept = kinds.is_signed_integer(kind) or kinds.is_floating(kind) or kinds.is_boolean(kind) or kinds.is_string(kind)
+    return values if kept else map(form, values)
+
+
+def _records(columns: list[str], batch: Any) -> list[dict[str, Any]]:
+    """Return the rows of a batch as JSON has them."""
+    rows = zip(*(_each(column, plain) for column in batch.columns), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
+def document(dataset: Dataset, query: str) -> Iterator[str]:
+    """Yield an answer as the pieces of one indented JSON document, a batch of rows each.
+
+    Raises:
+        HearthError: as of `Dataset.rows`.
+    """
+    columns, batches = dataset.batches(query, _BATCH)
+    names, begun = distinct(columns), False
+    for batch in batches:
+        text = orjson.dumps(_records(names, batch), option=orjson.OPT_INDENT_2).decode()
+        yield ("," if begun else "[") + text[1:-2]
+        begun = True
+    yield "\n]\n" if begun else "[]\n"
 
 
 def _csv(dataset: Dataset, query: str, path: Path) -> int:
@@ -78,12 +109,13 @@ def _tsv(dataset: Dataset, query: str, path: Path) -> int:
 
 
 def _json(dataset: Dataset, query: str, path: Path) -> int:
-    columns, rows = dataset.batches(query, _BATCH)
+    columns, batches = dataset.batches(query, _BATCH)
     names, number = distinct(columns), 0
     with path.open("wb") as file:
-        for number, row in enumerate(rows, 1):
-            file.write(b"[\n" if number == 1 else b",\n")
-            file.write(orjson.dumps(dict(zip(names, map(plain, row), strict=True))))
+        for batch in batches:
+            rows = b",\n".join(map(orjson.dumps, _records(names, batch)))
+            file.write((b",\n" if number else b"[\n") + rows)
+            number += batch.num_rows
         file.write(b"\n]\n" if number else b"[]\n")
     return number
 

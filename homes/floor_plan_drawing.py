@@ -112,7 +112,7 @@ _STEPS = 6
 
 
 def _room_label(name: str, room: Rect, furniture: Sequence[Rect]) -> Shape:
-    """The name of a room, where it covers least furniture, as near to the middle as that allows."""
+    """Return the name of a room, where it covers least furniture, as near to the middle as that allows."""
     depth = min(_LETTER, 0.95 * room.width / (0.6 * max(len(name), 1)))
     width = 0.6 * depth * len(name)
     spare = room.width - width, room.depth - depth
@@ -126,7 +126,7 @@ def _room_label(name: str, room: Rect, furniture: Sequence[Rect]) -> Shape:
 
 
 def _label(thing: Thing) -> Shape:
-    """The name of a piece of furniture, over what stands on it."""
+    """Return the name of a piece of furniture, over what stands on it."""
     rect = footprint(thing.box)
     size = min(0.12, 1.5 * max(rect.width, rect.depth) / max(len(thing.class_name), 1))
     return Shape("text", rect, INK, HALO, text=thing.class_name, size=size)
@@ -138,7 +138,7 @@ def bounds(layout: Layout) -> Rect:
 
 
 def svg(layout: Layout, trails: Sequence[Trail] = ()) -> str:
-    """The floor plan as an SVG document, with ways over it."""
+    """Return the floor plan as an SVG document, with ways over it."""
     area = bounds(layout)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{area.width * SCALE:.0f}" height="{area.depth * SCALE:.0f}" '
@@ -151,7 +151,7 @@ def svg(layout: Layout, trails: Sequence[Trail] = ()) -> str:
 
 
 def svg_shape(shape: Shape, area: Rect) -> str:
-    """A shape as SVG."""
+    """Return a shape as SVG."""
     rect = shape.rect
     x, y = (rect.x0 - area.x0) * SCALE, (area.z1 - rect.z1) * SCALE
     if shape.kind == "text":
@@ -168,7 +168,7 @@ def svg_shape(shape: Shape, area: Rect) -> str:
 
 
 def svg_trail(trail: Trail, area: Rect) -> Iterator[str]:
-    """A way and its moments as SVG."""
+    """Yield a way and its moments as SVG."""
 
     def at(point: Spot) -> str:
         return f"{(point[0] - area.x0) * SCALE:.1f},{(area.z1 - point[1]) * SCALE:.1f}"

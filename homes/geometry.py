@@ -26,12 +26,12 @@ class Rect(NamedTuple):
 
     @classmethod
     def around(cls, x: float, z: float, width: float, depth: float) -> Rect:
-        """The rectangle of that extent with its middle at a point."""
+        """Return the rectangle of that extent with its middle at a point."""
         return cls(x - width / 2, z - depth / 2, x + width / 2, z + depth / 2)
 
     @classmethod
     def over(cls, rects: Iterable[Rect]) -> Rect:
-        """The smallest rectangle over some others."""
+        """Return the smallest rectangle over some others."""
         x0, z0, x1, z1 = zip(*rects, strict=True)
         return cls(min(x0), min(z0), max(x1), max(z1))
 
@@ -60,7 +60,7 @@ class Rect(NamedTuple):
         return Rect(self.x0 + margin, self.z0 + margin, self.x1 - margin, self.z1 - margin)
 
     def overlap(self, other: Rect) -> float:
-        """The area both cover, in square metres."""
+        """Return the area both cover, in square metres."""
         width = min(self.x1, other.x1) - max(self.x0, other.x0)
         depth = min(self.z1, other.z1) - max(self.z0, other.z0)
         return max(0.0, width) * max(0.0, depth)
@@ -81,38 +81,38 @@ def along_x(wall: str) -> bool:
 
 
 def facing_from(wall: str) -> float:
-    """The yaw of a thing with its back to that wall."""
+    """Return the yaw of a thing with its back to that wall."""
     return DIRECTIONS[OPPOSITE_WALL[wall]]
 
 
 def wall_of(yaw: float) -> str:
-    """The wall that a thing of this yaw turns its back to."""
+    """Return the wall that a thing of this yaw turns its back to."""
     return OPPOSITE_WALL[front_of(yaw)]
 
 
 def front_of(yaw: float) -> str:
-    """The direction a thing of this yaw faces."""
+    """Return the direction a thing of this yaw faces."""
     return _FACING[yaw % 360]
 
 
 def footprint(box: Box) -> Rect:
-    """The floor a box stands over."""
+    """Return the floor a box stands over."""
     (x, _, z), (w, _, d) = box
     return Rect.around(x, z, w, d)
 
 
 def bottom(box: Box) -> float:
-    """The height of a box's underside."""
+    """Return the height of a box's underside."""
     return box.center[1] - box.size[1] / 2
 
 
 def top(box: Box) -> float:
-    """The height of a box's upper side."""
+    """Return the height of a box's upper side."""
     return box.center[1] + box.size[1] / 2
 
 
 def box_over(rect: Rect, y0: float, y1: float) -> Box:
-    """The box over a rectangle between two heights, to a tenth of a millimetre."""
+    """Return the box over a rectangle between two heights, to a tenth of a millimetre."""
     x, z = rect.center
     return Box(_rounded((x, (y0 + y1) / 2, z)), _rounded((rect.width, y1 - y0, rect.depth)))
 
@@ -128,5 +128,5 @@ def intrusion(a: Box, b: Box) -> float:
 
 
 def turned(width: float, depth: float, yaw: float) -> tuple[float, float]:
-    """A thing's extents along x and z when it faces `yaw` (a multiple of 90 degrees)."""
+    """Return a thing's extents along x and z when it faces `yaw` (a multiple of 90 degrees)."""
     return (width, depth) if yaw % 180 == 0 else (depth, width)

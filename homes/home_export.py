@@ -1,6 +1,5 @@
 """Writing homes: plans, scene graphs in the release's layout, drawings, and files of node ids."""
 
-import csv
 import io
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +12,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
+from hearth.storage.csv_files import rows_writer
 
 
 def write(layout: Layout, path: Path, knowledge: Knowledge) -> None:
@@ -50,8 +50,8 @@ def write_ids(layout: Layout, path: Path) -> int:
     ids = node_ids((thing.name for thing in every_thing(layout)), layout.plan.ids, layout.plan.file)
     removed = {name: number for name, number in layout.plan.ids.items() if name not in ids}
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("id", "name"))
-    writer.writerows(sorted((number, name) for name, number in (ids | removed).items()))
+    write = rows_writer(text)
+    write([("id", "name")])
+    write(sorted((number, name) for name, number in (ids | removed).items()))
     path.write_text(text.getvalue(), encoding="utf-8")
     return len(ids)

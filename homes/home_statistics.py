@@ -68,7 +68,10 @@ def of_home(graph: EnvironmentGraph, knowledge: Knowledge) -> dict[str, Any]:
 
 
 def of_homes(graphs: Iterable[EnvironmentGraph], knowledge: Knowledge) -> dict[str, Any]:
-    """A collection's figures, each the mean over its homes unless its name says otherwise; empty for no homes."""
+    """Return a collection's figures, each the mean over its homes unless its name says otherwise.
+
+    Empty for no homes.
+    """
     homes = [of_home(graph, knowledge) for graph in graphs]
     if not homes:
         return {}

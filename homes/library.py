@@ -31,7 +31,7 @@ LARGEST_IDS = 16 << 20
 
 
 def names(directory: Path | str | None = None, *, alone: bool = False) -> tuple[str, ...]:
-    """The homes' names, sorted: ours (unless `alone`), and those of the user's directory.
+    """Return the homes' names, sorted: ours (unless `alone`), and those of the user's directory.
 
     Raises:
         HearthError: MISSING_FILE: the directory does not exist.
@@ -40,7 +40,7 @@ def names(directory: Path | str | None = None, *, alone: bool = False) -> tuple[
 
 
 def load_graph(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> EnvironmentGraph:
-    """A home's scene graph; built once a process.
+    """Return a home's scene graph; built once a process.
 
     Raises:
         HearthError: UNKNOWN_HOME, or every fault of its plan or graph.
@@ -55,7 +55,7 @@ def load_graph(name: str, knowledge: Knowledge, directory: Path | str | None = N
 
 
 def load_layout(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> Layout:
-    """A home's plan with everything in its place; a scene graph is laid out by its relations.
+    """Return a home's plan with everything in its place; a scene graph is laid out by its relations.
 
     Raises:
         HearthError: UNKNOWN_HOME; every fault of its plan; or NO_ROOM: a graph without rooms.
@@ -64,7 +64,7 @@ def load_layout(name: str, knowledge: Knowledge, directory: Path | str | None = 
 
 
 def layout_of(path: Path | str, knowledge: Knowledge) -> Layout:
-    """A plan file with everything in its place, or a graph laid out; errors as of `load_layout`."""
+    """Return a plan file with everything in its place, or a graph laid out; errors as of `load_layout`."""
     found = Path(path)
     if found.suffix != ".json":
         return _layout(found, knowledge)
@@ -73,8 +73,8 @@ def layout_of(path: Path | str, knowledge: Knowledge) -> Layout:
 
 
 def graph_layout(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> GraphLayout:
-    """A scene graph (a file, or a home's by name) with the geometry that its relations suggest, and the relations that
-    it does not show; errors as of `load_graph`.
+    """Return a scene graph (a file, or a home's by name) with the geometry that its relations suggest, and the
+    relations that it does not show; errors as of `load_graph`.
     """
     return _graph_layout(Path(home) if Path(home).suffix else _file(str(home), directory), knowledge)
 
@@ -85,7 +85,7 @@ def _graph_layout(path: Path, knowledge: Knowledge) -> GraphLayout:
 
 
 def graph_of(path: Path | str, knowledge: Knowledge) -> EnvironmentGraph:
-    """The scene graph of a plan file, or of a JSON file in the release's layout; errors as of `load_graph`."""
+    """Return the scene graph of a plan file, or of a JSON file in the release's layout; errors as of `load_graph`."""
     found = Path(path)
     return _graph(found, knowledge) if found.suffix == ".json" else _scene(found, knowledge)
 
@@ -138,7 +138,7 @@ def _own() -> Mapping[str, Path]:
 
 
 def files_of(directory: Path) -> list[Path]:
-    """The files of homes in a directory, by name: plans, their ids, scene graphs.
+    """Return the files of homes in a directory, by name: plans, their ids, scene graphs.
 
     Raises:
         HearthError: MISSING_FILE: the directory does not exist.
@@ -169,8 +169,8 @@ def _graph(path: Path, knowledge: Knowledge) -> EnvironmentGraph:
 
 
 def filled_nodes(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> tuple[str, ...]:
-    """The nodes of a scene graph (a file, or a home's by name) that left out what the knowledge says of their class,
-    as `salmon (1000)`; none of a plan. Errors as of `load_graph`.
+    """Return the nodes of a scene graph (a file, or a home's by name) that left out what the knowledge says of their
+    class, as `salmon (1000)`; none of a plan. Errors as of `load_graph`.
     """
     path = Path(home) if Path(home).suffix else _file(str(home), directory)
     return _filled_graph(path, knowledge)[1] if path.suffix == ".json" else ()

@@ -74,7 +74,7 @@ class View:
         return found
 
     def label(self, node_id: int) -> str:
-        """A node as people call it: `fridge (41)`."""
+        """Return a node as people call it: `fridge (41)`."""
         node = self.nodes.get(node_id)
         return f"{node.class_name} ({node_id})" if node else f"node {node_id}"
 
@@ -174,7 +174,7 @@ def _rooms(view: View) -> Iterator[Diagnostic]:
 
 
 def _no_room(view: View, node_id: int) -> Diagnostic:
-    """A thing that nobody can walk to, as ON leads to no room; the remedy is the edge that is missing."""
+    """Return a thing that nobody can walk to, as ON leads to no room; the remedy is the edge that is missing."""
     room = view.stood.get(node_id)
     if room is None:
         hint = f"add {node_id} INSIDE the id of its room"
@@ -184,7 +184,10 @@ def _no_room(view: View, node_id: int) -> Diagnostic:
 
 
 def _containers(view: View) -> Iterator[Diagnostic]:
-    """A thing may be INSIDE a box INSIDE a closet, and say both; two that are not in each other cannot both hold it."""
+    """Yield a thing may be INSIDE a box INSIDE a closet, and say both.
+
+    Two that are not in each other cannot both hold it.
+    """
     for node_id in view.nodes:
         holders = [parent for parent in view.parents(node_id) if not view.is_room(parent)]
         outer = {parent for other in holders for parent in view.parents(other)}
@@ -194,6 +197,27 @@ def _containers(view: View) -> Iterator[Diagnostic]:
             yield _fault(Code.BAD_GRAPH, f"{view.label(node_id)} is INSIDE {where}", (node_id, *innermost), "keep one")
         if view.is_room(node_id) and view.parents(node_id):
             yield _fault(Code.BAD_GRAPH, f"{view.label(node_id)} is a room INSIDE something", (node_id,), "remove it")
+
+
+def _seats(view: View) -> Iterator[Diagnostic]:
+    """Furniture on or in a seat: simulators that compare boxes say so of a table before a corner couch."""
+    for relation in ("ON", "INSIDE"):
+        for node_id, holders in view.targets[relation].items():
+            node = view.nodes[node_id]
+            if node.category != FURNITURE or "GRABBABLE" in node.properties:
+                continue
+            for seat in (holder for holder in holders if _is_seat(view.nodes[holder])):
+                message = f"{view.label(node_id)} is {relation} {view.label(seat)}: a person sitting there sits in it"
+                yield _fault(Code.CONFLICT, message, (node_id, seat), "remove the edge")
+
+
+def _is_seat(node: Node) -> bool:
+    """Return whether a node is furniture to sit on; mats are to sit on, too, and carry furniture."""
+    return node.category == FURNITURE and "SITTABLE" in node.properties
+
+
+FURNITURE = "Furniture"
+"""The category of things that stand on the floor."""
 
 
 def _circles(view: View) -> Iterator[Diagnostic]:
@@ -208,7 +232,7 @@ def _circles(view: View) -> Iterator[Diagnostic]:
 
 
 def _circle(targets: dict[int, list[int]], start: int, done: set[int]) -> tuple[int, ...]:
-    """A circle reached from `start` through nodes not yet done, or (); marks what it visits as done."""
+    """Return a circle reached from `start` through nodes not yet done, or (); marks what it visits as done."""
     path: dict[int, int] = {}  # node -> its place on the way, in that order
     stack: list[tuple[int, int]] = [(start, 0)]
     while stack:
@@ -286,8 +310,8 @@ def _on_foot(view: View) -> Iterator[Diagnostic]:
 
 
 def unusable(graph: EnvironmentGraph, knowledge: Knowledge) -> tuple[str, ...]:
-    """The things that a program can only walk to and look at, because the graph gives them no properties while their
-    class has some: a sentence for each class.
+    """Return the things that a program can only walk to and look at, because the graph gives them no properties while
+    their class has some: a sentence for each class.
 
     Examples:
         >>> from hearth.homes.lint import unusable
@@ -320,6 +344,7 @@ CHECKS: dict[str, Callable[[View], Iterator[Diagnostic]]] = {
     "states": _states,
     "rooms": _rooms,
     "containers": _containers,
+    "seats": _seats,
     "circles": _circles,
     "doors": _doors,
     "hands": _hands,

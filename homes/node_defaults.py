@@ -25,7 +25,7 @@ class Filled(NamedTuple):
 
 
 def filled(data: Mapping[str, Any], knowledge: Knowledge) -> Filled:
-    """A graph whose nodes have the category, properties and states of their class where they say none.
+    """Return a graph whose nodes have the category, properties and states of their class where they say none.
 
     A category that graphs do not have, such as a prefab's name, counts as left out. What is not a mapping stays.
     """

@@ -26,7 +26,7 @@ STANDS = ("floor", "wall", "item")
 
 
 def posed(graph: EnvironmentGraph, places: Mapping[int, tuple[str, int]], knowledge: Knowledge) -> EnvironmentGraph:
-    """A graph whose nodes in `places` have boxes at their new places; the things on and in them move along.
+    """Return a graph whose nodes in `places` have boxes at their new places; the things on and in them move along.
 
     Args:
         graph: edited already: its edges say where things are. Things that have a place that has no box get none.
@@ -75,7 +75,7 @@ def _place(
 def _on_floor(
     layout: Layout, node: Node, place: Node, graph: EnvironmentGraph, knowledge: Knowledge
 ) -> tuple[Box, float] | None:
-    """The first free spot, along the walls first, that keeps the room's doors joined."""
+    """Return the first free spot, along the walls first, that keeps the room's doors joined."""
     rooms = {e.target for e in graph.edges if e.source == place.id and e.relation == "INSIDE"} | {place.id}
     room = next(room for room in layout.plan.rooms if room.line in rooms)
     shaped = form(node.class_name, knowledge)

@@ -32,7 +32,10 @@ class Form:
 
 @lru_cache(maxsize=4096)
 def form(class_name: str, knowledge: Knowledge) -> Form | None:
-    """The shape of a class, in the knowledge's size unless at home it lies otherwise; None for an unknown class."""
+    """Return the shape of a class, in the knowledge's size unless at home it lies otherwise.
+
+    None for an unknown class.
+    """
     known = knowledge.objects.get(class_name)
     if known is None:
         return None
@@ -43,7 +46,7 @@ def form(class_name: str, knowledge: Knowledge) -> Form | None:
 
 @lru_cache(maxsize=4096)
 def scaled(class_name: str, size: tuple[float | None, ...], knowledge: Knowledge) -> Form | None:
-    """A class's shape where a plan gives a size of its own; None in it, or 0, stands for the usual extent."""
+    """Return a class's shape where a plan gives a size of its own; None in it, or 0, stands for the usual extent."""
     known = form(class_name, knowledge)
     if known is None:
         return None

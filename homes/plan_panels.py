@@ -40,7 +40,7 @@ class Panel:
 
 
 def labelled(layout: Layout, named: Collection[str]) -> list[Shape]:
-    """The shapes of a plan; of furniture only what is named has a name, and no two names overlap."""
+    """Return the shapes of a plan; of furniture only what is named has a name, and no two names overlap."""
     rooms = {room.name for room in layout.plan.rooms}
     kept, texts = [], []
     for shape in shapes(layout):
@@ -56,7 +56,7 @@ def labelled(layout: Layout, named: Collection[str]) -> list[Shape]:
 
 
 def _apart(texts: Sequence[Shape]) -> Iterator[Shape]:
-    """The texts, each moved down, then up, until it stands on none of those before it."""
+    """Yield the texts, each moved down, then up, until it stands on none of those before it."""
     placed: list[Rect] = []
     for text in texts:
         x, z = text.rect.center
@@ -88,7 +88,7 @@ def write(layout: Layout, path: Path, panels: Sequence[Panel], named: Collection
 
 
 def svg(layout: Layout, panels: Sequence[Panel], named: Collection[str] = ()) -> str:
-    """The drawings as one SVG document."""
+    """Return the drawings as one SVG document."""
     area, parts = bounds(layout), labelled(layout, named)
     wide, high, head = area.width * SCALE, area.depth * SCALE, HEAD * SCALE
     size = f'width="{wide * len(panels):.0f}" height="{high + head:.0f}"'

@@ -44,7 +44,7 @@ def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[s
 
 
 def _given(things: Sequence[Thing], ids: Mapping[str, int]) -> Iterator[Edge]:
-    """The plan's own relations; everything is INSIDE its room as well."""
+    """Yield the plan's own relations; everything is INSIDE its room as well."""
     for thing in things:
         me = ids[thing.name]
         if thing.on:
@@ -138,7 +138,7 @@ def _seen(things: Sequence[Thing], targets: Sequence[int]) -> Iterator[tuple[int
 
 
 def direction(yaw: float) -> tuple[float, float]:
-    """A yaw as a unit vector (x, z); exact for the four winds."""
+    """Return a yaw as a unit vector (x, z); exact for the four winds."""
     exact = {0.0: (0.0, 1.0), 90.0: (1.0, 0.0), 180.0: (0.0, -1.0), 270.0: (-1.0, 0.0)}
     return exact.get(yaw % 360) or (sin(radians(yaw)), cos(radians(yaw)))
 

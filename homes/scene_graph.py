@@ -14,7 +14,9 @@ from hearth.schemas.vocabulary import CHARACTER_CATEGORY, FIRST_ADDED_ID, PROPER
 
 
 def scene(layout: Layout, knowledge: Knowledge) -> EnvironmentGraph:
-    """The home's graph, nodes in the order of their ids, in its default states (semantics: preparing an environment).
+    """Return the home's graph, nodes in the order of their ids, in its default states (semantics.
+
+    Preparing an environment).
 
     Raises:
         HearthError: more things than ids below `FIRST_ADDED_ID`.

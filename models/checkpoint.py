@@ -178,7 +178,9 @@ MISFITS = (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeE
 
 
 def misfit(folder: Path, error: Exception) -> HearthError:
-    """The error of a checkpoint whose settings, content and weights do not fit each other or this version's model."""
+    """Return the error of a checkpoint whose settings, content and weights do not fit each other or this version's
+    model.
+    """
     return _damaged(folder, f"it does not fit its model: {type(error).__name__}: {str(error)[:200]}")
 
 

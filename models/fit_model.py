@@ -74,7 +74,7 @@ BOOLEANS = {"true": True, "yes": True, "1": True, "false": False, "no": False, "
 
 
 def _changed(name: str, changed: Sequence[str]) -> dict[str, Any]:
-    """Settings as `NAME=VALUE`, the values of the types of their defaults."""
+    """Return settings as `NAME=VALUE`, the values of the types of their defaults."""
     defaults = settings_of(name)
     own = {each.name: getattr(defaults, each.name) for each in fields(defaults)}  # type: ignore[arg-type]
     kinds = {key: type(value) for key, value in own.items()}

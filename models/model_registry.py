@@ -220,7 +220,7 @@ MODELS: dict[str, Entry] = {
 
 
 def settings_of(name: str, **changed: Any) -> Model:
-    """The settings of a model, its own or with some changed.
+    """Return the settings of a model, its own or with some changed.
 
     Raises:
         HearthError: UNKNOWN_ID, if there is no such model; BAD_ARGUMENT, if it writes no programs; MISSING_FILE, if the
@@ -255,12 +255,12 @@ def _class(entry: Entry) -> Any:
 
 
 def trained_names() -> list[str]:
-    """The names of the checkpoints that come with Hearth."""
+    """Return the names of the checkpoints that come with Hearth."""
     return sorted(path.parent.name for path in TRAINED.glob("*/model.json"))
 
 
 def restore(model: str | Path) -> tuple[str, Trained]:
-    """A trained model that writes programs, and its name: of a checkpoint's folder, or of one that comes
+    """Return a trained model that writes programs, and its name: of a checkpoint's folder, or of one that comes
     with Hearth.
 
     Raises:
@@ -299,7 +299,7 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
 
 
 def named(model: str | Path) -> str:
-    """The name in the registry of a model that can be restored; of a newer version's the one that it has there.
+    """Return the name in the registry of a model that can be restored; of a newer version's the one that it has there.
 
     Raises:
         HearthError: there is none, or it is broken.

@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
@@ -13,11 +14,13 @@ from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.description_lookup import Described
 from hearth.pipelines.crowd.duplicate_records import Repeated
 from hearth.pipelines.engine.build_context import knowledge
+from hearth.pipelines.engine.salt_record import salt_changed
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import (
     crowd,
+    enclosed_json,
     ours,
     plans,
     published,
@@ -53,13 +56,14 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     DOCUMENT: ours.scan_document,
     spreadsheets.NAME: spreadsheets.scan,
     yaml_documents.NAME: yaml_documents.scan,
+    enclosed_json.NAME: enclosed_json.scan,
     published.NAME: published.scan,
     sketches.NAME: sketches.scan,
     scenes.NAME: scenes.scan,
 }
 """The function that finds the records of a file or folder, by reader."""
 
-_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME})
+_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME, enclosed_json.NAME})
 """Readers of records whose fields may have other names."""
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
@@ -266,8 +270,10 @@ def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Rej
 
 
 def prepare(settings: Settings) -> dict[str, Any]:
-    """Identify the salt by a digest, without revealing it."""
-    return {"salt": value_digest(salt(settings))[:16]}
+    """Begin anew where the last build had another salt; the plan has nothing by which a salt could be guessed."""
+    if salt_changed(Path(settings.out), settings.salt):
+        shutil.rmtree(settings.folder("ingest"), ignore_errors=True)
+    return {}
 
 
 def guesses(columns: Mapping[str, FieldColumns]) -> list[str]:

@@ -12,8 +12,7 @@ import pyarrow.parquet as pq
 from hearth.datasets.format.cases import difference_on_replay
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.format.ids import STAMP, activity_id
-from hearth.datasets.format.split_columns import PARTS
-from hearth.datasets.format.splits import LEFT_OUT
+from hearth.datasets.format.splits import BY_CASE, SHARES, share_of
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.final_tables import finish, strength_used
 from hearth.pipelines.engine.runner import input_partitions
@@ -29,11 +28,8 @@ from hearth.storage.files import value_digest
 from hearth.storage.partitions import read_rows
 from hearth.storage.rejects import Reject
 
-PER_CASE = {
-    **{f"programs.{part}": TABLES["programs"] for part in (*PARTS, LEFT_OUT)},
-    **{name: TABLES[name] for name in ("environments", "executions", "perturbations", "repairs")},
-}
-"""Tables whose rows come from one case each, programs by part; the others need all cases."""
+PER_CASE = {share_of(table, share): TABLES[table] for table in BY_CASE for share in SHARES}
+"""Tables whose rows come from one case each, by the part of its program; the others need all cases."""
 
 GATHER = 2_048
 """Cases published in one file: a query opens every file's footer, so files should be few."""
@@ -93,21 +89,21 @@ def process(case: SplitCaseRow, context: Context) -> Iterable[tuple[str, Row]] |
 
 def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
     """The rows of a case; the run of an original in a perturbed environment is published if it fails there."""
-    perturbed = case["parent_id"] is None and bool(case["perturbations"])
+    perturbed, part = case["parent_id"] is None and bool(case["perturbations"]), case["split"]
     if not perturbed and case["program_id"] != context.last:
         context.last = case["program_id"]
-        yield f"programs.{case['split'] or LEFT_OUT}", {**program_row(case), **STAMP}
+        yield share_of("programs", part), {**program_row(case), **STAMP}
     # The outcome of repairing: for an original, nothing.
     came: Any = {"program_id": None, "execution_id": None, "parent_id": case["program_id"]} if perturbed else {}
     if case["environment_id"] != context.environment:
         context.environment = case["environment_id"]
-        yield "environments", {**columns_of(EnvironmentRow, {**case, **case["environment"]}), **STAMP}
+        yield share_of("environments", part), {**columns_of(EnvironmentRow, {**case, **case["environment"]}), **STAMP}
         for one in case["perturbations"]:
-            yield "perturbations", {**columns_of(PerturbedRow, {**case, **came, **one}), **STAMP}
+            yield share_of("perturbations", part), {**columns_of(PerturbedRow, {**case, **came, **one}), **STAMP}
     if not (perturbed and case["executable"]):
-        yield "executions", {**columns_of(ExecutionRow, case), **STAMP}
+        yield share_of("executions", part), {**columns_of(ExecutionRow, case), **STAMP}
     for repair in case["repairs"]:
-        yield "repairs", {**columns_of(RepairedRow, {**case, **came, **repair}), **STAMP}
+        yield share_of("repairs", part), {**columns_of(RepairedRow, {**case, **came, **repair}), **STAMP}
 
 
 def program_row(case: SplitCaseRow) -> ProgramRow:

@@ -54,7 +54,7 @@ class Skeleton(NamedTuple):
 
 
 def seen(shot: Shot) -> list[Seen]:
-    """The visible things and characters, by node id. A thing drawn in parts has its first part's box."""
+    """Return the visible things and characters, by node id. A thing drawn in parts has its first part's box."""
     things, camera = shot.geometry.things, shot.camera
     found = np.tile(np.array((camera.width, camera.height, 0, 0, 0), np.int32), (len(things), 1))
     extents(shot.hits.triangle, shot.geometry.owners, camera.width, found)
@@ -88,7 +88,7 @@ class WorldBox(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def world_box(thing: Thing) -> WorldBox:
-    """The box around a thing's mesh, oriented as the thing is."""
+    """Return the box around a thing's mesh, oriented as the thing is."""
     mesh = own_mesh(thing)
     low, high = (bound.astype(np.float64) for bound in mesh.bounds())
     corners = np.array([_placed(thing, (x, y, z)) for x, y, z in _corners(low, high)])
@@ -96,7 +96,7 @@ def world_box(thing: Thing) -> WorldBox:
 
 
 def _joined(one: NDArray[np.int32] | None, other: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The union of the extents of two parts of a thing."""
+    """Return the union of the extents of two parts of a thing."""
     if one is None:
         return other
     return np.array((*np.minimum(one[:2], other[:2]), *np.maximum(one[2:4], other[2:4]), one[4] + other[4]), np.int32)
@@ -119,7 +119,7 @@ BEHIND = 0.2
 
 
 def skeletons(shot: Shot) -> list[Skeleton]:
-    """The joints of every character in the scene, sorted by node id."""
+    """Return the joints of every character in the scene, sorted by node id."""
     camera = shot.camera
     found = []
     for thing in sorted(shot.geometry.things, key=lambda thing: thing.id):
@@ -148,7 +148,7 @@ def _is_visible(shot: Shot, thing: Thing, place: Point) -> bool:
 
 
 def camera_of(camera: Camera) -> dict[str, Any]:
-    """A camera as plain values: name, size, (3, 3) intrinsics and (4, 4) camera-to-world pose."""
+    """Return a camera as plain values: name, size, (3, 3) intrinsics and (4, 4) camera-to-world pose."""
     return {
         "name": camera.name,
         "width": camera.width,

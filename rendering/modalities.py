@@ -63,7 +63,7 @@ def render(
 
 
 def check_modalities(wanted: list[str], quality: str) -> list[str]:
-    """The same names.
+    """Return the same names.
 
     Raises:
         HearthError: an unknown modality or quality.
@@ -76,7 +76,7 @@ def check_modalities(wanted: list[str], quality: str) -> list[str]:
 
 
 def pictures_of(shot: Shot, modalities: Iterable[str], quality: str = "draft") -> dict[str, Any]:
-    """The pictures of a shot by modality, as `render` gives them."""
+    """Return the pictures of a shot by modality, as `render` gives them."""
     return {name: MODALITIES[name](shot, quality) for name in modalities}
 
 

@@ -31,7 +31,7 @@ class Message:
 
 
 def read(text: str) -> Message | None:
-    """The inverse of `str`; None of any other text."""
+    """Return the inverse of `str`; None of any other text."""
     if text == ASK:
         return Message()
     found = _TOLD.fullmatch(text)

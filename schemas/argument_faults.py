@@ -89,7 +89,7 @@ def _split(expected: str) -> tuple[str, str]:
 
 
 def _parts(text: str, between: str) -> Iterator[str]:
-    """A text at the separators that stand outside of brackets."""
+    """Yield a text at the separators that stand outside of brackets."""
     depth = start = 0
     for at, letter in enumerate(text):
         depth += (letter == "[") - (letter == "]")

@@ -49,8 +49,9 @@ class Change:
     def where(
         self, edge: Callable[[Edge], bool] = lambda edge: True, node: Callable[[int], bool] = lambda node_id: True
     ) -> Change:
-        """The part of it that is about some edges and the states of some nodes; removed nodes, whose edges are not
-        listed, stay in it.
+        """Return the part of it that is about some edges and the states of some nodes.
+
+        Removed nodes, whose edges are not listed, stay in it.
         """
         return Change(
             tuple(filter(edge, self.added)),
@@ -83,12 +84,12 @@ class Parts(NamedTuple):
 
 
 def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
-    """The change from `before` to `after`; order and repetitions make no difference."""
+    """Return the change from `before` to `after`; order and repetitions make no difference."""
     return difference(_parts(before), _parts(after))
 
 
 def difference(before: Parts, after: Parts) -> Change:
-    """The change from `before` to `after`."""
+    """Return the change from `before` to `after`."""
     removed = {i for i, node in before.nodes.items() if not _same(node, after.nodes.get(i))}
     new = sorted(i for i in after.nodes if i in removed or i not in before.nodes)
     edges, past, now = before.edges, before.states, after.states
@@ -109,7 +110,7 @@ def difference(before: Parts, after: Parts) -> Change:
 
 
 def states_of(nodes: Iterable[Node]) -> set[State]:
-    """The simulated states that nodes are in."""
+    """Return the simulated states that nodes are in."""
     return {(node.id, state) for node in nodes for state in node.states if state in STATE_ID}
 
 
@@ -127,7 +128,9 @@ def _still(node: Node) -> Node:
 
 
 def apply(graph: EnvironmentGraph, *changes: Change) -> EnvironmentGraph:
-    """The graph after changes, one after the other: nodes by id, edges sorted, and sorted the states that changed.
+    """Return the graph after changes, one after the other.
+
+    Nodes by id, edges sorted, and sorted the states that changed.
 
     Raises:
         KeyError: a change is about the state of a node that there is not.
@@ -180,7 +183,7 @@ class WorkingGraph:
             nodes[node_id] = in_states(nodes[node_id], names)
 
     def graph(self) -> EnvironmentGraph:
-        """The graph as it is now: nodes by id, edges sorted."""
+        """Return the graph as it is now: nodes by id, edges sorted."""
         return EnvironmentGraph(tuple(map(self.nodes.__getitem__, sorted(self.nodes))), tuple(sorted(self.edges)))
 
 
@@ -200,7 +203,7 @@ def restated(change: Change, before: Callable[[int], Iterable[str]]) -> dict[int
 
 
 def in_states(node: Node, names: Iterable[str]) -> Node:
-    """The node in these states, which are sorted, each once."""
+    """Return the node in these states, which are sorted, each once."""
     states = tuple(sorted(set(names)))
     return node if states == node.states else replace(node, states=states)
 

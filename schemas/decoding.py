@@ -17,7 +17,9 @@ _NOT_WESTERN = re.compile(
 
 
 def encoding_of(start: bytes) -> tuple[str, int]:
-    """The encoding that the first bytes of a text show, UTF-16 or else UTF-8, and the length of a byte-order mark."""
+    """Return the encoding that the first bytes of a text show, UTF-16 or else UTF-8, and the length of a byte-order
+    mark.
+    """
     for mark, name in _MARKS.items():
         if start.startswith(mark):
             return name, len(mark)
@@ -26,7 +28,9 @@ def encoding_of(start: bytes) -> tuple[str, int]:
 
 
 def western(text: str) -> str:
-    """A text with bytes that are not UTF-8, read as Windows-1252, of which Latin-1 is a part; unchanged if it is not.
+    """Return a text with bytes that are not UTF-8, read as Windows-1252, of which Latin-1 is a part.
+
+    Unchanged if it is not.
 
     It is read so if all else is ASCII, and these bytes are letters or signs of western languages, two in a row at most.
 

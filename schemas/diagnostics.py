@@ -37,7 +37,7 @@ class Diagnostic:
     before: int = 0
 
     def at(self, file: str) -> Diagnostic:
-        """The same fault, placed in `file`."""
+        """Return the same fault, placed in `file`."""
         return replace(self, file=file)
 
     def place(self) -> str:
@@ -72,7 +72,7 @@ class HearthError(Exception):
 
     @classmethod
     def of(cls, code: Code, message: str, *, file: str = "", suggestion: str = "") -> HearthError:
-        """An error of one fault that concerns a whole file or option."""
+        """Return an error of one fault that concerns a whole file or option."""
         return cls(Diagnostic(code, message, file=file, suggestion=suggestion))
 
     def __reduce__(self) -> tuple[type[HearthError], tuple[tuple[Diagnostic, ...]]]:

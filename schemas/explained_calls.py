@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 
 def explained(function: Callable[P, T]) -> Callable[P, T]:
-    """The function; where it fails and an argument is not of its type, it raises an error of ours.
+    """Return the function; where it fails and an argument is not of its type, it raises an error of ours.
 
     What is raised though all arguments fit stays what it is: a documented KeyError, or a fault of ours.
 

@@ -15,7 +15,7 @@ class Code(StrEnum):
     number: int
 
     def __new__(cls, name: str, number: int) -> Self:
-        """A code that equals its name; `Code["EMPTY"]` finds it again."""
+        """Return a code that equals its name; `Code["EMPTY"]` finds it again."""
         code = str.__new__(cls, name)
         code._value_, code.number = name, number
         return code

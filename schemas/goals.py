@@ -47,7 +47,7 @@ class Goal:
 
     @classmethod
     def of(cls, *wanted: Literal[Name] | tuple[Literal[Name], int]) -> Goal:
-        """A goal from literals, each wanted once unless a count is given."""
+        """Return a goal from literals, each wanted once unless a count is given."""
         return cls(tuple((each, 1) if isinstance(each, Literal) else each for each in wanted))
 
     def __iter__(self) -> Iterator[tuple[Literal[Name], int]]:
@@ -64,7 +64,7 @@ class Goal:
                 yield from goal.literals()
 
     def bound(self, variable: str, node: int) -> Goal:
-        """The goal with a node instead of a variable."""
+        """Return the goal with a node instead of a variable."""
         counts = ((lit._replace(terms=tuple(node if t == variable else t for t in lit.terms)), n) for lit, n in self)
         parts = (Joined(p.join, tuple(g.bound(variable, node) for g in p.goals), p.variable) for p in self.parts)
         return Goal(tuple(counts), tuple(parts))
@@ -76,6 +76,6 @@ class Goal:
 
 
 def _text(literal: Literal[Name]) -> str:
-    """A literal; an action in brackets, so that `[Open](fridge)` is not the state."""
+    """Return a literal; an action in brackets, so that `[Open](fridge)` is not the state."""
     name = literal.name if literal.name.isupper() else f"[{literal.name}]"
     return str(literal._replace(name=name)) if literal.terms else name

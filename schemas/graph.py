@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, cast
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.graph_faults import REMEDY, graph_fault
 from hearth.schemas.numbers import stored
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import RELATIONS
@@ -43,7 +44,7 @@ class EdgeColumns(NamedTuple):
         return brief(self)
 
     def rows(self) -> Iterator[Edge]:
-        """The edges, as plain tuples, which equal `Edge` and are made faster."""
+        """Return the edges, as plain tuples, which equal `Edge` and are made faster."""
         names = map(RELATIONS.__getitem__, self.relations.tolist())
         return cast("Iterator[Edge]", zip(self.sources.tolist(), names, self.targets.tolist(), strict=True))
 
@@ -86,7 +87,7 @@ class EnvironmentGraph:
     __repr__ = brief
 
     def node(self, node_id: int) -> Node:
-        """The node of that id.
+        """Return the node of that id.
 
         Raises:
             KeyError: there is none.
@@ -109,9 +110,9 @@ def from_release(data: Mapping[str, Any], file: str = "") -> EnvironmentGraph:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise HearthError.of(
             Code.BAD_GRAPH,
-            f"not an environment graph: {type(error).__name__} {error}",
+            f"not an environment graph: {graph_fault(data, error)}",
             file=file,
-            suggestion="nodes need id and class_name; edges need from_id, relation_type and to_id",
+            suggestion=REMEDY,
         ) from error
     extra = tuple((key, value) for key, value in data.items() if key not in ("nodes", "edges"))
     return EnvironmentGraph(nodes, edges, extra)
@@ -132,7 +133,7 @@ def edge_set(edges: Iterable[Edge]) -> frozenset[tuple[int, str, int]]:
 
 
 def read_node(data: Mapping[str, Any]) -> Node:
-    """A node as the release writes it.
+    """Return a node as the release writes it.
 
     Raises:
         KeyError, TypeError, ValueError, AttributeError: a field that it needs is missing, or one is of a wrong kind.
@@ -160,7 +161,7 @@ def _edge(data: Mapping[str, Any]) -> Edge:
 
 
 def word(value: Any) -> str:
-    """A value that must be text.
+    """Return a value that must be text.
 
     Raises:
         TypeError: it is not.

@@ -56,7 +56,7 @@ def remedy(extra: str) -> str:
 
 
 def lacking(extra: str) -> list[str]:
-    """The modules of an extra that are not installed, found without importing them."""
+    """Return the modules of an extra that are not installed, found without importing them."""
     return [name for name in EXTRAS[extra] if not _found(name)]
 
 

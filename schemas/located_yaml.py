@@ -35,7 +35,7 @@ class Mapping(dict[str, Any]):
         self.twice: list[tuple[str, int]] = []
 
     def at(self, key: str) -> int:
-        """The line of a key, or of the mapping where it lacks the key."""
+        """Return the line of a key, or of the mapping where it lacks the key."""
         return self.lines.get(key, self.line)
 
 
@@ -47,7 +47,7 @@ class Sequence(list[Any]):
 
 
 def line_of(value: object) -> int:
-    """The line a value stands on; 0 when it does not know."""
+    """Return the line a value stands on; 0 when it does not know."""
     return int(getattr(value, "line", 0))
 
 

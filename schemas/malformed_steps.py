@@ -35,7 +35,7 @@ def explain(line: str, position: int) -> Diagnostic:
 
 
 def special(line: str) -> Diagnostic:
-    """The diagnostic of a Special block."""
+    """Return the diagnostic of a Special block."""
     found = line.strip()
     message = "a special block: free text where no action fitted"
     suggestion = "map its text to steps in the special-blocks file, or leave it out"
@@ -112,11 +112,11 @@ def _rest(line: str, at: int, message: str, remedy: str) -> Fault:
 
 
 def _skipped(line: str, at: int) -> int:
-    """The place of the next character that is not blank, or the end."""
+    """Return the place of the next character that is not blank, or the end."""
     return len(line) - len(line[at:].lstrip())
 
 
 def _word_end(line: str, at: int) -> int:
-    """The end of the words that stand where an instance should, up to the next bracket."""
+    """Return the end of the words that stand where an instance should, up to the next bracket."""
     match = re.compile(r"[^<>\[\]|{]*").match(line, at)
     return at + len(match[0].rstrip()) if match else at

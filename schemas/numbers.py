@@ -9,7 +9,7 @@ _DIGITS = len(str(LARGEST))
 
 
 def number_of(text: str) -> int | None:
-    """The number that a text of ASCII digits says; None for any other text, and for one that no table holds."""
+    """Return the number that a text of ASCII digits says; None for any other text, and for one that no table holds."""
     if not (text.isascii() and text.isdecimal() and len(text) <= _DIGITS):
         return None
     number = int(text)
@@ -17,7 +17,7 @@ def number_of(text: str) -> int | None:
 
 
 def stored(value: Any) -> int:
-    """A value as an integer of the tables.
+    """Return a value as an integer of the tables.
 
     Raises:
         TypeError: it is not a number.

@@ -72,11 +72,11 @@ class Program:
     __repr__ = brief
 
     def line(self, number: int) -> int:
-        """The file line of step `number` (from 0), or 0 when unknown."""
+        """Return the file line of step `number` (from 0), or 0 when unknown."""
         return self.lines[number] if number < len(self.lines) else 0
 
     def ticks(self) -> Iterator[tuple[Step, ...]]:
-        """The steps that happen together, in order."""
+        """Yield the steps that happen together, in order."""
         group: list[Step] = []
         for step in self.steps:
             if group and not step.joins:
@@ -99,7 +99,7 @@ class Program:
         return max((step.agent for step in self.steps), default=0) + 1
 
     def with_steps(self, steps: Iterable[Step]) -> Program:
-        """The same title and description with other steps."""
+        """Return the same title and description with other steps."""
         return Program(self.title, self.description, tuple(steps))
 
     def unbound(self) -> Program:
@@ -107,7 +107,7 @@ class Program:
         return self.numbered().bound({})
 
     def numbered(self) -> Program:
-        """The program with an instance for each object that only a node names, so that it may get other nodes."""
+        """Return the program with an instance for each object that only a node names, so it can get other nodes."""
         if all(ref.instance for step in self.steps for ref in step.objects):
             return self
         taken = {ref.key for ref in self.objects() if ref.instance}
@@ -121,7 +121,7 @@ class Program:
         return replace(self, steps=tuple(steps))
 
     def bound(self, nodes: dict[tuple[str, int], int]) -> Program:
-        """The program with each object bound to the node given for its (name, instance), or to none."""
+        """Return the program with each object bound to the node given for its (name, instance), or to none."""
 
         refs = {ref: ObjectRef(ref.name, ref.instance, nodes.get(ref.key)) for ref in _refs(self.steps)}
         steps = tuple(

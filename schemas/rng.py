@@ -5,11 +5,11 @@ import random
 
 
 def derive(seed: int, *parts: object) -> int:
-    """A 64-bit seed derived from `seed` and the words that name its use; equal on every machine."""
+    """Return a 64-bit seed derived from `seed` and the words that name its use; equal on every machine."""
     text = "\x1f".join([str(seed), *map(str, parts)])
     return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "little")
 
 
 def rng(seed: int, *parts: object) -> random.Random:
-    """A generator for one record of one stage: `rng(seed, "sample", record_id)`."""
+    """Return a generator for one record of one stage: `rng(seed, "sample", record_id)`."""
     return random.Random(derive(seed, *parts))

@@ -16,7 +16,7 @@ Declared = TypeVar("Declared")
 
 
 def columns_of(form: type[Declared], row: Row) -> Declared:
-    """The columns of a declared row, out of a row that has these and others.
+    """Return the columns of a declared row, out of a row that has these and others.
 
     Raises:
         KeyError: it lacks one.

@@ -98,7 +98,7 @@ def print_program(program: Program) -> str:
 
 
 def print_lines(program: Program) -> Iterator[str]:
-    """The steps as text, one tick a line."""
+    """Yield the steps as text, one tick a line."""
     several = program.agents() > 1
     for tick in program.ticks():
         yield " | ".join(print_step(step, show_agent=several) for step in tick)

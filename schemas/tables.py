@@ -18,12 +18,12 @@ _PLAIN = {str: pa.string(), bool: pa.bool_(), int: pa.int32(), float: pa.float64
 
 
 def struct(row: type) -> pa.DataType:
-    """The Arrow type of a declared row."""
+    """Return the Arrow type of a declared row."""
     return pa.struct(_fields(row))
 
 
 def _type(hint: Any) -> pa.DataType:
-    """The Arrow type of an annotation: `X | None` is as X, since Arrow's columns may all be null."""
+    """Return the Arrow type of an annotation: `X | None` is as X, since Arrow's columns may all be null."""
     wide = next((each for each in getattr(hint, "__metadata__", ()) if isinstance(each, Arrow)), None)
     if wide:
         return pa.type_for_alias(wide)
@@ -37,7 +37,7 @@ def _type(hint: Any) -> pa.DataType:
 
 
 def _schema(row: type, known: Iterable[pa.Field] = ()) -> pa.Schema:
-    """The schema of a declared row; columns that have no comment have that of the known field of their name."""
+    """Return the schema of a declared row; columns that have no comment have that of the known field of their name."""
     comments = {field.name: comment_of(field) for field in known}
     return pa.schema(_fields(row, comments), metadata={"comment": str(row.__doc__)})
 
@@ -52,12 +52,15 @@ def _fields(row: type, comments: Mapping[str, str] = MappingProxyType({})) -> li
 
 
 def comment_of(described: pa.Field | pa.Schema) -> str:
-    """The meaning of a column, of a nested field, or of a table."""
+    """Return the meaning of a column, of a nested field, or of a table."""
     return str((described.metadata or {}).get(b"comment", b"").decode())
 
 
 def nested(column: pa.Field, path: str = "") -> Iterator[tuple[str, pa.Field]]:
-    """A column and all fields within it, with their paths: `steps`, `steps[].objects`, `steps[].objects[].name`."""
+    """Yield a column and all fields within it, with their paths.
+
+    `steps`, `steps[].objects`, `steps[].objects[].name`.
+    """
     kind, path = column.type, path or column.name
     yield path, column
     while pa.types.is_list(kind):

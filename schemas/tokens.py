@@ -55,7 +55,7 @@ class Tokens:
         return result
 
     def fault(self, message: str, code: Code = Code.SYNTAX, suggestion: str = "", ahead: int = 0) -> HearthError:
-        """An error at the next token, or at one before it."""
+        """Return an error at the next token, or at one before it."""
         if not self.file:
             return HearthError.of(code, f"in `{self.text}`: {message}", suggestion=suggestion)
         place = self.places[self.next + ahead]
@@ -65,11 +65,11 @@ class Tokens:
         return HearthError(Diagnostic(code, message, *where, suggestion=suggestion, source=source))
 
     def peek(self, ahead: int = 0) -> str:
-        """The next token, or one after it; "" after the last."""
+        """Return the next token, or one after it; "" after the last."""
         return self.tokens[self.next + ahead] if self.next + ahead < len(self.tokens) else ""
 
     def take(self, wanted: str = "") -> str:
-        """The next token, which must be the wanted one."""
+        """Return the next token, which must be the wanted one."""
         token = self.peek()
         if not token or (wanted and token != wanted):
             raise self.fault(f"expected {wanted or 'a name'} but found `{token or 'the end'}`")
@@ -86,7 +86,7 @@ class Tokens:
         return found
 
     def name(self) -> str:
-        """The next token, which must be a name."""
+        """Return the next token, which must be a name."""
         if not (self.peek()[:1].isalpha() or self.peek()[:1] == "_"):
             raise self.fault(f"expected a name but found `{self.peek() or 'the end'}`")
         return self.take()

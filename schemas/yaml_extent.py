@@ -18,7 +18,7 @@ LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def packaged(package: str, file: str) -> Any:
-    """The content of a YAML file of ours, which lies in a package."""
+    """Return the content of a YAML file of ours, which lies in a package."""
     return yaml.load((files(package) / file).read_text("utf-8"), LOADER)
 
 

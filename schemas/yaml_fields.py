@@ -28,7 +28,7 @@ class Faults(list[Diagnostic]):
             self.append(fault)
 
     def underlined(self, text: str) -> list[Diagnostic]:
-        """The faults in the order of their lines, each with its line's words to underline."""
+        """Return the faults in the order of their lines, each with its line's words to underline."""
         lines = text.splitlines()
         found = []
         for fault in sorted(self, key=lambda fault: fault.line):
@@ -45,7 +45,7 @@ class WrongValueError(ValueError):
 def reads(
     expected: str, allows: Callable[[Any], object], first: ReadValue | None = None, then: ReadValue | None = None
 ) -> ReadValue:
-    """A reader of values of the expected form; those of another are faults.
+    """Return a reader of values of the expected form; those of another are faults.
 
     Args:
         expected: the form, for the message about a value of another.
@@ -64,14 +64,14 @@ def reads(
 
 
 def one_of(*words: str) -> ReadValue:
-    """A reader of one of some words."""
+    """Return a reader of one of some words."""
     return reads(f"one of {', '.join(words)}", lambda value: value in words, then=str)
 
 
 def fields(
     entry: Any, keys: Mapping[str, ReadValue], what: str, faults: Faults, need: tuple[str, ...] = (), line: int = 0
 ) -> dict[str, Any]:
-    """The values of a mapping, read by their keys' readers; what can't be read is noted and left out.
+    """Return the values of a mapping, read by their keys' readers; what can't be read is noted and left out.
 
     Args:
         entry: as `located_yaml.read` gives it.
@@ -110,7 +110,7 @@ def _list(value: Any) -> Any:
 
 
 def shown(value: Any) -> str:
-    """A value as messages quote it."""
+    """Return a value as messages quote it."""
     if isinstance(value, located_yaml.Number):
         return f"{float(value):g}"
     return str(value)[:60]

@@ -247,7 +247,7 @@ def empty(train: Sequence[Example], example: Example, world: World, rules: Rules
 
 
 def random_legal(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
-    """Steps that the engine does not refuse, as many as a random training program has."""
+    """Return steps that the engine does not refuse, as many as a random training program has."""
     steps: list[Step] = []
     for _ in range(len(random.choice(train).steps)):
         could = legal(world, rules=rules)

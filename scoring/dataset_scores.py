@@ -16,7 +16,7 @@ from hearth.kb.language.fuzzy import Fuzzy
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
-from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, scored
+from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, note_goal, scored
 from hearth.scoring.line_reader import LineReader
 from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.prediction_rows import Named
@@ -83,7 +83,10 @@ def score_dataset(
         message = "no prediction is of an execution that is asked for"
         suggestion = f"ids are those of the part's executions, as `{wanted[0]}`"
         raise HearthError.of(Code.EMPTY, message, file=str(file), suggestion=suggestion)
-    return _in_shares(dataset, pairs, options, workers, seen)
+    found = _in_shares(dataset, pairs, options, workers, seen)
+    for each in found:
+        note_goal(each, rejects)
+    return found
 
 
 def score_given(

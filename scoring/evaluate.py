@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
 from hearth.schemas.short_repr import brief
@@ -74,6 +74,7 @@ class Scored:
         goal: of the row's own goal, else of the goal that the reference achieves; None without either.
         comparable: whether the reference runs; None without an environment or a reference.
         placed: whether there is an environment.
+        goal_faults: why the row's own goal can't be read; such a row has every score but those of the goal.
     """
 
     pair: Pair
@@ -85,6 +86,7 @@ class Scored:
     goal: GoalScore | None = None
     comparable: bool | None = None
     placed: bool = False
+    goal_faults: tuple[Diagnostic, ...] = ()
 
     __repr__ = brief
 
@@ -100,7 +102,7 @@ class Scored:
 
 
 def _left(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
-    """The value of a goal of which something was left to do at the start."""
+    """Return the value of a goal of which something was left to do at the start."""
     return float(value(scored.goal)) if scored.goal and scored.goal.left else None
 
 
@@ -117,20 +119,30 @@ def _lcs(level: str, by_instance: bool = False) -> Callable[[Scored], float | No
 
 
 def given_goal(pair: Pair) -> Any:
-    """The goal in a prediction's row, unread; None if it has none."""
+    """Return the goal in a prediction's row, unread; None if it has none."""
     return next((found for name in GOALS if (found := pair.more.get(name)) is not None), None)
 
 
 def _goal_score(
     pair: Pair, ran: Executability | None, world: World, rules: Rules, reference: Reference | None
 ) -> GoalScore | None:
-    """The score of the goal that a prediction is asked to reach; one that fails reaches nothing."""
+    """Return the score of the goal that a prediction is asked to reach; one that fails reaches nothing."""
     final = ran.final if ran and ran.afforded else None
     given = given_goal(pair)
     if given is None:
         return reference.achieved.score(final) if reference and reference.achieved else None
     goal = read_goal(given, world.home, f"goal of `{pair.id}`, row {pair.line}")
     return of_given(goal, world, run(world, ran.program, rules) if ran and final else None)
+
+
+def _read_goal_score(
+    pair: Pair, ran: Executability | None, world: World, rules: Rules, reference: Reference | None
+) -> tuple[GoalScore | None, tuple[Diagnostic, ...]]:
+    """Return the score of the goal, or the faults of a goal that can't be read."""
+    try:
+        return _goal_score(pair, ran, world, rules, reference), ()
+    except HearthError as error:
+        return None, tuple(error.diagnostics)
 
 
 def _executable(scored: Scored) -> float | None:
@@ -174,13 +186,14 @@ class Summary:
         missing: number of missing predictions, which score 0.
         empty: number of predictions without lines, which neither parse nor run; `executable_filled` excludes them.
         unreferenced: number of predictions without a reference, which have no LCS and no F1.
+        unread_goals: number of goals that can't be read; `goal` excludes them.
         reached_before: number of goals of which all holds at the start; `goal` excludes them.
         incomparable: number of references that do not run; excluded from F1, and from goals that are theirs.
         inexact: number of predictions whose F1 is a lower bound.
         means: each score's mean and interval.
         errors: first failures by class.
         codes: first failures by code.
-        failed_at: number of first failures at each line, from 0.
+        failed_at: number of first failures at each line, from 1.
     """
 
     count: int
@@ -188,6 +201,7 @@ class Summary:
     empty: int
     unreferenced: int
     fuzzy: int
+    unread_goals: int
     reached_before: int
     incomparable: int
     inexact: int
@@ -200,7 +214,7 @@ class Summary:
 
 
 def signatures(options: Options, own: int = 0) -> dict[str, str]:
-    """The signature of each family of scores, where `own` predictions had a goal of their own."""
+    """Return the signature of each family of scores, where `own` predictions had a goal of their own."""
     return {
         **{f"lcs_{level}": lcs_signature(level, options.instances) for level in LEVELS},
         **{f"lcs_{level}_instances": lcs_signature(level, True) for level in ("step", "object")},
@@ -212,7 +226,10 @@ def signatures(options: Options, own: int = 0) -> dict[str, str]:
 
 
 def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[BothLcs]:
-    """The similarity of each prediction to its reference, and that by instance; 0 if one of the two is missing."""
+    """Return the similarity of each prediction to its reference, and that by instance.
+
+    0 if one of the two is missing.
+    """
     lines = [(pair.predicted or (), pair.reference) for pair in pairs]
     distinct = score_pairs(lines, instances=True)
     both = zip(distinct if instances else score_pairs(lines), distinct, strict=True)
@@ -234,7 +251,8 @@ def evaluate(
         knowledge: the grammar.
         environments: where programs run; without it only LCS and parsability are scored.
         options: how.
-        rejects: gets the faults of rows whose environment or goal can't be read, which are left out.
+        rejects: gets the faults of rows whose environment can't be read, which are left out, and those of goals that
+            can't be read, whose rows have every other score.
 
     Raises:
         HearthError: such a fault, without `rejects`, or if no row is left.
@@ -250,6 +268,7 @@ def evaluate(
     for pair, lcs in zip(pairs, lcs_of(pairs, options.instances), strict=True):
         try:
             found.append(scored(pair, lcs, knowledge, environments(pair) if environments else None, options))
+            note_goal(found[-1], rejects)
         except HearthError as error:
             if rejects is None:
                 raise
@@ -259,8 +278,20 @@ def evaluate(
     return found
 
 
+def note_goal(scored: Scored, rejects: FirstFaults | None) -> None:
+    """Report a goal that can't be read.
+
+    Raises:
+        HearthError: its faults, without `rejects`.
+    """
+    if scored.goal_faults and rejects is None:
+        raise HearthError(scored.goal_faults)
+    if scored.goal_faults and rejects is not None:
+        rejects.note(scored.goal_faults, scored.pair.id, scored.pair.line)
+
+
 def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
-    """The means of every score that applies to at least one prediction, and counts of the rest."""
+    """Return the means of every score that applies to at least one prediction, and counts of the rest."""
     columns = {name: [metric(each) for each in every] for name, metric in METRICS.items()}
     failures = [each.execution for each in every if each.execution and each.execution.error]
     return Summary(
@@ -269,6 +300,7 @@ def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
         empty=sum(each.empty for each in every),
         unreferenced=sum(not each.pair.referenced for each in every),
         fuzzy=sum(each.pair.fuzzy for each in every),
+        unread_goals=sum(bool(each.goal_faults) for each in every),
         reached_before=sum(each.goal is not None and not each.goal.left for each in every),
         incomparable=sum(each.comparable is False for each in every),
         inexact=sum(each.graph is not None and not each.graph.exact for each in every),
@@ -303,13 +335,13 @@ class Reference(NamedTuple):
 
     @classmethod
     def of(cls, program: Program, start: World, final: World | None) -> Reference:
-        """The reference of a program, from its initial and final world."""
+        """Return the reference of a program, from its initial and final world."""
         return cls(program, final, Achieved.of(goal_of(start, final), start, final) if final else None)
 
 
 @lru_cache(maxsize=64)
 def reference_of(lines: Lines, world: World, rules: Rules) -> Reference:
-    """The reference of a program in its environment, with objects bound as in `executability`."""
+    """Return the reference of a program in its environment, with objects bound as in `executability`."""
     ran = executability(lines, world, rules=rules)
     return Reference.of(ran.program, world, ran.final)
 
@@ -340,10 +372,10 @@ def scored(
         reference = reference_of(pair.reference, world, options.rules)
     program = reference.program if reference else None
     ran = None if pair.predicted is None else executability(pair.predicted, world, program, options.rules)
-    goal = _goal_score(pair, ran, world, options.rules, reference)
+    goal, goal_faults = _read_goal_score(pair, ran, world, options.rules, reference)
     graph = _graph(ran, reference, options) if reference and reference.final else None
     comparable = reference and reference.final is not None
-    return Scored(pair, *lcs, parsed, ran, graph, goal, comparable, placed=True)
+    return Scored(pair, *lcs, parsed, ran, graph, goal, comparable, placed=True, goal_faults=goal_faults)
 
 
 def _graph(ran: Executability | None, reference: Reference, options: Options) -> GraphScore:

@@ -46,16 +46,17 @@ class FirstFaults:
 
     Attributes:
         rows: number of refused rows.
+        notes: number of rows that are scored, but of which a part can't be read.
     """
 
     def __init__(self) -> None:
-        self.rows = 0
+        self.rows = self.notes = 0
         self._groups: dict[tuple[Code, str, str, str], _Group] = {}
         self._kept: Counter[Code] = Counter()
         self._more: Counter[tuple[Code, str]] = Counter()
 
     def __bool__(self) -> bool:
-        return bool(self.rows)
+        return bool(self.rows or self.notes)
 
     def append(self, fault: Diagnostic, name: str = "") -> None:
         """Add a row with one fault; see `reject`."""
@@ -75,6 +76,14 @@ class FirstFaults:
             line: of the row, for faults that do not name it.
         """
         self.rows += 1
+        self._add(faults, name, line)
+
+    def note(self, faults: Iterable[Diagnostic], name: str = "", line: int = 0) -> None:
+        """Add the faults of a part of a row that is scored without it; `reject` has the arguments."""
+        self.notes += 1
+        self._add(faults, name, line)
+
+    def _add(self, faults: Iterable[Diagnostic], name: str, line: int) -> None:
         for fault in faults:
             words = _DIGITS.sub("#", fault.message.replace(f"`{name}`", "`"))
             key = fault.code, fault.file, words, fault.suggestion

@@ -9,6 +9,7 @@ from typing import IO
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.terminal import BIDIRECTIONAL
 from hearth.storage.input_files import LARGEST, read_input
 
 LONGEST = 131_072
@@ -23,23 +24,29 @@ def delimiter_of(line: str) -> str:
 
 
 _RUNS = ("=", "+", "-", "@", "\t", "\r")
-_UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\t\n\r"}
+_UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\t\n\r"} | {
+    code: f"\\u{code:04x}" for code in BIDIRECTIONAL
+}
 
 
 def safe_cell(text: str) -> str:
-    """The text, with an apostrophe in front if a spreadsheet would read it as a formula."""
+    """Return the text, with an apostrophe in front if a spreadsheet would read it as a formula."""
     return f"'{text}" if text.startswith((*_RUNS, "'")) else text
 
 
-def writer_of(file: IO[str], delimiter: str = ",") -> Callable[[Iterable[object]], object]:
-    """Return a function that writes a row of cells as a line.
+def rows_writer(file: IO[str], delimiter: str = ",") -> Callable[[Iterable[Iterable[object]]], object]:
+    """Return a function that writes rows of cells as lines.
 
     Spreadsheets read every cell as text (`safe_cell`); characters that would move a terminal's cursor are escaped.
     """
     writer = csv.writer(file, delimiter=delimiter, lineterminator="\n")
-    return lambda row: writer.writerow(
-        [safe_cell(cell.translate(_UNSEEN)) if isinstance(cell, str) else cell for cell in row]
+    return lambda rows: writer.writerows(
+        [_safe(cell) if isinstance(cell, str) else cell for cell in row] for row in rows
     )
+
+
+def _safe(text: str) -> str:
+    return safe_cell(text if text.isprintable() else text.translate(_UNSEEN))
 
 
 class CsvTable:
@@ -71,7 +78,7 @@ class CsvTable:
             raise self._fault(f"the table lacks the column {', '.join(missing)}", 1)
 
     def rows(self) -> Iterator[tuple[int, tuple[str, ...]]]:
-        """The line in which each row ends, and its cells in the order of `columns`; a row at a time is in memory.
+        """Yield the line in which each row ends, and its cells in the order of `columns`; a row at a time is in memory.
 
         Raises:
             HearthError: BAD_TABLE with the line: a quote that is not closed, or a cell that is too long.

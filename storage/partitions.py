@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -73,7 +74,7 @@ class Counts:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> Counts:
-        """The inverse of `to_json`."""
+        """Return the inverse of `to_json`."""
         counters: dict[str, Any] = {name: Counter(value[name]) for name in ("rows", "codes", "tally")}
         numbers = {name: value[name] for name in ("records_in", "through", "rejected", "partial")}
         return cls(**numbers, **counters)
@@ -94,7 +95,7 @@ def rejects_path(folder: Path, number: int) -> Path:
 
 
 def read_rows(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
-    """The rows of a Parquet file, or of them these columns; a batch in memory at a time."""
+    """Yield the rows of a Parquet file, or of them these columns; a batch in memory at a time."""
     with pq.ParquetFile(path) as file:
         for batch in file.iter_batches(batch_size=READ_BATCH, columns=columns):
             yield from batch.to_pylist()
@@ -190,10 +191,18 @@ def write_batches(path: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatc
 
     Until the file is finished its footer is in memory, a kilobyte or so for each group and column.
     """
+    with table_writer(path, schema) as write:
+        for batch in batches:
+            write(batch)
+
+
+@contextmanager
+def table_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.RecordBatch], None]]:
+    """Give a function that adds a batch to a table; the file is seen when the block ends, and never after an error."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     file = _File(path, schema)
     try:
-        for batch in batches:
-            file.write(batch)
+        yield file.write
     except BaseException:
         file.abandon()
         raise

@@ -123,7 +123,10 @@ def _damaged(study: Study, knowledge: Knowledge) -> Iterator[Written]:
 
 
 def _in_band(steps: tuple[Step, ...], others: tuple[Step, ...], band: Band, chooser: Random) -> tuple[Step, ...]:
-    """Steps with some left out and some of another program put in, until their LCS is in a band; () if it never is."""
+    """Return steps with some left out and some of another program put in, until their LCS is in a band.
+
+    () if it never is.
+    """
     now = list(steps)
     for _ in range(TRIES):
         if now and band.holds(score(tuple(now), steps).step):

@@ -85,7 +85,9 @@ def _answer(person: SimulatedPerson, question: Question, seen: Impression, choos
 
 
 def rated(question: Question, impression: float, bias: float, chooser: Random) -> int:
-    """A rating: the impression on the question's scale, plus bias and chance, to the nearest number of the scale."""
+    """Return a rating: the impression on the question's scale, plus bias and chance, to the nearest number of the
+    scale.
+    """
     value = question.low + (question.high - question.low) * impression + bias + chooser.gauss(0.0, NOISE)
     return min(question.high, max(question.low, round(value)))
 

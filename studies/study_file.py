@@ -56,7 +56,7 @@ yes = reads("true or false", lambda it: isinstance(it, bool))
 
 
 def whole(low: int, high: int) -> ReadValue:
-    """A reader of whole numbers between two."""
+    """Return a reader of whole numbers between two."""
     return reads(
         f"a whole number from {low} to {high:,}",
         lambda it: isinstance(it, located_yaml.Number) and float(it).is_integer() and low <= it <= high,
@@ -91,7 +91,7 @@ QUESTION_KEYS: dict[str, ReadValue] = {
 
 
 def read_study(path: Path) -> Study:
-    """The study of a file.
+    """Return the study of a file.
 
     Raises:
         HearthError: every fault of the file, with its line and its remedy; MISSING_FILE, NOT_TEXT, FILE_TOO_LARGE.
@@ -103,14 +103,14 @@ def read_study(path: Path) -> Study:
 
 
 def named(given: str) -> Study:
-    """A study that comes with Hearth, by its name; else that of a file."""
+    """Return a study that comes with Hearth, by its name; else that of a file."""
     if given in SHIPPED:
         return study_of(files("hearth.studies").joinpath(f"{given}.yaml").read_text("utf-8"), f"{given}.yaml")
     return read_study(Path(given))
 
 
 def study_of(content: str, file: str, begun: bool = False) -> Study:
-    """The study of a text; errors as of `read_study`.
+    """Return the study of a text; errors as of `read_study`.
 
     A study that has `begun` is read whatever its helpers could do, so that its collected data stays readable.
     """
@@ -128,7 +128,7 @@ def study_of(content: str, file: str, begun: bool = False) -> Study:
 
 
 def _study(top: dict[str, Any], tree: Any, faults: Faults, content: str) -> Study | None:
-    """The study; None where something without which it can't be read is lacking."""
+    """Return the study; None where something without which it can't be read is lacking."""
     room = top.get("room", PLAY)
     tasks = _tasks(top.get("tasks"), tree, faults) if "tasks" in top else None
     films = _films(top.get("films"), faults) if "films" in top else None

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
+import errno
 import hmac
+import logging
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -10,10 +13,10 @@ from typing import Any
 from urllib.parse import parse_qsl
 
 import jinja2
+from sqlalchemy.exc import DBAPIError, OperationalError
 from starlette.applications import Starlette
-from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
-from starlette.requests import HTTPConnection, Request
+from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
@@ -23,8 +26,9 @@ from starlette.websockets import WebSocket
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.web import desk_access, front, sessions
-from hearth.web.limits import MOST_FIELDS, Rate, usual_rates
+from hearth.web import deadlines, desk_access, front, sessions
+from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
+from hearth.web.limits import MOST_FIELDS, QUIET_SECONDS, Rate, usual_rates
 from hearth.web.link import Link, nobody
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
@@ -36,6 +40,14 @@ from hearth.web.visit import Visit, Web, by_browser, json_answer, render
 from hearth.web.web_errors import WebError
 
 HERE = Path(__file__).resolve().parent
+
+LOG = logging.getLogger("uvicorn.error")
+
+TRY_LATER = 1013
+"""The code with which a socket is closed that a busy server can't serve."""
+
+NO_MORE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Numbers of the errors of a full disk."""
 
 
 def application(
@@ -49,7 +61,7 @@ def application(
     rooms: Sequence[Room] = ROOMS,
     rates: Mapping[str, Rate] | None = None,
 ) -> ASGIApp:
-    """The server.
+    """Return the server.
 
     Args:
         store: the database.
@@ -64,7 +76,8 @@ def application(
     """
     templates = _templates(rooms)
     rates, follows = rates or usual_rates(), tuple(room.opens for room in rooms)
-    web = Web(store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films, follows)
+    keeps = tuple(room.keeps for room in rooms)
+    web = Web(store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films, follows, keeps)
     web.written()
     routes: list[BaseRoute] = [_route(web, address) for address in front.ADDRESSES]
     for room in rooms:
@@ -73,7 +86,7 @@ def application(
     routes.append(Mount("/static", StaticFiles(directory=HERE / "static")))
     routes.append(Mount("/fetched", _Fetched(directory=FETCHED, check_dir=False)))
     handlers: dict[Any, Any] = {
-        kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, Exception)
+        kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, DBAPIError, OSError, Exception)
     }
     return Security(Starlette(routes=routes, exception_handlers=handlers), hosts)
 
@@ -110,13 +123,16 @@ def _route(web: Web, address: Address, prefix: str = "") -> BaseRoute:
 
 
 def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
+    within = DESK_WITHIN if address.who is Who.RESEARCHER else WITHIN
+
     async def endpoint(request: Request) -> Response:
+        deadlines.begin()
         # By session, for many people may have one address; a token that is made up is none.
-        session = await run_in_threadpool(sessions.find, web.store, token_of(request))
+        session = await in_thread(sessions.find, web.store, token_of(request))
         sender = session.id if session else (request.client.host if request.client else "")
         web.rates["request"].check(sender[:100], request.url.path)
         body = await _body(request, address.most)
-        return await run_in_threadpool(_answer, web, address, request, session, body)
+        return await in_thread(_answer, web, address, request, session, body, within=within)
 
     return endpoint
 
@@ -139,7 +155,7 @@ def _answer(web: Web, address: Address, request: Request, session: Session | Non
 
 
 def _form(body: bytes) -> dict[str, str]:
-    """The fields of a form; of several of one name, the last.
+    """Return the fields of a form; of several of one name, the last.
 
     Raises:
         WebError: BAD_ARGUMENT: there are too many.
@@ -151,7 +167,10 @@ def _form(body: bytes) -> dict[str, str]:
 
 
 def token_of(asked: HTTPConnection) -> str:
-    """The token of a session that came with a request: a cookie, or `Authorization: Bearer TOKEN` of programs."""
+    """Return the token of a session that came with a request.
+
+    A cookie, or `Authorization: Bearer TOKEN` of programs.
+    """
     kind, _, given = asked.headers.get("authorization", "").partition(" ")
     return given if kind.lower() == "bearer" else asked.cookies.get(sessions.COOKIE, "")
 
@@ -164,16 +183,29 @@ def _is_researcher(web: Web, request: Request) -> bool:
 
 async def _body(request: Request, most: int) -> bytes:
     parts, size = [], 0
-    async for part in request.stream():
-        size += len(part)
-        if size > most:
-            raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
-        parts.append(part)
+    try:
+        async with asyncio.timeout(QUIET_SECONDS):
+            async for part in request.stream():
+                size += len(part)
+                if size > most:
+                    raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
+                parts.append(part)
+    except ClientDisconnect:
+        raise WebError(Code.DISCONNECTED, "body", "the whole of it", "a part") from None
+    except TimeoutError:
+        raise WebError(Code.TIMED_OUT, "body", f"the whole of it within {QUIET_SECONDS:g} s", "a part") from None
     return b"".join(parts)
 
 
 async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
-    session = await run_in_threadpool(sessions.find, web.store, token_of(socket))
+    deadlines.begin(deadlines.OPENS)
+    try:
+        session = await in_thread(sessions.find, web.store, token_of(socket))
+    except HearthError as error:
+        await socket.accept()
+        await socket.send_json({"type": "error", **_fault_of(error).as_json()})
+        await socket.close(TRY_LATER)
+        return
     await socket.accept()
     if session is None:
         await socket.send_json({"type": "error", **nobody().as_json()})
@@ -191,12 +223,29 @@ def _fault_of(error: Exception) -> WebError:
     if isinstance(error, HearthError):
         fault = error.diagnostics[0]
         return WebError(fault.code, fault.place(), fault.suggestion, fault.message)
+    if isinstance(error, OSError) and error.errno in NO_MORE:
+        return WebError(Code.UNWRITABLE, "server", "room on its disk", "a full disk")
+    if isinstance(error, OSError) and error.errno in (errno.EMFILE, errno.ENFILE):
+        return WebError(Code.TIMED_OUT, "server", "fewer requests at once", "as many open files as it may have")
+    if isinstance(error, OperationalError):
+        return WebError(Code.MISSING_FILE, "store", "a store that can be used", "one that can't be, see the log")
     return WebError(Code.INTERNAL_ERROR, "server", "an answer", "an error in Hearth, not in your request")
 
 
 async def _refused(web: Web, asked: Request, error: Exception) -> Response:
-    """The answer to a request that is refused: a page for browsers, else JSON."""
+    """Return the answer to a request that is refused: a page for browsers, else JSON."""
     fault = _fault_of(error)
+    if isinstance(error, OSError) and fault.code is Code.INTERNAL_ERROR:
+        raise error  # it is ours, and the log is to say where
+    if isinstance(error, DBAPIError):  # its text can have what somebody wrote
+        LOG.error("the database refused a statement: %s %s", type(error.orig).__name__, type(error).__name__)
+    answer = _refusal(web, asked, error, fault)
+    if fault.code is Code.TIMED_OUT:  # what is left of a body is not waited for
+        answer.headers["Retry-After"], answer.headers["Connection"] = "2", "close"
+    return answer
+
+
+def _refusal(web: Web, asked: Request, error: Exception, fault: WebError) -> Response:
     status = error.status_code if isinstance(error, HTTPException) else fault.status
     if not by_browser(asked):
         return json_answer(fault.as_json(), status)

@@ -9,11 +9,20 @@ from starlette.responses import Response
 from hearth.schemas.failures import Code
 from hearth.web import desk_access, sessions
 from hearth.web.room import Who, get, post
+from hearth.web.security import scheme_of
 from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 from hearth.web.visit import Visit, by_browser
 from hearth.web.web_errors import WebError
 
 YEAR = 365 * 24 * 3600
+
+COME = "/come"
+
+COMING = "hearth_come"
+"""The cookie with the token of a link that was opened, until its person has answered."""
+
+MINUTES_TO_COME = 10
+"""Minutes for that answer."""
 
 
 def _start(visit: Visit) -> Response:
@@ -31,33 +40,58 @@ def _begin(visit: Visit) -> Response:
 
 
 def _come(visit: Visit) -> Response:
-    """Return to a session by its link, from another browser or after the cookie has gone."""
+    """Take the token of a session's link out of the address, and ask whether that session is to be opened here."""
     visit.web.rates["token"].check(_sender(visit), "/come")
-    session = sessions.find(visit.web.store, visit.part("token"))
-    if session is None:
-        if by_browser(visit.request):
-            return visit.page("link_unknown.html", 401)
-        raise WebError(Code.NO_SESSION, "link", "the link of a session", "an unknown one")
-    return _entered(visit, visit.go("/"), session.token)
+    token = visit.part("token")
+    if sessions.find(visit.web.store, token) is None:
+        return _unknown(visit)
+    answer, secure = visit.go(COME), visit.web.secure
+    answer.set_cookie(COMING, token, MINUTES_TO_COME * 60, httponly=True, samesite="lax", secure=secure, path=COME)
+    return answer
+
+
+def _unknown(visit: Visit) -> Response:
+    if by_browser(visit.request):
+        return visit.page("link_unknown.html", 401)
+    raise WebError(Code.NO_SESSION, "link", "the link of a session", "an unknown one")
+
+
+def _coming(visit: Visit) -> Response:
+    """Ask whether the session of a link is to be opened here; the address has no token any more."""
+    coming = sessions.find(visit.web.store, visit.request.cookies.get(COMING, ""))
+    return visit.page("come.html", coming=coming.id) if coming else visit.go("/")
+
+
+def _came(visit: Visit) -> Response:
+    """Open the session of a link, as its person confirmed; another that this browser had is replaced."""
+    visit.web.rates["token"].check(_sender(visit), COME)
+    coming = sessions.find(visit.web.store, visit.request.cookies.get(COMING, ""))
+    answer = _unknown(visit) if coming is None else _entered(visit, visit.go("/"), coming.token)
+    answer.delete_cookie(COMING, path=COME)
+    return answer
 
 
 def _mine(visit: Visit) -> Response:
     assert visit.session is not None
-    base = str(visit.request.base_url).rstrip("/")
-    return visit.page("mine.html", link=f"{base}/come/{visit.session.token}")
+    return visit.page("mine.html", link=f"{base_of(visit)}{COME}/{visit.session.token}")
 
 
 def _delete(visit: Visit) -> Response:
-    """Delete a session with all that belongs to it, as its person asked."""
-    sessions.forget(visit.web.store, visit.person)
+    """Delete a session with all that belongs to it, as its person asked, except works on which others built."""
+    sessions.withdraw(visit.web.store, visit.person, visit.web.keeps)
     visit.web.written()
     answer = visit.go("/")
     answer.delete_cookie(sessions.COOKIE)
     return answer
 
 
+def _privacy(visit: Visit) -> Response:
+    """Return the page on stored data of persons."""
+    return visit.page("privacy.html")
+
+
 def _door(visit: Visit) -> Response:
-    return visit.page("desk_door.html", wrong=False)
+    return visit.page("desk_door.html", wrong=visit.fields.get("wrong") == "yes")
 
 
 def _enter(visit: Visit) -> Response:
@@ -65,6 +99,8 @@ def _enter(visit: Visit) -> Response:
     visit.web.rates["token"].check(_sender(visit), "/desk/enter")
     token = visit.request.path_params.get("token") or visit.field("token", 200)
     if not hmac.compare_digest(sessions.digest(token), visit.web.desk):
+        if "token" in visit.request.path_params:  # it may be right but for a letter: it leaves the address bar
+            return visit.go("/desk/enter?wrong=yes")
         return visit.page("desk_door.html", 403, wrong=True)
     answer = visit.go("/desk")
     secure = visit.web.secure
@@ -85,8 +121,14 @@ def _sender(visit: Visit) -> str:
     return visit.request.client.host if visit.request.client else ""
 
 
+def base_of(visit: Visit) -> str:
+    """Return the address of this server as its people have it: by https where they come by a public name."""
+    host = visit.request.headers.get("host", "")
+    return f"{scheme_of(host)}://{host}"
+
+
 def _own_address(wanted: str) -> str:
-    """An address of this server; another server's becomes the start page."""
+    """Return an address of this server; another server's becomes the start page."""
     plain = wanted.isascii() and wanted.isprintable() and "\\" not in wanted
     return wanted if plain and wanted.startswith("/") and not wanted.startswith("//") else "/"
 
@@ -95,6 +137,9 @@ ADDRESSES = (
     get("/", _start, Who.ANYONE),
     post("/begin", _begin, Who.ANYONE),
     get("/come/{token}", _come, Who.ANYONE),
+    get(COME, _coming, Who.ANYONE),
+    post(COME, _came, Who.ANYONE),
+    get("/privacy", _privacy, Who.ANYONE),
     get("/mine", _mine),
     post("/mine/delete", _delete),
     get("/desk/enter", _door, Who.ANYONE),

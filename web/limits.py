@@ -18,6 +18,15 @@ MOST_FIELDS = 2_000
 MOST_MESSAGE = 64 * 1024
 """Bytes of a message over a socket."""
 
+QUIET_SECONDS = 9.0
+"""Seconds for which a connection may ask nothing, read nothing, or be in the middle of a request's body.
+
+It is looked at every second, so that it ends within ten.
+"""
+
+MOST_CONNECTIONS = 4_000
+"""Connections of a process at once, where the limit of open files allows as many."""
+
 RATES = {"request": (40, 200), "begin": (1, 30), "token": (0.5, 10), "run": (1, 5)}
 """Requests a second and at once: all of a session; new sessions and tokens that are tried, of an address; runs of a
 program, of a session."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from contextlib import suppress
 from typing import Any
 
@@ -9,6 +10,7 @@ import orjson
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hearth.schemas.failures import Code
+from hearth.web.limits import QUIET_SECONDS
 from hearth.web.messages import Inbox
 from hearth.web.sessions import Session
 from hearth.web.visit import Web
@@ -29,11 +31,19 @@ class Link:
         self._inbox = Inbox()
 
     async def receive(self) -> dict[str, Any] | None:
-        """The next message that is in order; each that is not gets a fault as its answer. None once it is closed."""
+        """Return the next message that is in order.
+
+        Each that is not gets a fault as its answer. None once it is closed.
+        """
         while True:
             try:
-                came = await self.socket.receive()
+                # A page says hello at once; later a person may think for as long as the socket answers pings.
+                async with asyncio.timeout(None if self._inbox.last else QUIET_SECONDS):
+                    came = await self.socket.receive()
             except (WebSocketDisconnect, RuntimeError):
+                return None
+            except TimeoutError:
+                await self._end(4408)
                 return None
             if came["type"] == "websocket.disconnect":
                 return None
@@ -42,6 +52,10 @@ class Link:
                 return self._inbox.take(raw if raw is not None else came.get("bytes") or b"")
             except WebError as fault:
                 await self.refuse(fault)
+
+    async def _end(self, code: int) -> None:
+        with suppress(WebSocketDisconnect, RuntimeError):
+            await self.socket.close(code)
 
     async def send(self, message: dict[str, Any]) -> None:
         """Send a message; nothing happens if the other side has gone."""

@@ -14,7 +14,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+import sqlalchemy as sql
+
 from hearth.web.limits import MOST_BODY
+from hearth.web.sessions import Keeps
 from hearth.web.visit import Handler, Web
 
 
@@ -64,6 +67,11 @@ def _nothing(web: Web) -> None:
     """Do nothing, as most rooms do when a server starts."""
 
 
+def _keeps_nothing(connection: sql.Connection, person: str, nobody: str) -> int:
+    """Keep the rows of a person who withdraws, as most rooms do."""
+    return 0
+
+
 @dataclass(frozen=True, slots=True)
 class Room:
     """A room.
@@ -77,6 +85,7 @@ class Room:
         needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
         listed: whether the start page and the navigation list it.
         opens: writes the files that follow from the store, when a server starts and after a deletion.
+        keeps: gives what others built on to nobody when its person withdraws; the rest goes with the session.
     """
 
     name: str
@@ -87,3 +96,4 @@ class Room:
     needs: tuple[str, ...] = ()
     listed: bool = True
     opens: Callable[[Web], None] = _nothing
+    keeps: Keeps = _keeps_nothing

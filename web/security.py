@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -23,6 +24,9 @@ HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
 }
 """Headers of every answer: only scripts and files of this server run or load, and nothing inline."""
+
+SECURE = {"Strict-Transport-Security": "max-age=31536000"}
+"""Of answers to people who come by https."""
 
 OWN = ("127.0.0.1", "localhost", "[::1]")
 """Names by which a browser of this machine asks."""
@@ -47,29 +51,40 @@ class Security:
             return
         fault = self._fault(scope)
         if fault is None:
-            await self.app(scope, receive, _with_headers(send))
+            await self.app(scope, receive, _with_headers(send, self._more(scope)))
         elif scope["type"] == "websocket":
             await receive()
             await send({"type": "websocket.close", "code": 4403, "reason": str(fault.code)})
         else:
             await json_answer(fault.as_json(), fault.status)(scope, receive, _with_headers(send))
 
+    def _more(self, scope: Scope) -> Mapping[str, str]:
+        """Return the headers of answers by the public name: browsers ask for it by https alone from then on."""
+        return SECURE if scheme_of(Headers(scope=scope).get("host", "")) == "https" else {}
+
     def _fault(self, scope: Scope) -> WebError | None:
-        """A page of another server may not use this server's cookies, under whatever name it asks for it."""
+        """Return a page of another server may not use this server's cookies, under whatever name it asks for it."""
         headers = Headers(scope=scope)
         host = headers.get("host", "")
         if _name(f"//{host}") not in self._hosts:
             return WebError(Code.NOT_ALLOWED, "Host", "this server's name", host[:100])
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
-        scheme = "http" if _name(f"//{host}") in OWN else "https"
-        if changes and origin is not None and origin != f"{scheme}://{host}":
+        if changes and origin is not None and origin != f"{scheme_of(host)}://{host}":
             return WebError(Code.NOT_ALLOWED, "Origin", "a page of this server", origin[:100])
+        site = headers.get("sec-fetch-site", "none")
+        if changes and site not in ("same-origin", "none"):
+            return WebError(Code.NOT_ALLOWED, "Sec-Fetch-Site", "a page of this server", site[:100])
         return None
 
 
+def scheme_of(host: str) -> str:
+    """Return the scheme by which people ask for a host: https where it is not this machine's own name."""
+    return "http" if _name(f"//{host}") in OWN else "https"
+
+
 def _name(address: str) -> str:
-    """The host of an address, without its port; "" where it is not one."""
+    """Return the host of an address, without its port; "" where it is not one."""
     try:
         netloc = urlsplit(address).netloc
     except ValueError:
@@ -77,11 +92,11 @@ def _name(address: str) -> str:
     return netloc.rpartition(":")[0] if netloc.rpartition(":")[2].isdecimal() and ":" in netloc else netloc
 
 
-def _with_headers(send: Send) -> Send:
+def _with_headers(send: Send, more: Mapping[str, str] = MappingProxyType({})) -> Send:
     async def sent(message: Message) -> None:
         if message["type"] in ("http.response.start", "websocket.accept"):
             headers = MutableHeaders(scope=message)
-            for name, value in HEADERS.items():
+            for name, value in (*HEADERS.items(), *more.items()):
                 headers[name] = value
             headers.setdefault("Cache-Control", "no-store")
         await send(message)

@@ -2,36 +2,37 @@
 
 from __future__ import annotations
 
+import asyncio
 import socket
 
-import h11
 import uvicorn
 from starlette.types import ASGIApp
-from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.web.limits import MOST_MESSAGE
-from hearth.web.security import HEADERS
+from hearth.web.connections import KERNEL_QUEUE, Connection, affordable, watch
+from hearth.web.limits import MOST_MESSAGE, QUIET_SECONDS
+from hearth.web.log_limits import limit_logs
 
 
-class _Protocol(H11Protocol):
-    """A protocol that answers requests that are not HTTP with the headers of every other answer."""
+class _Server(uvicorn.Server):
+    """Looks at its connections while it runs."""
 
-    def send_400_response(self, msg: str) -> None:
-        headers = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
-        headers += [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close")]
-        for event in (
-            h11.Response(status_code=400, headers=headers, reason=b"Bad Request"),
-            h11.Data(data=msg.encode("ascii", "replace")),
-            h11.EndOfMessage(),
-        ):
-            self.transport.write(self.conn.send(event) or b"")
-        self.transport.close()
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begin to answer."""
+        limit_logs()
+        Connection.most = affordable()
+        await super().startup(sockets)
+        self._watching = asyncio.create_task(watch())
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Answer no more."""
+        self._watching.cancel()
+        await super().shutdown(sockets)
 
 
 def listening(port: int) -> socket.socket:
-    """A socket on 127.0.0.1 that listens; on any free port if `port` is 0.
+    """Return a socket on 127.0.0.1 that listens; on any free port if `port` is 0.
 
     Raises:
         HearthError: UNWRITABLE, if the port is taken.
@@ -44,20 +45,31 @@ def listening(port: int) -> socket.socket:
         made.close()
         message = f"port {port} of 127.0.0.1 can't be used: {str(error.strerror).lower()}"
         raise HearthError.of(Code.UNWRITABLE, message, suggestion="give another with --port, or 0 for any") from error
-    made.listen(256)
+    made.listen(KERNEL_QUEUE)
     return made
 
 
-def run(app: ASGIApp, where: socket.socket) -> None:
-    """Answer on a socket until interrupted."""
+def run(app: ASGIApp, where: socket.socket, proxy: str = "") -> None:
+    """Answer on a socket until interrupted.
+
+    Args:
+        app: what answers.
+        where: the socket.
+        proxy: the address of the proxy whose word on a visitor's address counts; the socket's address counts if "".
+    """
     config = uvicorn.Config(
         app,
-        http=_Protocol,
+        http=Connection,
         ws="websockets-sansio",
         ws_max_size=4 * MOST_MESSAGE,  # larger ones end the connection; smaller ones are refused with a reason
+        ws_ping_interval=0.3 * QUIET_SECONDS,
+        ws_ping_timeout=0.7 * QUIET_SECONDS,
         access_log=False,
         log_level="warning",
         server_header=False,
+        backlog=KERNEL_QUEUE,
+        proxy_headers=bool(proxy),
+        forwarded_allow_ips=proxy or "",
         timeout_graceful_shutdown=3,
     )
-    uvicorn.Server(config).run(sockets=[where])
+    _Server(config).run(sockets=[where])

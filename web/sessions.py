@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import secrets
 import time
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple, Protocol
 
 import sqlalchemy as sql
 
@@ -36,7 +37,7 @@ def digest(token: str) -> str:
 
 
 def start(store: Store) -> Session:
-    """A new session, stored."""
+    """Return a new session, stored."""
     made = Session(secrets.token_hex(8), secrets.token_urlsafe(32))
     row = {"id": made.id, "token": digest(made.token), "created": time.time()}
     store.write(lambda connection: connection.execute(sql.insert(SESSIONS).values(row)))
@@ -44,7 +45,7 @@ def start(store: Store) -> Session:
 
 
 def find(store: Store, token: str) -> Session | None:
-    """The session of a token, or None."""
+    """Return the session of a token, or None."""
     if not token or len(token) > 100:
         return None
     query = sql.select(SESSIONS.c.id).where(SESSIONS.c.token == digest(token))
@@ -52,10 +53,37 @@ def find(store: Store, token: str) -> Session | None:
     return Session(found, token) if found else None
 
 
+class Keeps(Protocol):
+    """A room's function that gives rows on which others built to another owner, and says how many."""
+
+    def __call__(self, connection: sql.Connection, person: str, nobody: str) -> int:
+        """Give rows of a person to `nobody`."""
+
+
 def forget(store: Store, session: str) -> None:
-    """Delete a session and, with it, all rows of all rooms that belong to it."""
+    """Delete a session and, with it, all rows of all rooms that belong to it, whoever built on them."""
     query = sql.delete(SESSIONS).where(SESSIONS.c.id == session)
     store.write(lambda connection: connection.execute(query))
+    store.erase_traces()
+
+
+def withdraw(store: Store, session: str, keeps: Iterable[Keeps]) -> None:
+    """Delete a session with all that belongs to it, but for that on which other people built.
+
+    What is kept belongs to a session of nobody from then on: a random id that no token opens, another for each
+    withdrawal, and without a time.
+    """
+    nobody = Session(secrets.token_hex(8), secrets.token_urlsafe(32))
+    row = {"id": nobody.id, "token": digest(nobody.token), "created": 0.0}
+
+    def work(connection: sql.Connection) -> None:
+        connection.execute(sql.insert(SESSIONS).values(row))
+        kept = sum([keep(connection, session, nobody.id) for keep in keeps])
+        gone = [session] if kept else [session, nobody.id]
+        connection.execute(sql.delete(SESSIONS).where(SESSIONS.c.id.in_(gone)))
+
+    store.write(work)
+    store.erase_traces()
 
 
 def take_tab(store: Store, session: str, tab: str) -> None:

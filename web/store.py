@@ -10,6 +10,7 @@ import random
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,6 +20,8 @@ from sqlalchemy.exc import DBAPIError
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import SERVED
+from hearth.web import deadlines
+from hearth.web.store_faults import is_conflict, said
 from hearth.web.web_tables import METADATA
 
 T = TypeVar("T")
@@ -26,8 +29,8 @@ T = TypeVar("T")
 Row = dict[str, Any]
 """A row by the names of its columns."""
 
-TRIES = 40
-"""Attempts of a transaction that conflicts with another, about ten seconds in all."""
+ERASURES = 100
+"""Attempts, of `PATIENCE` each, to empty a log that readers need."""
 
 SETTING_UP = 7_264_311
 """The number of PostgreSQL's lock that one process holds while it makes the tables."""
@@ -49,46 +52,83 @@ class Store:
         # SQLite lets one thread write. A thread that waits here is woken at once; SQLite itself would only retry later.
         self._turn: contextlib.AbstractContextManager[Any] = contextlib.nullcontext()
         if self.engine.dialect.name == "sqlite":
-            self._turn = threading.Lock()
+            self._turn = deadlines.BoundedLock("the store")
         with usable(_shown(url), "the store can't be opened"):
             self.read(_check_schema)
             self.write(_make_tables)
+            self.read(partial(_check_columns, _shown(url)))
 
     def read(self, work: Callable[[sql.Connection], T]) -> T:
-        """Return the result of a function that reads one state of the store and changes nothing."""
-        with self.engine.connect() as connection, connection.begin():
+        """Return the result of a function that reads one state of the store and changes nothing.
+
+        Raises:
+            HearthError: TIMED_OUT, UNWRITABLE or DAMAGED_FILE, as of `store_faults.said`.
+        """
+        with said(), self._begun(hearth_until=deadlines.wait_until()) as connection:
             return work(connection)
 
+    def _begun(self, **options: Any) -> contextlib.AbstractContextManager[sql.Connection]:
+        return _transaction(self.engine, options)
+
     def rows(self, query: sql.Select[Any]) -> list[Row]:
-        """The rows of a query by the names of its columns."""
+        """Return the rows of a query by the names of its columns."""
         return self.read(lambda connection: [dict(row) for row in connection.execute(query).mappings()])
 
     def row(self, query: sql.Select[Any]) -> Row | None:
-        """The first row of a query, or None."""
+        """Return the first row of a query, or None."""
         return next(iter(self.rows(query)), None)
 
     def scalar(self, query: sql.Select[Any]) -> Any:
-        """The first value of the first row of a query, or None."""
+        """Return the first value of the first row of a query, or None."""
         return self.read(lambda connection: connection.execute(query).scalar())
 
     def write(self, work: Callable[[sql.Connection], T]) -> T:
         """Run a function as one transaction, and return its result once the transaction is on the disk.
 
         It may run several times, until it conflicts with no other: it changes nothing but the store.
+
+        Raises:
+            HearthError: as of `read`.
         """
-        for attempt in range(TRIES):
-            try:
-                with (
-                    self._turn,
-                    self.engine.connect().execution_options(hearth_writes=True) as connection,
-                    connection.begin(),
-                ):
-                    return work(connection)
-            except DBAPIError as error:
-                if attempt == TRIES - 1 or not _is_conflict(error):
-                    raise
-                time.sleep(random.uniform(0, 0.02 * min(attempt + 1, 25)))
-        raise AssertionError
+        until, attempt = deadlines.wait_until(), 0
+        with said():
+            while True:
+                try:
+                    with self._turn, self._begun(hearth_writes=True, hearth_until=until) as connection:
+                        return work(connection)
+                except DBAPIError as error:
+                    attempt += 1
+                    pause = random.uniform(0, 0.02 * min(attempt, 25))
+                    if not is_conflict(error) or time.monotonic() + pause > until:
+                        raise
+                time.sleep(pause)
+
+    def erase_traces(self) -> None:
+        """Leave nothing of deleted rows in the store's files: now, or as soon as no reader needs them any more."""
+        if not self._erased():
+            threading.Thread(target=self._erase_later, daemon=True).start()
+
+    def _erase_later(self) -> None:
+        with contextlib.suppress(HearthError, DBAPIError):
+            for _ in range(ERASURES):
+                if self._erased():
+                    return
+
+    def _erased(self) -> bool:
+        """Empty the write-ahead log of an embedded store; whether that is done.
+
+        What is deleted is overwritten in the database itself (`secure_delete`); the write-ahead log still has it until
+        it is emptied, which readers can delay.
+        """
+        if self.engine.dialect.name != "sqlite":
+            return True
+        until = deadlines.wait_until()
+        while True:
+            with said(), self._turn, self.engine.connect() as connection:
+                held = connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)").scalar()
+            if not held or time.monotonic() > until:
+                return not held
+            time.sleep(0.02)
 
     def close(self) -> None:
         """Close the connections."""
@@ -110,18 +150,18 @@ def usable(place: str, message: str) -> Iterator[None]:
 
 
 def default_url(out: Path) -> str:
-    """The address of the embedded store of a folder, which is made."""
+    """Return the address of the embedded store of a folder, which is made."""
     private(out)
     return f"sqlite:///{embedded(out).resolve()}"
 
 
 def embedded(out: Path) -> Path:
-    """The file of a folder's embedded store, which may not be there."""
+    """Return the file of a folder's embedded store, which may not be there."""
     return out / SERVED / "store.sqlite"
 
 
 def private(out: Path) -> Path:
-    """The folder within a server's own for its own files; `build` reads no hidden folder.
+    """Return the folder within a server's own for its own files; `build` reads no hidden folder.
 
     Raises:
         HearthError: BAD_ARGUMENT: it is a link, which would lead the server's files elsewhere.
@@ -146,7 +186,10 @@ def _engine(given: str) -> sql.Engine:
     if url.get_backend_name() != "sqlite":
         kind = url.get_backend_name()
         raise HearthError.of(Code.UNSUPPORTED_FILE, f"a store can't be {kind}", suggestion=_FORMS)
-    engine = sql.create_engine(url, connect_args={"timeout": 20, "check_same_thread": False}, pool_size=20)
+    engine = sql.create_engine(
+        url, connect_args={"timeout": 1, "check_same_thread": False}, pool_size=30, pool_timeout=1.5,
+        hide_parameters=True,
+    )  # fmt: skip
     sql.event.listen(engine, "connect", _set_up_sqlite)
     sql.event.listen(engine, "begin", _begin_sqlite)
     return engine
@@ -157,10 +200,23 @@ _FORMS = "give sqlite:///FILE or postgresql://USER@HOST/NAME"
 
 def _postgres(url: sql.URL) -> sql.Engine:
     try:
-        return sql.create_engine(url, isolation_level="SERIALIZABLE", pool_pre_ping=True, pool_size=10)
+        engine = sql.create_engine(
+            url, isolation_level="SERIALIZABLE", pool_pre_ping=True, pool_size=10, max_overflow=10, pool_timeout=1.5,
+            connect_args=_POSTGRES, hide_parameters=True,
+        )  # fmt: skip
     except ModuleNotFoundError as error:
         remedy = "pip install 'psycopg[binary]'"
         raise HearthError.of(Code.MISSING_FILE, "PostgreSQL needs psycopg", suggestion=remedy) from error
+    sql.event.listen(engine, "begin", _begin_postgres)
+    return engine
+
+
+_POSTGRES = {
+    "connect_timeout": 2,
+    "tcp_user_timeout": 3_000,
+    "options": "-c statement_timeout=30s -c idle_in_transaction_session_timeout=30s",
+}
+"""Time limits of PostgreSQL: its silence, a statement, and an idle transaction."""
 
 
 def _shown(url: str) -> str:
@@ -171,19 +227,32 @@ def _set_up_sqlite(connection: Any, record: object) -> None:
     """Readers do not wait for the writer; a commit is on the disk; rows of a session go with it."""
     connection.isolation_level = None  # SQLAlchemy begins transactions, not the driver
     # A file may be a stranger's: with `trusted_schema` off its schema calls no function that does anything.
-    for pragma in ("trusted_schema = OFF", "journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+    for pragma in ("trusted_schema = OFF", "journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON",
+                   "secure_delete = ON"):  # fmt: skip
         connection.execute(f"PRAGMA {pragma}")
+
+
+def _wait(connection: sql.Connection) -> int:
+    """Return the milliseconds that a transaction may wait for a lock."""
+    until: float = connection.get_execution_options().get("hearth_until", 0.0)
+    return max(50, round(1000 * (until - time.monotonic())))
 
 
 def _begin_sqlite(connection: sql.Connection) -> None:
     """Let a writer take the lock at once, so that the data it has read still holds when it writes."""
     writes = connection.get_execution_options().get("hearth_writes")
+    connection.exec_driver_sql(f"PRAGMA busy_timeout = {_wait(connection)}")
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
 
 
-def _is_conflict(error: DBAPIError) -> bool:
-    state = getattr(error.orig, "sqlstate", None)
-    return state in ("40001", "40P01") or "database is locked" in str(error.orig)
+def _begin_postgres(connection: sql.Connection) -> None:
+    connection.exec_driver_sql(f"SET LOCAL lock_timeout = {_wait(connection)}")
+
+
+@contextlib.contextmanager
+def _transaction(engine: sql.Engine, options: dict[str, Any]) -> Iterator[sql.Connection]:
+    with engine.connect().execution_options(**options) as connection, connection.begin():
+        yield connection
 
 
 def _check_schema(connection: sql.Connection) -> None:
@@ -200,3 +269,18 @@ def _make_tables(connection: sql.Connection) -> None:
     if connection.dialect.name == "postgresql":
         connection.execute(sql.select(sql.func.pg_advisory_xact_lock(SETTING_UP)))
     METADATA.create_all(connection)
+
+
+def _check_columns(place: str, connection: sql.Connection) -> None:
+    """Refuse a store whose tables lack columns, as those of another version or of somebody else do.
+
+    Raises:
+        HearthError: DAMAGED_FILE.
+    """
+    there = sql.inspect(connection)
+    for table in METADATA.sorted_tables:
+        lacking = {column.name for column in table.columns} - {each["name"] for each in there.get_columns(table.name)}
+        if lacking:
+            message = f"its table `{table.name}` lacks `{min(lacking)}`, which this version of Hearth keeps there"
+            remedy = "name a store of this version, or another folder with --out"
+            raise HearthError.of(Code.DAMAGED_FILE, message, file=place, suggestion=remedy)

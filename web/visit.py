@@ -16,7 +16,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.web.limits import Rate
 from hearth.web.messages import json_object
-from hearth.web.sessions import Session
+from hearth.web.sessions import Keeps, Session
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
 
@@ -36,6 +36,7 @@ class Web:
         rates: limits on the rate of requests, by the names of `RATES`.
         films: a dataset whose films people describe, or None.
         follows: write the files of rooms, which follow from the store.
+        keeps: give to nobody what others built on, when a person withdraws.
     """
 
     store: Store
@@ -48,6 +49,7 @@ class Web:
     secure: bool = False
     films: Path | None = None
     follows: tuple[Callable[[Web], None], ...] = ()
+    keeps: tuple[Keeps, ...] = ()
 
     def written(self) -> None:
         """Write the rooms' files anew, once data that they follow from was deleted."""

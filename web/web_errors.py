@@ -18,7 +18,10 @@ STATUS: Mapping[Code, int] = {
     Code.FILE_TOO_LARGE: 413,
     Code.TOO_FAST: 429,
     Code.INTERNAL_ERROR: 500,
+    Code.DAMAGED_FILE: 500,
     Code.MISSING_FILE: 503,
+    Code.TIMED_OUT: 503,
+    Code.UNWRITABLE: 503,
 }
 """The HTTP status of a code; others are 400."""
 

@@ -32,7 +32,7 @@ class Wanted:
         return bool(self.programs) or self.limit is not None
 
     def chosen(self) -> tuple[str, dict[str, Any]]:
-        """SQL that selects their ids, and its parameters."""
+        """Return SQL that selects their ids, and its parameters."""
         names = (name for given in self.programs for name in names_of(given))
         asked = {f"id{number}": name for number, name in enumerate(names)}
         where = f" WHERE program_id IN ({', '.join(f'${name}' for name in asked)})" if asked else ""

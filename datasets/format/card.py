@@ -10,8 +10,9 @@ import pyarrow as pa
 
 from hearth.datasets.format.croissant import SUMMARY
 from hearth.datasets.format.datasheet import datasheet
+from hearth.datasets.format.image_tables import FOLDER as IMAGES
 from hearth.datasets.format.split_columns import PARTS
-from hearth.datasets.format.splits import LEFT_OUT
+from hearth.datasets.format.splits import DESCENDED, LEFT_OUT
 from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.storage.files import write_bytes
@@ -26,7 +27,7 @@ def write_card(folder: Path, strength: str = MILD) -> None:
 
 
 def card(folder: Path, strength: str) -> Iterator[str]:
-    """The lines of the card."""
+    """Yield the lines of the card."""
     counts = {table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES}
     yield from _header(folder)
     yield from ("# Hearth", "", SUMMARY, "", f"Dataset version {VERSION}, action set {ACTION_SET}.", "")
@@ -39,12 +40,15 @@ def card(folder: Path, strength: str) -> Iterator[str]:
 
 
 _USES = (
-    'ds["PROGRAM_ID"].runs[0].final          # one program, its runs and their graphs',
+    'ds["PROGRAM_ID"].runs[0].final             # one program, its runs and their graphs',
     'ds.sql("SELECT action, count(*) FROM steps GROUP BY 1").df()',
     "",
     "from datasets import load_dataset",
-    'load_dataset(".")["train"]               # programs by split, without Hearth',
-    'load_dataset(".", "executions")["rows"]  # any other table',
+    'folder = "PATH/OF/THIS/FOLDER"             # `datasets` 5 refuses "."',
+    'load_dataset(folder)["train"]              # programs by split, without Hearth',
+    'load_dataset(folder, "executions")["test"] # executions of these; likewise all that descends from programs',
+    'load_dataset(folder, "frames")["train"]    # with the picture in the column `image`',
+    'load_dataset(folder, "executions")["rows"] # all rows of a table, whatever their part',
 )
 
 _CROISSANT = (
@@ -72,21 +76,26 @@ def _rows(path: Path) -> int:
 def _header(folder: Path) -> Iterator[str]:
     yield from ("---", "license: mit", "pretty_name: Hearth", "language: [en]", "tags: [planning, household, embodied]")
     yield "configs:"
-    parts = {f"programs/*.{part}.parquet": part for part in PARTS}
-    yield from _config(folder, "programs", parts)
+    yield from _config(folder, "programs", _parts("programs"))
     yield "  default: true"
     yield from _config(folder, "programs_left_out", {f"programs/*.{LEFT_OUT}.parquet": ROWS})
     for table in (name for name in TABLES if name != "programs"):
-        yield from _config(folder, table, {f"{table}/*.parquet": ROWS})
+        place = IMAGES if table == "frames" else table
+        yield from _config(folder, table, {**(_parts(place) if table in DESCENDED else {}), f"{place}/*.parquet": ROWS})
     yield from ("---", "")
 
 
 ROWS = "rows"
-"""The split of tables that have none, for `load_dataset`, which otherwise calls it `train`."""
+"""The split of all rows of a table, for `load_dataset`: the only one of tables that do not descend from programs."""
+
+
+def _parts(place: str) -> dict[str, str]:
+    """Return the part that the files of a pattern have, by pattern."""
+    return {f"{place}/*.{part}.parquet": part for part in PARTS}
 
 
 def _config(folder: Path, name: str, files: dict[str, str]) -> Iterator[str]:
-    """A table for `load_dataset`, with its splits by patterns of files; it fails at splits without a row."""
+    """Yield a table for `load_dataset`, with its splits by patterns of files; it fails at splits without a row."""
     found = {pattern: split for pattern, split in files.items() if any(map(_rows, folder.glob(pattern)))}
     if found:
         yield from (f"- config_name: {name}", "  data_files:")
@@ -101,7 +110,7 @@ def _tables(counts: dict[str, int]) -> Iterator[str]:
 
 
 def columns(schema: pa.Schema) -> Iterator[str]:
-    """A table of the columns and nested fields, with their types and meanings."""
+    """Yield a table of the columns and nested fields, with their types and meanings."""
     yield from ("| column | type | meaning |", "|---|---|---|")
     for path, field in (each for column in schema for each in nested(column)):
         kind = re.sub(r"<.*", "", str(field.type)).replace("string", "text")
@@ -134,7 +143,9 @@ def _splits(folder: Path) -> Iterator[str]:
 
 _SPLITS = (
     "Table `splits` has the part of every execution that ran to its end in every split, null where the split has no"
-    " place for it. `programs.split` is the part in `activities`, by which `load_dataset` gives programs."
+    " place for it. `programs.split` is the part in `activities`, by which `load_dataset` gives programs and all that"
+    " descends from them: an execution, a repair or a picture is in its program's part, a clip in the `part` that it"
+    " names. The split `rows` of a table has all of its rows, those of programs without a part as well."
 )
 
 _FAILURES = (

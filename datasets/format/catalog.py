@@ -13,6 +13,7 @@ from typing import Any
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_extent import packaged
+from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted, without_patterns
 from hearth.storage.files import replacing, write_bytes
 from hearth.storage.manifest import FORMAT
 
@@ -34,7 +35,7 @@ DuckDB sets its folder for temporary files next to the database, and gives no ot
 
 
 def statements(root: str = "") -> str:
-    """The SQL of the catalog; `root` is the prefix of every path, by default found when it is opened."""
+    """Return the SQL of the catalog; `root` is the prefix of every path, by default found when it is opened."""
     text = (files("hearth.datasets.format") / "catalog.sql").read_text("utf-8")
     return text.format(folder=quoted(root) if root else _BESIDE)
 
@@ -53,7 +54,7 @@ def comments() -> Iterator[str]:
 
 
 def published() -> str:
-    """The SQL of a dataset's catalog."""
+    """Return the SQL of a dataset's catalog."""
     return "\n".join((statements(), "".join(comments())))
 
 
@@ -67,11 +68,6 @@ def describe(connection: Any) -> None:
     for statement in comments():
         with suppress(duckdb.Error):  # a dataset of an earlier version does not have every column
             connection.execute(statement)
-
-
-def quoted(text: str) -> str:
-    """A text as SQL has it."""
-    return "'" + text.replace("'", "''") + "'"
 
 
 def _reading(table: str, root: str = "") -> str:
@@ -122,7 +118,7 @@ def make_catalog(path: Path, folder: Path, sql: str) -> None:
         link = Path(aside) / "dataset"
         link.symlink_to(folder.resolve())
         try:
-            with duckdb.connect(str(path)) as connection:
+            with open_database(path) as connection:
                 connection.execute(f"SET file_search_path = '{link}'")
                 connection.execute(sql)
                 connection.execute("CHECKPOINT")  # closing does the same, but says nothing of a full disk
@@ -130,18 +126,8 @@ def make_catalog(path: Path, folder: Path, sql: str) -> None:
             raise OSError(errno.EIO, str(error).split("\n", 1)[0], str(path)) from error
 
 
-_CLOSED = (
-    "autoinstall_known_extensions = false",
-    "autoload_known_extensions = false",
-    "python_enable_replacements = false",
-    "enable_external_access = false",
-    "lock_configuration = true",
-)
-"""Settings that keep queries from other files, the network and Python's variables; the last one locks them."""
-
-
 def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remembers: bool = True) -> Any:
-    """A connection with the dataset's views, limited to this folder.
+    """Return a connection with the dataset's views, limited to this folder.
 
     DuckDB cannot forbid writing: queries of strangers go through `check_question` first.
 
@@ -151,12 +137,10 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT, remem
         format: of the dataset.
         remembers: whether footers of files stay in memory.
     """
-    import duckdb
-
-    connection = duckdb.connect()
+    connection = open_database()
     connection.execute(f"SET parquet_metadata_cache = {remembers}")
     connection.execute("SET enable_external_file_cache = false")  # the system keeps files in memory, once for all
-    define(connection, folder, absent, format)
+    define(connection, Path(without_patterns(folder)), absent, format)
     return limited(connection, f"{folder.resolve()}/")
 
 
@@ -172,7 +156,7 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
     """
     from hearth.schemas.tables import TABLES
 
-    text = statements(f"{folder.resolve()}/")
+    text = statements(f"{pattern_of(folder)}/")
     for table in TABLES:
         here = reading(table, format)
         if table in absent and here == _reading(table):
@@ -183,7 +167,7 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
 
 
 def _qualified(text: str, database: str) -> str:
-    """The SQL of the catalog with its tables, views and macros as those of a database."""
+    """Return the SQL of the catalog with its tables, views and macros as those of a database."""
     from hearth.schemas.tables import TABLES
 
     place = f"{identifier(database)}.main."
@@ -210,7 +194,7 @@ def define_as(connection: Any, name: str, folder: Path, absent: Sequence[str] = 
     connection.execute(f"ATTACH ':memory:' AS {identifier(name)}")
     try:
         connection.execute(f"USE {identifier(name)}")
-        define(connection, folder, absent, format, name)
+        define(connection, folder.resolve(), absent, format, name)
     except duckdb.Error:
         connection.execute(f"USE {'.'.join(map(identifier, used))}")
         connection.execute(f"DETACH {identifier(name)}")
@@ -218,21 +202,8 @@ def define_as(connection: Any, name: str, folder: Path, absent: Sequence[str] = 
     connection.execute(f"USE {'.'.join(map(identifier, used))}")
 
 
-def identifier(name: str) -> str:
-    """A name as SQL has it."""
-    return '"' + name.replace('"', '""') + '"'
-
-
-def limited(connection: Any, *roots: str) -> Any:
-    """The connection, which reaches these folders only from now on."""
-    connection.execute(f"SET allowed_directories = [{', '.join(map(quoted, roots))}]")
-    for setting in _CLOSED:
-        connection.execute(f"SET {setting}")
-    return connection
-
-
 def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
-    """The tables that a dataset never had, because an earlier version wrote it.
+    """Return the tables that a dataset never had, because an earlier version wrote it.
 
     Raises:
         HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
@@ -254,7 +225,10 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
 
 
 def without_zones(relation: Any) -> Any:
-    """A relation whose times in a zone are text: DuckDB gives them to Python by a library that is not needed else."""
+    """Return a relation whose times in a zone are text.
+
+    DuckDB gives them to Python by a library that is not needed else.
+    """
     zoned = ["WITH TIME ZONE" in str(kind) for kind in relation.types]
     if not any(zoned):
         return relation

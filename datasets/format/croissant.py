@@ -26,7 +26,9 @@ def write_croissant(folder: Path, strength: str = MILD) -> None:
 
 
 def describe(folder: Path, strength: str) -> dict[str, Any]:
-    """The description as JSON-LD: every Parquet file with its hash, every table with its key and all its columns.
+    """Return the description as JSON-LD.
+
+    Every Parquet file with its hash, every table with its key and all its columns.
 
     Columns within columns are sub-fields, extracted by JSONPath. Of a list within a list mlcroissant 1.1 reads one
     entry only, so the objects of a step are a field for each place; of other such lists it reads the first. References
@@ -87,7 +89,10 @@ def _records(table: str) -> dict[str, Any]:
 
 
 def _field(table: str, column: pa.Field, path: str) -> dict[str, Any]:
-    """A column, or a column within one: the names on the way to it are joined by points, lists marked by `[*]`."""
+    """Return a column, or a column within one.
+
+    The names on the way to it are joined by points, lists marked by `[*]`.
+    """
     listed = pa.types.is_list(column.type)
     kind = column.type.value_type if listed else column.type
     found = _head(table, path, column.name, comment_of(column), listed)

@@ -5,6 +5,7 @@ from pathlib import Path
 from hearth.datasets.format.ids import OURS
 from hearth.repair.perturbation_strengths import MILD, strength
 from hearth.schemas.yaml_extent import packaged
+from hearth.storage.databases import open_database, pattern_of
 
 STRENGTH = "strength"
 """Field of a manifest: the strength by which programs were augmented; missing in earlier datasets, which are mild."""
@@ -20,13 +21,11 @@ def datasheet(folder: Path, strength_used: str = MILD) -> dict[str, str]:
 
 
 def _origins(folder: Path) -> set[str]:
-    """The origins of programs and descriptions; that of the embedded corpus was `crowd` in 0.1."""
-    import duckdb
-
+    """Return the origins of programs and descriptions; that of the embedded corpus was `crowd` in 0.1."""
     found: set[str] = set()
-    with duckdb.connect() as connection:
+    with open_database() as connection:
         for table, key in (("programs", "program_id"), ("descriptions", "description_id")):
             ours = f"origin = 'crowd' AND regexp_matches({key}, '{OURS}')"
-            rows = connection.read_parquet(str(folder / table / "*.parquet"))
+            rows = connection.read_parquet(f"{pattern_of(folder / table)}/*.parquet")
             found |= {name for (name,) in rows.project(f"if({ours}, 'written', origin)").distinct().fetchall()}
     return found

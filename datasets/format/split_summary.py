@@ -90,7 +90,7 @@ def _at_random(programs: SplitPrograms, places: Places, tested: int, seed: int) 
 
 
 def leakage(programs: SplitPrograms, train: Places, test: Places) -> dict[str, int]:
-    """Number of test programs with a sibling, similar steps or a similar description in train."""
+    """Return the number of test programs with a sibling, similar steps or a similar description in train."""
     steps, texts = programs.steps, programs.texts
     return {
         "programs": len(test),

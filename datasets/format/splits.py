@@ -35,6 +35,24 @@ In a split by program, a program has one part, or none in some homes; by executi
 LEFT_OUT = "left_out"
 """Name in files for programs without a part in `activities`."""
 
+SHARES = (*PARTS, LEFT_OUT)
+"""The shares of a table that descends from programs; each has files of its own."""
+
+BY_CASE = ("programs", "environments", "executions", "perturbations", "repairs")
+"""Tables that have a row for a program in an environment, each in the share of its program."""
+
+DRAWN = ("frames", "videos", "clips", "demonstration_frames")
+"""Tables of pictures of executions, each row in the share of its program; clips are in the part that they name."""
+
+DESCENDED = (*BY_CASE, "sketches", *DRAWN)
+"""Tables that descend from programs."""
+
+
+def share_of(table: str, part: str | None) -> str:
+    """Return the name of the share of a table that has the rows of a part: `executions.test`."""
+    return f"{table}.{part or LEFT_OUT}"
+
+
 _NONE: Mapping[str, Mapping[str, str | None]] = MappingProxyType({})
 
 
@@ -75,12 +93,12 @@ def by_activity(programs: SplitPrograms, group: NDArray[np.int32]) -> NDArray[np
 
 
 def part_name(number: int) -> str | None:
-    """The name of a part by its position in `PARTS`; None for `NOTHING`."""
+    """Return the name of a part by its position in `PARTS`; None for `NOTHING`."""
     return None if number == NOTHING else PARTS[number]
 
 
 def held_out(runs: Runs, seed: int) -> str:
-    """The home that is held out; homes are numbered in the order of `Runs.homes`."""
+    """Return the home that is held out; homes are numbered in the order of `Runs.homes`."""
     return runs.homes[derive(seed, "split", "home") % len(runs.homes)] if runs.homes else ""
 
 

@@ -36,7 +36,7 @@ _PROGRAMS = """SELECT program_id, activity_id, title, description, steps FROM {t
 
 
 def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = ()) -> Iterator[Any]:
-    """Executions with the columns that running their programs needs, in the order of their names.
+    """Yield executions with the columns that running their programs needs, in the order of their names.
 
     Three queries, each within its range of ids and over the files that have it: for a join, DuckDB would read whole
     tables, and of many files each query would open all. Its rows come in an order that another run may not have: models

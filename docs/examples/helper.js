@@ -1,5 +1,6 @@
-// A helper for a person who plays: `node helper.js PORT`. It brings what can be taken nearby, one instruction a tick.
+// A helper for a person who plays: `node helper.js PORT TOKEN`. It brings what can be taken nearby, one instruction a tick.
 const socket = require("net").connect(Number(process.argv[2]), "127.0.0.1");
+socket.write(`${JSON.stringify({ token: process.argv[3] })}\n`);
 const lines = require("readline").createInterface({ input: socket });
 let wanted = [];
 

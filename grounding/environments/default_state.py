@@ -22,6 +22,9 @@ from hearth.simulation.world.world import World
 WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
 """Categories without placements."""
 
+DRINK, DRINKWARE = "drink", "drinkware"
+"""Kinds: a drink is a carton or a bottle, or what was poured from it into drinkware."""
+
 
 class Spots(NamedTuple):
     """Usual places of a class in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
@@ -113,8 +116,22 @@ class Base:
         return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
     def _spots(self, name: str) -> Spots:
-        """Return where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
-        return _weighted(self._places(name))
+        """Return where a thing of a class belongs in this home, by the knowledge's placements and their weights.
+
+        A drink in its carton or bottle stands in no glass, where its placements have the drink that was poured.
+        """
+        places = self._places(name)
+        if DRINK in self.knowledge.ancestors(name):
+            places = (place for place in places if not self._towers_over(name, place[0]))
+        return _weighted(places)
+
+    def _towers_over(self, name: str, spot: tuple[str, int, str]) -> bool:
+        """Return whether a spot is inside drinkware that is smaller than a thing of a class."""
+        holder = self.home.classes[spot[1]]
+        thing, vessel = map(self.knowledge.object_class, (name, holder))
+        if thing is None or vessel is None or DRINKWARE not in self.knowledge.ancestors(holder):
+            return False
+        return max(thing.size) > max(vessel.size)
 
     @cached_property
     def fillers(self) -> Spots:

@@ -118,7 +118,7 @@ def _front(class_name: str, shaped: Form) -> float:
 
 
 def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing], kept: list[Rect]) -> Stand | None:
-    """The free spot where most relations are met; of equal ones the first."""
+    """Return the free spot where most relations are met; of equal ones the first."""
     front = _front(crowd.parts.nodes[node].class_name, shaped)
     every = list(spots(room, shaped))
     openings = [hole for hole in crowd.built.openings if hole.room == room.name]

@@ -44,7 +44,7 @@ def unmet(
 
 
 def missed(parts: Parts, things: Mapping[int, Thing]) -> int:
-    """The unmet relations of a graph, by weight."""
+    """Return the unmet relations of a graph, by weight."""
     return sum(
         WEIGHTS[relation]
         for node, given in parts.relations.items()
@@ -75,7 +75,7 @@ def _why(edge: Edge, things: Mapping[int, Thing], parts: Parts) -> str:
 
 
 def _taken(edge: Edge, things: Mapping[int, Thing], parts: Parts) -> str:
-    """The obstacles at a thing's place, or else the thing that it has to be at instead."""
+    """Return the obstacles at a thing's place, or else the thing that it has to be at instead."""
     there = footprint(things[edge.target].box)
     if edge.relation == "INSIDE":
         return f"{_called(edge.target, parts)} has no room for it"

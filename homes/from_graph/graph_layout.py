@@ -94,7 +94,7 @@ def _short(crowd: Crowd, plan: Plan) -> list[int]:
 
 
 def _cut_off(crowd: Crowd, plan: Plan, built: home_shell.Shell) -> list[int]:
-    """The room of each piece of furniture that nobody gets near."""
+    """Return the room of each piece of furniture that nobody gets near."""
     numbers = {room.name: number for number, room in enumerate(plan.rooms)}
     floor = Layout(plan, built, (*built.things, *crowd.things.values())).floor
     standing = (thing for thing in crowd.things.values() if thing.mount == "floor")
@@ -167,7 +167,7 @@ def _doorways(parts: Parts, rects: Mapping[int, Rect]) -> list[Doorway]:
 
 
 def _ways_out(parts: Parts, rects: Mapping[int, Rect]) -> Iterator[Doorway]:
-    """A room's main door, in the last of its outer walls; the others are for windows."""
+    """Yield a room's main door, in the last of its outer walls; the others are for windows."""
     for room in parts.rooms:
         walls = outer_walls(rects[room], [rect for other, rect in rects.items() if other != room])
         for door in parts.of_class(room, "maindoor")[: len(walls[:1])]:

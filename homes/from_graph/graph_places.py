@@ -90,7 +90,7 @@ class Parts:
         return self._is_thing(place) and shaped is not None and not (word == "on" and shaped.mount == "flat")
 
     def _line(self, node: int) -> list[int]:
-        """A thing and all it stands on or in."""
+        """Return a thing and all it stands on or in."""
         line = [node]
         while line[-1] in self.parent:
             line.append(self.parent[line[-1]][0])
@@ -122,11 +122,11 @@ class Parts:
         return round(shaped.size[0] * shaped.size[2], 4) if shaped else 0.0
 
     def of_class(self, room: int, class_name: str) -> list[int]:
-        """The nodes of a class in a room, by id."""
+        """Return the nodes of a class in a room, by id."""
         return sorted(n for n, r in self.room.items() if r == room and self.nodes[n].class_name == class_name)
 
     def area(self, room: int) -> float:
-        """The floor that a room's things take, in square metres."""
+        """Return the floor that a room's things take, in square metres."""
         kinds = ((node, form(self.nodes[node].class_name, self.knowledge)) for node in self.roots(room))
         return sum(self._footprint(node) for node, shaped in kinds if shaped and shaped.mount in ("floor", "item"))
 
@@ -152,7 +152,7 @@ class Parts:
         return found
 
     def family(self, node: int) -> set[int]:
-        """A thing and everything on and in it."""
+        """Return a thing and everything on and in it."""
         found = [node]
         for each in found:
             found += self.children.get(each, ())

@@ -28,7 +28,7 @@ def has_geometry(graph: EnvironmentGraph) -> bool:
 
 
 def measured(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Layout:
-    """The layout that a graph's boxes describe; things are called by their ids."""
+    """Return the layout that a graph's boxes describe; things are called by their ids."""
     boxes = {node.id: node.box for node in graph.nodes if node.category == ROOM_CATEGORY and node.box is not None}
     names = {node.id: f"{node.class_name} ({node.id})" for node in graph.nodes if node.id in boxes}
     inside: dict[int, str] = {}
@@ -95,8 +95,10 @@ def _hole(jamb: Box) -> DoorHole:
 
 
 def _beside_leaf(leaf: Box, one: Box, other: Box, about: WallsAndJambs) -> DoorHole | None:
-    """An open leaf stands at right angles to its wall, at one end of the hole, which is as wide as it is long: the end
-    at which less of the wall stands in the hole, or, where both ends are free of it, more of a doorjamb before it.
+    """Return an open leaf stands at right angles to its wall, at one end of the hole, which is as wide as it is long.
+
+    The end at which less of the wall stands in the hole, or, where both ends are free of it, more of a doorjamb before
+    it.
     """
     shared = shared_wall(footprint(one).inset(-WALL), footprint(other).inset(-WALL))
     if shared is None:
@@ -118,11 +120,11 @@ def _beside_leaf(leaf: Box, one: Box, other: Box, about: WallsAndJambs) -> DoorH
 
 
 def _across(at: float, start: float, end: float, far: float, along: bool) -> Rect:
-    """The floor within `far` of a part of a wall."""
+    """Return the floor within `far` of a part of a wall."""
     return Rect(start, at - far, end, at + far) if along else Rect(at - far, start, at + far, end)
 
 
 def _nearest(room: Rect, at: float, along: bool) -> str:
-    """The wall of a room that is nearest to a line along x (or z)."""
+    """Return the wall of a room that is nearest to a line along x (or z)."""
     far = {"north": room.z1, "south": room.z0, "east": room.x1, "west": room.x0}
     return min((wall for wall in OPPOSITE_WALL if along_x(wall) == along), key=lambda wall: abs(far[wall] - at))

@@ -88,7 +88,7 @@ def _map(parts: Parts, members: list[int]) -> np.ndarray:
 
 
 def _placements(points: np.ndarray, inner: Rect) -> Iterator[np.ndarray]:
-    """The map filling the floor, turned so that it does so best, in all eight ways round."""
+    """Yield the map filling the floor, turned so that it does so best, in all eight ways round."""
 
     def turned(angle: float) -> np.ndarray:
         c, s = cos(radians(angle)), sin(radians(angle))

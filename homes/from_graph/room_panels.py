@@ -28,7 +28,7 @@ Slots = dict[tuple[int, str], list[Thing]]
 
 
 def slots(parts: Parts, plan: Plan, built: Shell) -> Slots:
-    """A place at least for each of a room's panels, windows, curtains and jambs."""
+    """Return a place at least for each of a room's panels, windows, curtains and jambs."""
     found: Slots = {}
     for node, room in zip(parts.rooms, plan.rooms, strict=True):
         own = [t for t in built.things if t.room == room.name]
@@ -46,7 +46,7 @@ def slots(parts: Parts, plan: Plan, built: Shell) -> Slots:
 
 
 def rooms_and_doors(parts: Parts, plan: Plan, built: Shell) -> dict[int, Thing]:
-    """The rooms, and the doors and jambs that the graph puts BETWEEN two of them."""
+    """Return the rooms, and the doors and jambs that the graph puts BETWEEN two of them."""
     found = dict(zip(parts.rooms, Layout(plan, built, ()).rooms(), strict=True))
     names = {room.name: node for node, room in zip(parts.rooms, plan.rooms, strict=True)}
     for door in plan.doorways:
@@ -108,7 +108,7 @@ def _nearness(guess: Thing, place: Thing) -> float:
 
 
 def _worth(parts: Parts, node: int, place: Thing, things: Mapping[int, Thing]) -> int:
-    """The weight of the relations of a node that would be met there."""
+    """Return the weight of the relations of a node that would be met there."""
     total = 0
     for relation, other, outward in parts.relations.get(node, ()):
         thing = things.get(other)
@@ -118,7 +118,7 @@ def _worth(parts: Parts, node: int, place: Thing, things: Mapping[int, Thing]) -
 
 
 def _tiles(room: Room, class_name: str, count: int, low: float) -> Iterator[Thing]:
-    """A floor or ceiling in `count` tiles, in rows as square as can be."""
+    """Yield a floor or ceiling in `count` tiles, in rows as square as can be."""
     inner = interior(room)
     rows = max(1, round(sqrt(count * inner.depth / inner.width))) if count else 0
     for row in range(rows):

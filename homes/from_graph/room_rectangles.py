@@ -18,7 +18,7 @@ FloorSize = tuple[float, float]
 
 
 def packed(sizes: Mapping[int, FloorSize], doors: Sequence[RoomPair]) -> tuple[dict[int, Rect], tuple[RoomPair, ...]]:
-    """A rectangle for every room, and the pairs whose door found no common wall.
+    """Return a rectangle for every room, and the pairs whose door found no common wall.
 
     Args:
         sizes: (width, depth) by room; a room may be turned.
@@ -105,7 +105,7 @@ def _door_fits(one: Rect, other: Rect) -> bool:
 
 
 def _sprawl(rect: Rect, placed: Mapping[int, Rect]) -> tuple[float, Rect]:
-    """The floor that the home takes with a room there, its lawn included."""
+    """Return the floor that the home takes with a room there, its lawn included."""
     rects = [rect, *placed.values()]
     width = max(r.x1 for r in rects) - min(r.x0 for r in rects)
     depth = max(r.z1 for r in rects) - min(r.z0 for r in rects)

@@ -45,11 +45,11 @@ class Floor:
     room: np.ndarray
 
     def center(self, i: int, j: int) -> tuple[float, float]:
-        """The middle of a cell as (x, z)."""
+        """Return the middle of a cell as (x, z)."""
         return self.origin[0] + (i + 0.5) * self.cell, self.origin[1] + (j + 0.5) * self.cell
 
     def index(self, x: float, z: float) -> tuple[int, int]:
-        """The cell a point lies in; may lie beyond the grid."""
+        """Return the cell a point lies in; may lie beyond the grid."""
         return int((x - self.origin[0]) // self.cell), int((z - self.origin[1]) // self.cell)
 
     def regions(self) -> np.ndarray:
@@ -87,7 +87,7 @@ def stands_on_floor(thing: Thing) -> bool:
 
 
 def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
-    """The floor of a furnished plan."""
+    """Return the floor of a furnished plan."""
     x0, z0, x1, z1 = Rect.over(room.rect for room in plan.rooms)
     if not (0 < x1 - x0 <= LONGEST and 0 < z1 - z0 <= LONGEST):
         message = f"a home of {x1 - x0:g} by {z1 - z0:g} metres"
@@ -99,7 +99,7 @@ def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) 
         return slice(max(0, min(first, size)), max(0, min(last, size)))
 
     def cells(rect: Rect) -> tuple[slice, slice]:
-        """The cells whose middles lie in a rectangle."""
+        """Return the cells whose middles lie in a rectangle."""
         return part(rect.x0 - x0, rect.x1 - x0, shape[0]), part(rect.z0 - z0, rect.z1 - z0, shape[1])
 
     free = np.zeros(shape, bool)

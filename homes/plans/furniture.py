@@ -56,7 +56,7 @@ class Furnishing:
     placed: list[Placed] = field(default_factory=list)
 
     def find(self, name: str) -> Thing | None:
-        """The last thing placed that other entries call so: by its own name, or by its entry's name or class."""
+        """Return the last thing placed that other entries call so: by its own name, or by its entry's name or class."""
         for piece, thing in reversed(self.placed):
             if name in (thing.name.partition("/")[2], piece.name or piece.class_name):
                 return thing
@@ -89,7 +89,7 @@ def furnish(room: Room, height: float, knowledge: Knowledge, faults: Faults) -> 
 
 
 def shape(piece: Piece, knowledge: Knowledge) -> Form:
-    """A piece's form with the plan's own sizes."""
+    """Return a piece's form with the plan's own sizes."""
     found = scaled(piece.class_name, piece.size, knowledge)
     if found is None:
         raise NoPlaceError(f"nobody knows the size of `{piece.class_name}`")
@@ -102,7 +102,7 @@ def _reference(piece: Piece) -> str | None:
 
 
 def names_of(piece: Piece, numbers: dict[str, int]) -> list[str]:
-    """The names of a piece's things: its own, else its class with a number; `numbers` counts them."""
+    """Return the names of a piece's things: its own, else its class with a number; `numbers` counts them."""
     base = piece.name or piece.class_name
     names = []
     for _ in range(piece.count):
@@ -112,7 +112,7 @@ def names_of(piece: Piece, numbers: dict[str, int]) -> list[str]:
 
 
 def stand(piece: Piece, names: Sequence[str], room: Furnishing) -> list[Placed]:
-    """An entry's things where the plan puts them in a room; they are not added to it.
+    """Return an entry's things where the plan puts them in a room; they are not added to it.
 
     Raises:
         NoPlaceError: they cannot be placed so.
@@ -130,7 +130,7 @@ def stand(piece: Piece, names: Sequence[str], room: Furnishing) -> list[Placed]:
 
 
 def underside(piece: Piece, shaped: Form, room: Furnishing) -> float:
-    """The height at which a piece begins."""
+    """Return the height at which a piece begins."""
     if "up" in piece.place:
         return float(piece.place["up"])
     if shaped.mount == "ceiling":
@@ -174,7 +174,7 @@ def _on_wall(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
 
 
 def _extents(shaped: Form, yaw: float, wall: str) -> tuple[float, float]:
-    """A thing's extents along a wall and away from it."""
+    """Return a thing's extents along a wall and away from it."""
     x, z = turned(shaped.size[0], shaped.size[2], yaw)
     return (x, z) if along_x(wall) else (z, x)
 

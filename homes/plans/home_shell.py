@@ -83,12 +83,12 @@ class Shell:
 
 
 def interior(room: Room) -> Rect:
-    """The floor between a room's walls."""
+    """Return the floor between a room's walls."""
     return room.rect.inset(WALL)
 
 
 def build(plan: Plan, faults: Faults) -> Shell:
-    """The shell of a plan; openings that do not fit their walls are noted and left out."""
+    """Return the shell of a plan; openings that do not fit their walls are noted and left out."""
     shell = Shell()
     _check_height(plan, faults)
     for number, door in enumerate(plan.doorways, 1):
@@ -114,7 +114,7 @@ def _check_height(plan: Plan, faults: Faults) -> None:
 
 
 def shared_wall(a: Rect, b: Rect) -> tuple[str, float, float] | None:
-    """The wall of `a` that it shares with `b`, and from where to where along it; None when they do not touch."""
+    """Return the wall of `a` that it shares with `b`, and from where to where along it; None when they do not touch."""
     sides = (
         ("east", a.x1 - b.x0, a.z0, a.z1, b.z0, b.z1),
         ("west", a.x0 - b.x1, a.z0, a.z1, b.z0, b.z1),
@@ -129,18 +129,18 @@ def shared_wall(a: Rect, b: Rect) -> tuple[str, float, float] | None:
 
 
 def outer_walls(rect: Rect, others: Iterable[Rect]) -> list[str]:
-    """The walls of a room that it shares with none of the others."""
+    """Return the walls of a room that it shares with none of the others."""
     shared = {found[0] for other in others if (found := shared_wall(rect, other)) is not None}
     return [wall for wall in OPPOSITE_WALL if wall not in shared]
 
 
 def strip(rect: Rect, wall: str, start: float, end: float, depth: float) -> Rect:
-    """The strip along one side of a rectangle: `depth` deep inwards from it, or outwards when negative."""
+    """Return the strip along one side of a rectangle: `depth` deep inwards from it, or outwards when negative."""
     return band(rect, wall, start, end, 0.0, depth)
 
 
 def band(rect: Rect, wall: str, start: float, end: float, near: float, far: float) -> Rect:
-    """The band along one side of a rectangle between two distances inwards from it, outwards when negative."""
+    """Return the band along one side of a rectangle between two distances inwards from it, outwards when negative."""
     if wall == "north":
         return _ordered(start, rect.z1 - far, end, rect.z1 - near)
     if wall == "south":
@@ -151,7 +151,7 @@ def band(rect: Rect, wall: str, start: float, end: float, near: float, far: floa
 
 
 def before(rect: Rect, yaw: float, depth: float) -> Rect:
-    """The floor before a thing that faces that way; within the thing itself when `depth` is negative."""
+    """Return the floor before a thing that faces that way; within the thing itself when `depth` is negative."""
     side = front_of(yaw)
     return strip(rect, side, *span(rect, side), -depth)
 
@@ -210,7 +210,7 @@ def _add_door(plan: Plan, door: Doorway, number: int, shell: Shell, faults: Faul
 
 
 def _behind(plan: Plan, room: Room, wall: str, begin: float, finish: float) -> Room | None:
-    """The room on the other side of a stretch of a room's wall; None outside."""
+    """Return the room on the other side of a stretch of a room's wall; None outside."""
     for other in plan.rooms:
         shared = shared_wall(room.rect, other.rect)
         if other is not room and shared and shared[0] == wall and begin < shared[2] and finish > shared[1]:

@@ -51,14 +51,14 @@ class Layout:
         return _character(self)
 
     def rooms(self) -> Iterator[Thing]:
-        """The rooms as boxes."""
+        """Yield the rooms as boxes."""
         for room in self.plan.rooms:
             box = box_over(interior(room), 0.0, self.plan.height)
             yield Thing(room.name, room.class_name, room.name, box, None, "room", line=room.line)
 
 
 def read(text: str, file: str, knowledge: Knowledge) -> Layout:
-    """A plan's text with everything in its place.
+    """Return a plan's text with everything in its place.
 
     Raises:
         HearthError: every fault of the plan, each naming the thing, the file, the line and the remedy.
@@ -112,7 +112,7 @@ def _furnished(plan: Plan, room: Room, built: Shell, knowledge: Knowledge, fault
 
 
 def _standing(thing: Thing, built: Shell, room: Furnishing) -> Thing:
-    """The same thing, with the floor tile or wall panel it is on."""
+    """Return the same thing, with the floor tile or wall panel it is on."""
     x, z = footprint(thing.box).center
     if thing.mount in ("floor", "flat"):
         on = next((t.name for t in _shell(built, thing.room, "floor") if footprint(t.box).holds(x, z)), "")

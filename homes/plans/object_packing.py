@@ -102,7 +102,7 @@ def contents(
 def _direct(
     thing: Thing, piece: Piece, knowledge: Knowledge, faults: Faults, seats: Sequence[Thing] = ()
 ) -> Iterator[tuple[Piece, Thing]]:
-    """The things on and in a thing itself, with their entries."""
+    """Yield the things on and in a thing itself, with their entries."""
     numbers: dict[str, int] = {}
     shaped = shape(piece, knowledge)
     settings = list(_settings(thing, piece.lay, seats, numbers, knowledge))
@@ -135,7 +135,7 @@ def _level_of(piece: Piece, relation: str, holder: Form, knowledge: Knowledge) -
 def _settings(
     table: Thing, lay: Sequence[Piece], seats: Sequence[Thing], numbers: dict[str, int], knowledge: Knowledge
 ) -> Iterator[tuple[Piece, str, Rect]]:
-    """The table setting of each seat: the entry, its name and its rectangle."""
+    """Yield the table setting of each seat: the entry, its name and its rectangle."""
     sizes = [shape(entry, knowledge).size for entry in lay]
     for place in places(table, seats) if lay else ():
         rects = setting(place, [(width, depth) for width, _, depth in sizes])
@@ -180,7 +180,7 @@ def _rank(piece: Piece, knowledge: Knowledge) -> tuple[bool, bool, float]:
 
 
 def support_of(thing: Thing, shaped: Form, relation: str, knowledge: Knowledge, apart: float) -> Support:
-    """A thing with the levels on (or in) it, still empty."""
+    """Return a thing with the levels on (or in) it, still empty."""
     width, _, depth = thing.box.size if _along_x(thing) else thing.box.size[::-1]
     low, high = bottom(thing.box), top(thing.box)
     if relation == "on":
@@ -241,7 +241,7 @@ def _item(owner: Thing, piece: Piece, name: str, box: Box, *, relation: str, tur
 
 
 def _find(support: Support, piece: Piece, shaped: Form) -> tuple[Level, Local, float, bool]:
-    """A level, a rectangle on it, the height of the thing as it lies there, and whether it is turned sideways.
+    """Return a level, a rectangle on it, the height of the thing as it lies there, and whether it is turned sideways.
 
     Raises:
         NoPlaceError: there is none.
@@ -266,7 +266,7 @@ def _find(support: Support, piece: Piece, shaped: Form) -> tuple[Level, Local, f
 
 
 def _pile(support: Support, class_name: str, shaped: Form) -> tuple[Level, Local, float, bool] | None:
-    """The top of a pile of its like, for a flat thing; None where there is none or it would grow too high."""
+    """Return the top of a pile of its like, for a flat thing; None where there is none or it would grow too high."""
     height = shaped.size[1]
     if height > FLAT:
         return None
@@ -291,7 +291,10 @@ def _ways(size: tuple[float, float, float], tidy: bool) -> Iterator[tuple[tuple[
 
 
 def _level_order(support: Support, class_name: str) -> list[Level]:
-    """The levels from the emptiest, those at hand's height first; a tidy support keeps like with like where it can."""
+    """Return the levels from the emptiest, those at hand's height first.
+
+    A tidy support keeps like with like where it can.
+    """
 
     def rank(level: Level) -> tuple[bool, float, float]:
         alike = support.tidy and any(name.split(".")[0] == class_name for name, _ in level.taken)

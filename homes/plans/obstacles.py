@@ -66,7 +66,7 @@ class Obstacles:
         return found
 
     def _in_the_way(self, low: float, high: float) -> np.ndarray:
-        """The floor that is taken for something of that height."""
+        """Return the floor that is taken for something of that height."""
         if (low, high) in self._taken:
             return self._taken[low, high]
         taken = [rect for rect, lower, upper in self._solids if lower < high and low < upper]
@@ -76,7 +76,7 @@ class Obstacles:
         return found
 
     def _deep(self, hole: Opening) -> Rect:
-        """The floor in front of an opening in a wall."""
+        """Return the floor in front of an opening in a wall."""
         return strip(self._inner, hole.wall, hole.start - 0.03, hole.end + 0.03, 0.25)
 
 

@@ -62,7 +62,7 @@ class Piece:
     line: int = 0
 
     def with_parts(self, change: Callable[[tuple[Piece, ...]], tuple[Piece, ...]]) -> Piece:
-        """The same, with its `on`, `inside` and `lay` changed."""
+        """Return the same, with its `on`, `inside` and `lay` changed."""
         if not (self.on or self.inside or self.lay):
             return self
         return replace(self, on=change(self.on), inside=change(self.inside), lay=change(self.lay))
@@ -142,7 +142,7 @@ class Plan:
     ids: Mapping[str, int] = field(default_factory=dict)
 
     def room(self, name: str) -> Room:
-        """The room of that name.
+        """Return the room of that name.
 
         Raises:
             KeyError: there is none.

@@ -75,7 +75,7 @@ PLAN_KEYS: dict[str, ReadValue] = {
 
 
 def read_plan(text: str, file: str, knowledge: Knowledge, faults: Faults) -> Plan:
-    """A plan from YAML text; what cannot be read is left out and noted.
+    """Return a plan from YAML text; what cannot be read is left out and noted.
 
     Raises:
         HearthError: the text is not a YAML mapping, or is of a home too large to be one.
@@ -132,11 +132,11 @@ class _Reader:
     def fields(
         self, entry: Any, keys: dict[str, ReadValue], what: str, need: tuple[str, ...] = (), line: int = 0
     ) -> dict[str, Any]:
-        """The values of a mapping, read by their keys' readers."""
+        """Return the values of a mapping, read by their keys' readers."""
         return fields(entry, keys, what, self.faults, need, line)
 
     def room(self, entry: Any) -> Room | None:
-        """A room with its windows and furniture; None when it has no usable name or place."""
+        """Return a room with its windows and furniture; None when it has no usable name or place."""
         found = self.fields(entry, ROOM_KEYS, "a room", ("name", "at", "size"))
         if not {"name", "at", "size"} <= found.keys():
             return None
@@ -160,12 +160,12 @@ class _Reader:
         )  # fmt: skip
 
     def window(self, entry: Any) -> Window | None:
-        """A window."""
+        """Return a window."""
         found = self.fields(entry, WINDOW_KEYS, "a window", ("wall",))
         return Window(**{"at": None, **found}, line=located_yaml.line_of(entry)) if "wall" in found else None
 
     def door(self, entry: Any) -> Doorway | None:
-        """A doorway."""
+        """Return a doorway."""
         found = self.fields(entry, DOOR_KEYS, "a door", ("between",))
         line = located_yaml.line_of(entry)
         rooms = found.pop("between", None)
@@ -231,7 +231,7 @@ class _Reader:
         )
 
     def _class(self, name: str, line: int) -> str | None:
-        """The class of that name, when the knowledge has it."""
+        """Return the class of that name, when the knowledge has it."""
         if name not in self.knowledge.objects:
             near = self.knowledge.suggest(name)
             hint = f"did you mean `{near[0]}`?" if near else "`kb find` lists the classes"

@@ -10,7 +10,7 @@ from hearth.homes.plans.plan import Doorway, Piece, Plan, Room, Window
 
 
 def plan_text(plan: Plan) -> str:
-    """A plan as YAML that reads back as the same plan, but for the lines its entries stand on."""
+    """Return a plan as YAML that reads back as the same plan, but for the lines its entries stand on."""
     lines = [f"home: {_text(plan.name)}"]
     if plan.about:
         lines.append(f"about: {_quoted(plan.about)}")
@@ -73,12 +73,12 @@ def _door(door: Doorway) -> dict[str, Any]:
 
 
 def _metres(length: float) -> float:
-    """A difference of coordinates without the last digits' noise."""
+    """Return a difference of coordinates without the last digits' noise."""
     return round(length, 6)
 
 
 def _flow(value: Any) -> str:
-    """A value in YAML's flow style."""
+    """Return a value in YAML's flow style."""
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):

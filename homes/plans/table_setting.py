@@ -24,7 +24,7 @@ class Place(NamedTuple):
 
 
 def places(table: Thing, seats: Sequence[Thing]) -> list[Place]:
-    """A place for each seat that stands at the table and faces it, in the order of the seats."""
+    """Return a place for each seat that stands at the table and faces it, in the order of the seats."""
     top = footprint(table.box)
     found = []
     for seat in seats:

@@ -23,7 +23,7 @@ def _tables() -> Any:
 
 
 def floor_plan(name: str, rooms: int, rng: Random) -> Plan:
-    """A home's rooms, doors and windows, without furniture.
+    """Return a home's rooms, doors and windows, without furniture.
 
     Args:
         name: of the home.
@@ -47,7 +47,7 @@ def floor_plan(name: str, rooms: int, rng: Random) -> Plan:
 
 
 def _bands(hall: str, others: Sequence[str], rng: Random) -> list[Rect]:
-    """The hall and the rooms on both its long sides (on one, where the hall is a room to live in)."""
+    """Return the hall and the rooms on both its long sides (on one, where the hall is a room to live in)."""
     table, corridor = _tables(), hall == "entrance_hall"
     depth = round(rng.uniform(*table["depth"]["corridor" if corridor else "hub"]), 1)
     half = (len(others) + 1) // 2 if corridor else len(others) // 3
@@ -82,7 +82,7 @@ def _moved(rects: Sequence[Rect]) -> list[Rect]:
 
 
 def _names(classes: Sequence[str]) -> list[str]:
-    """The classes, those that stand there again with a number."""
+    """Return the classes, those that stand there again with a number."""
     counts = (classes[: number + 1].count(name) for number, name in enumerate(classes))
     return [name if count == 1 else f"{name}_{count}" for name, count in zip(classes, counts, strict=True)]
 

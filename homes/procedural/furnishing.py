@@ -142,7 +142,7 @@ def _done(suite: Suite, recipe: Recipe) -> bool:
 
 
 def _piece(suite: Suite, recipe: Recipe) -> Piece:
-    """A recipe's entry with everything drawn, stocked by the knowledge."""
+    """Return a recipe's entry with everything drawn, stocked by the knowledge."""
     keys = {key: _drawn(value, suite.rng, key in SIZE_KEYS) for key, value in recipe.fields.items()}
     entry = located_yaml.Mapping(0)
     entry[_drawn(recipe.text, suite.rng)] = located_yaml.Mapping(0)
@@ -154,7 +154,10 @@ def _piece(suite: Suite, recipe: Recipe) -> Piece:
 
 
 def _drawn(value: Any, rng: Random, metres: bool = False) -> Any:
-    """A value as in a plan: one of `a|b`, a number of `cup*1-3`, metres between two; what is drawn 0 times is gone."""
+    """Return a value as in a plan.
+
+    One of `a|b`, a number of `cup*1-3`, metres between two; what is drawn 0 times is gone.
+    """
     if isinstance(value, list):
         if metres:
             return located_yaml.Number(round(rng.uniform(*value), 2))
@@ -254,7 +257,7 @@ def _ways(suite: Suite, piece: Piece) -> Iterator[Piece]:
 
 
 def _stand(suite: Suite, piece: Piece) -> list[Placed] | None:
-    """The things of a piece at its place, if that is free."""
+    """Return the things of a piece at its place, if that is free."""
     room = suite.furnishing
     try:
         found = stand(piece, [f"{piece.class_name}.{number}" for number in range(piece.count)], room)

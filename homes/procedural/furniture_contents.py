@@ -22,7 +22,10 @@ Candidates = tuple[tuple[str, ...], tuple[float, ...], tuple[float, ...]]
 
 
 def stock(piece: Piece, amounts: Mapping[str, Any], room: str, knowledge: Knowledge, rng: Random) -> Piece:
-    """The piece with things on and in it besides what it has: `amounts` gives the least and most of `on` and `in`."""
+    """Return the piece with things on and in it besides what it has.
+
+    `amounts` gives the least and most of `on` and `in`.
+    """
     on, inside = piece.on, piece.inside
     if "on" in amounts:
         on += _drawn(piece, "ON", amounts["on"], room, knowledge=knowledge, rng=rng)

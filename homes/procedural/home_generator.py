@@ -22,7 +22,7 @@ ROOM_TRIES = 4
 
 
 def generate(rooms: int, seed: int, knowledge: Knowledge) -> Layout:
-    """A furnished home with that number of rooms; the same for the same arguments.
+    """Return a furnished home with that number of rooms; the same for the same arguments.
 
     Args:
         rooms: from 3 to 9.
@@ -66,7 +66,7 @@ def _attempt(name: str, rooms: int, knowledge: Knowledge, rng: Random) -> Layout
 
 
 def _furniture(room: Room, plan: Plan, built: Shell, knowledge: Knowledge, rng: Random) -> tuple[Piece, ...] | None:
-    """A room's furniture: what it needs may find its place at a second try, and a new floor plan costs more."""
+    """Return a room's furniture: what it needs may find its place at a second try, and a new floor plan costs more."""
     for _ in range(ROOM_TRIES):
         try:
             return furnish(room, plan.height, built, knowledge, rng)
@@ -111,7 +111,7 @@ def _numbered(plan: Plan) -> Plan:
 
 
 def _without(plan: Plan, lines: set[int]) -> Plan:
-    """The plan without some entries; rooms that lose none stay the same objects."""
+    """Return the plan without some entries; rooms that lose none stay the same objects."""
 
     def kept(pieces: tuple[Piece, ...]) -> tuple[Piece, ...]:
         return tuple(piece.with_parts(kept) for piece in pieces if piece.line not in lines)

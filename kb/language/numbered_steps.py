@@ -22,7 +22,7 @@ from hearth.kb.language.sentences import (
     said_by,
 )
 from hearth.kb.language.understanding import Candidate
-from hearth.kb.language.unmarked_lines import is_order
+from hearth.kb.language.unmarked_lines import is_like_step, is_order
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -88,6 +88,16 @@ _ORDINAL = re.compile(
 )
 
 
+_TOLD = re.compile(
+    r"(?:(?:then|next|now|first|finally|and|so)\s*,?\s+)*(?:i|you|he|she|it|we|they|the|this|that)\b", re.IGNORECASE
+)
+
+
+def _asks(sentence: str) -> bool:
+    """Return whether a sentence asks for something, and tells of nobody."""
+    return is_like_step(sentence) and not _TOLD.match(sentence)
+
+
 class _StepParser:
     def __init__(self, known: Knowledge, place: str, fuzzy: Fuzzy) -> None:
         self.known, self.place, self.fuzzy = known, place, fuzzy
@@ -121,8 +131,12 @@ class _StepParser:
                 self._note(line, raw, number)
 
     def is_description(self, prose: int) -> bool:
-        """Return whether the sentences of a text are its description: fewer of them are steps than are not."""
-        return prose > 0 and len(self.faults) > len(self.steps)
+        """Return whether the sentences of a text are its description: fewer of them are steps than are not.
+
+        Where most ask for something, as orders do, each that is not understood is a fault of its own.
+        """
+        orders = sum(_asks(fault.found) for fault in self.faults)
+        return prose > 0 and len(self.faults) > len(self.steps) and 2 * (orders + len(self.steps)) <= prose
 
     def _lacks(self, line: PlanLine, raw: str, number: int) -> bool:
         """Add the fault of an item below a step that asks for something, as a step does; return whether it does."""

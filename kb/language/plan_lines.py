@@ -1,5 +1,6 @@
 """The lines of a plan as language models write it: Markdown undone, and each line a step, a heading or plain text."""
 
+import html
 import re
 from collections.abc import Sequence
 from functools import lru_cache
@@ -31,7 +32,7 @@ _TIME = r"(?:[01]?\d|2[0-3])(?:[:.][0-5]\d(?:\s*[ap]m\b)?|\s?[ap]m\b)"
 _MARKER = re.compile(
     r"(?:[\u2190-\u21ff\u2500-\u2604\u2606-\u2617\u2705\u2713-\u2718\u2794-\u27bf\u2b00-\u2bff"
     r"\U0001f446-\U0001f449\U0001f518\U0001f532-\U0001f53d\U0001f7e0-\U0001f7ff·◦‣⁃∙▪]\ufe0f?\s*)+(?=\S)"
-    rf"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|{_TIME}(?:\s*[–—-]\s*{_TIME})?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])|@[\w-]+[:,]?\s+(?=[a-z])",
+    rf"|\\item\b(?:\[[^\]]*\])?\s*(?=\S)|(?:at\s+)?{_TIME}(?:\s*[–—-]\s*{_TIME})?\s*[:–—-]?\s+(?=[a-z])|\+\s+(?=[a-z])|@[\w-]+[:,]?\s+(?=[a-z])",
     re.IGNORECASE,
 )
 """Marks before a step without a number: a symbol, LaTeX's `\\item`, a time of day, `Finally,`."""
@@ -49,7 +50,13 @@ _XML_NAMED = re.compile(
     rf"\s*<{_ELEMENT}\b[^<>]*?\b(?:task|title|name|goal)=[\"']([^\"'<>]+)[\"'][^<>]*>\s*",
     re.IGNORECASE,
 )
-_XML = re.compile(rf"\s*</?{_ELEMENT}\b[^<>]*>\s*|\s*<\?xml\b.*", re.IGNORECASE)
+_XML = re.compile(
+    rf"\s*</?{_ELEMENT}\b[^<>]*>\s*|\s*<\?xml\b.*|\s*</[A-Za-z][\w:.-]*>\s*|\s*<[A-Za-z][\w:.-]*(?:\s[^<>]*=[^<>]*)?(?<!/)>\s*",
+    re.IGNORECASE,
+)
+_WHOLE = re.compile(
+    r"\s*<(plan|steps|actions|program|answer|output|response|result)>(?P<said>.*)</\1>\s*", re.IGNORECASE
+)
 _LATEX = re.compile(r"\s*\\(?:(?:sub)*section|title|paragraph)\*?\{([^{}]*)\}\s*|\s*\\(?:begin|end)\{\w+\*?\}.*")
 _BOLD = re.compile(r"\s*(?:\*\*|__)(?!\s)([^*_:]+)(?:\*\*|__)\s*:?\s*")
 _ASIDE = re.compile(
@@ -69,7 +76,9 @@ LOOSE = re.compile(r"\s*\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s+([A-Za-z][\w .'-]*?)
 _DIGITS = re.compile(r"\d+")
 _CHECKBOX = re.compile(r"\[[ xX]\]\s+(?:@[\w-]+:?\s+)?")
 
-_LAYOUT = re.compile(r"\s*(?:`{3}|~{3}|(?:[-*_=]\s*){3,}$|//|<!--.*-->\s*$)")
+_LAYOUT = re.compile(
+    r"\s*(?:`{3}|~{3}|(?:[-*_=]\s*){3,}$|//|<!--.*-->\s*$|@(?:start|end)uml\b|<\|im_start\|>\w*\s*$|(?:BEGIN|START)\s*$)"
+)
 """A line that begins or ends a code block, a horizontal rule, or a comment."""
 
 RULE = re.compile(r"\s*(?:[-*_=]\s*){3,}$")
@@ -85,8 +94,16 @@ META = re.compile(
 _INLINE = re.compile(r"(?:^|(?<=\s))(?:0[.)]\s+\S.*?\s1|1[.)]\s+\S.*?\s2)[.)]\s+\S")
 """The beginning of numbered steps on one line: `Plan: 1. walk to kitchen 2. open fridge`."""
 
-CHAIN = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡)\s*")
+CHAIN = re.compile(r"\s*(?:-{1,3}>|={1,2}>|[→⟶➔➡⇒⟹➜➝])\s*")
 """Separators of the steps of a line: `walk to kitchen -> open fridge`."""
+
+_TAGGED = re.compile(r"(?:\s+[+@#][a-z][\w-]*)+$", re.IGNORECASE)
+"""Projects, people and topics behind an item of a list, `+home`."""
+
+_LABELLED = re.compile(
+    r"^(?!task|title|goal|plan|step)[A-Za-z]{1,12}(?: [A-Za-z]{1,12})?:\s+(?=[01][.)]\s+\S)", re.IGNORECASE
+)
+"""Who answers, or what, before the first step of a list: `Robot: 1. walk to desk`."""
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
@@ -94,7 +111,12 @@ _EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}
 _ANSWER = re.compile(
     r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE
 )
-_ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s+(\S.*)", re.IGNORECASE)
+_ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s*:?\s+(\S.*)", re.IGNORECASE)
+_ASKED_FOR = re.compile(
+    r"(?:please\s+)?(?:write|give|make|create|generate|produce|provide|list|show)\b[^:]{0,40}"
+    r"\b(?:plan|steps|program|instructions)\s+(?:for|to)\s*:?\s+[\"'“]?(\S.*?)[\"'”.!]*",
+    re.IGNORECASE,
+)
 _USUAL = re.compile(
     r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
 )
@@ -102,6 +124,36 @@ _USUAL = re.compile(
 
 
 _EXPLAINED = re.compile(r" ?[(–—]| - |:(?= |$)|\. (?=[A-Z])")
+
+
+_PROMPT = re.compile(r"^\s*(?:>>>|In \[\d+\]:)\s+")
+_UNSEEN = re.compile(
+    r"\x1b\[[0-9;]*[A-Za-z]|\[/?INST\]|</?s>|<\|im_start\|>(?=\S+\s+\S)|<\|(?!im_start)[a-z_]+\|>|[\u200b\u200c\u2060\ufeff\u00ad]"
+)
+"""Colors of terminals, marks of chats between texts, and characters without width."""
+
+_HTML_ROW = re.compile(r"\s*(?:<t(?:able|body|head)\b[^>]*>\s*)*<tr\b[^>]*>\s*<t[dh]\b", re.IGNORECASE)
+_HTML_CELLS = re.compile(r"(?:\s*</?(?:table|tbody|thead|tr|td|th)\b[^>]*>)+\s*", re.IGNORECASE)
+_HTML_TABLE = re.compile(r"\s*(?:</?(?:table|tbody|thead|tr)\b[^>]*>\s*)+", re.IGNORECASE)
+_ENTITY = re.compile(r"&(?:[a-z]+|#\d+|#x[0-9a-f]+);", re.IGNORECASE)
+_WIDE = str.maketrans({chr(0xFF01 + n): chr(0x21 + n) for n in range(94)})
+_CIRCLED = {chr(0x2460 + n): f"{n + 1}. " for n in range(20)}
+_ODD = re.compile(r">>> |\[/?INST|</?s>|<\||<t|</t|[&\x1b\u2460-\u2473\uff01-\uff5e\u200b\u200c\u2060\ufeff\u00ad]")
+
+
+def cleaned(raw: str) -> str:
+    """Return a line without what no reader sees, and with entities, wide and circled characters as usual ones."""
+    if not _ODD.search(raw):
+        return raw
+    if _HTML_ROW.match(raw):
+        raw = _HTML_CELLS.sub("|", raw)
+    elif _HTML_TABLE.fullmatch(raw):
+        return ""
+    text = _PROMPT.sub("", _UNSEEN.sub("", raw), count=1)
+    text = _ENTITY.sub(lambda found: " ".join(html.unescape(found[0]).split()) or " ", text) if "&" in text else text
+    text = text.translate(_WIDE)
+    first = text.lstrip()[:1]
+    return text.replace(first, _CIRCLED[first], 1) if first in _CIRCLED else text
 
 
 class PlanLine(NamedTuple):
@@ -147,6 +199,7 @@ def _line(raw: str) -> PlanLine:
     plain = _PLAIN.fullmatch(raw)
     if plain:  # as most lines are: without what Markdown could mean
         return PlanLine(" ".join(plain[3].split()), int(plain[2]), len(plain[1]), numbered=True)
+    raw = cleaned(raw)
     if _LAYOUT.match(raw):
         return PlanLine("")
     quote = _QUOTE.match(raw)
@@ -157,6 +210,7 @@ def _line(raw: str) -> PlanLine:
     marked = _HEADING.match(line)
     text = " ".join(_EMPHASIS.sub("", line[marked.end() :].rstrip("# ") if marked else line).split())
     text = text.translate(_KEYCAP)
+    text = _LABELLED.sub("", text, count=1)
     marker = _MARKER.match(text) if not marked else None
     text = text[marker.end() :] if marker else text
     step = _NUMBERED.match(text)
@@ -168,7 +222,7 @@ def _line(raw: str) -> PlanLine:
     if marker and not step:
         return PlanLine(_CHECKBOX.sub("", text, count=1), 0, indent)
     if step:
-        words = _unquoted(_CHECKBOX.sub("", text[step.end() :], count=1))
+        words = _unquoted(_TAGGED.sub("", _CHECKBOX.sub("", text[step.end() :], count=1)))
         digits = _DIGITS.search(step["number"] or "")
         number = (
             int(digits[0])
@@ -206,6 +260,8 @@ _OPENING, _CLOSING = tuple("\"'“‘«„"), tuple("\"'”’»“")
 def _unmarked_up(line: str) -> str:
     """Return a line of LaTeX or HTML as Markdown; `<char0> [Walk] ...` is neither."""
     line = _NEXT_ITEM.sub("; ", line)
+    if whole := _WHOLE.fullmatch(line):
+        return whole["said"].strip()
     if step := _XML_STEP.fullmatch(line):
         return f"- {step[2]}"
     if named := _XML_NAMED.fullmatch(line):
@@ -259,7 +315,18 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
     above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
+    title = title if named else asked_title(_ROLE.sub("", title, count=1))
     return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
+
+
+def asked_title(line: str) -> str:
+    """Return the title of a request, `Make tea` of `Write a plan for: Make tea`; else the line itself."""
+    asked = _ASKED_FOR.fullmatch(line.strip())
+    return asked[1] if asked else line
+
+
+_ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)
+"""Who asks for a plan, or what a letter names it by."""
 
 
 def is_aside(text: str) -> bool:

@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.code_calls import calls_of
-from hearth.kb.language.forms.form import Placed
+from hearth.kb.language.forms.form import Form, Placed
+from hearth.kb.language.line_parts import listed
+from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
 from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
@@ -21,6 +23,7 @@ from hearth.kb.language.unmarked_lines import (
     is_title,
     sentences,
 )
+from hearth.kb.language.wrappings import Unwrap, unwrapped, unwrapping
 from hearth.schemas.program_blocks import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
@@ -33,8 +36,11 @@ _END = re.compile(
 _MAY_END = re.compile(r"done|end|finish|complete", re.IGNORECASE)
 
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
-_SEVERAL = re.compile(r"[>→⟶➔➡;]|\d[.):\]]")
+_SEVERAL = re.compile(r"[>→⟶➔➡⇒⟹➜➝;•·∧|/]|\d[.):\]]| [-–—]{1,2} ")
 """A mark that every line of several steps has."""
+
+_OWNER = re.compile(r"[A-Z][a-z]{1,20}:\s+(?=\S)")
+"""Who does a step, or what it is about, in a word before it."""
 
 _THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>\s*$", re.IGNORECASE)
 
@@ -64,10 +70,9 @@ def lines_of_program(text: str) -> list[ProgramLine]:
     """Return the lines of a program's text in order; each step of a line of several is one."""
     if PLAIN.fullmatch(text) and not form_of([text.partition("\n")[0]]):
         return list(_plain_lines(text))
-    raw = _without_thoughts(text.split("\n"))
-    form = form_of(raw)
+    raw, form = formed(text.split("\n"))
     if form:
-        return [ProgramLine(*each, _kind(each.line)) for each in form.lines(raw) if not _ends(each)]
+        return [ProgramLine(*each, _kind(each.line)) for each in map(_operated, form.lines(raw)) if not _ends(each)]
     return list(_kinds(_marked(_read(raw))))
 
 
@@ -98,21 +103,39 @@ def header(text: str) -> Header:
     if PLAIN.fullmatch(text) and not form_of([top]):
         line = plan_line(top)
         return header_of([line]) if line.number is None else Header("", "")
-    raw = _without_thoughts(text.split("\n"))
-    form = form_of(raw)
+    raw, form = formed(text.split("\n"))
     placed = form.lines(raw) if form else _marked(_read(raw))
     return header_of([line for _, line in placed])
 
 
+def formed(lines: Sequence[str]) -> tuple[list[str], Form | None]:
+    """Return the lines of a text without thoughts and what stands around each, and the form that they have then."""
+    unwrap, form = reading_of(lines)
+    found = _without_thoughts(list(unwrapped(lines, unwrap)))
+    return found, form
+
+
+def reading_of(lines: Sequence[str]) -> tuple[Unwrap | None, Form | None]:
+    """Return what unwraps the lines of a text, by its first lines, and the form of the lines then.
+
+    Nothing unwraps lines that have a form of their own.
+    """
+    first = list(unwrapped(_without_thoughts(list(lines[:_LOOKED_AT])), None))
+    if form := form_of(first):
+        return None, form
+    unwrap = unwrapping(first)
+    return unwrap, form_of([unwrap(line) for line in first]) if unwrap else None
+
+
+_LOOKED_AT = 60
+
+
 def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan in any form but that of program text."""
-    return (
-        any(map(_THOUGHT.match, lines))
-        or form_of(lines) is not None
-        or is_list(lines)
-        or _is_joined(lines)
-        or is_unmarked(lines)
-    )
+    if any(map(_THOUGHT.match, lines)):
+        return True
+    lines, form = formed(lines)
+    return form is not None or is_list(lines) or _is_joined(lines) or is_unmarked(lines)
 
 
 def is_unmarked(lines: Sequence[str]) -> bool:
@@ -341,7 +364,7 @@ def _kinds(placed: list[Placed]) -> Iterator[ProgramLine]:
         is_own = is_own and (line.numbered or line.bracketed or line.indent <= indent)
         for part in _parts(line):
             if not _ends(placed_part := Placed(each.row, part)):
-                yield ProgramLine(*placed_part, Kind.STEP if is_own else Kind.DETAIL)
+                yield ProgramLine(*placed_part, Kind.STEP if is_own or part.bracketed else Kind.DETAIL)
 
 
 def _between(line: PlanLine, steps_follow: bool) -> Kind:
@@ -352,23 +375,32 @@ def _between(line: PlanLine, steps_follow: bool) -> Kind:
     return Kind.MISSING if is_missing else Kind.DETAIL
 
 
+def _operated(placed: Placed) -> Placed:
+    """Return a step of a form in the syntax of programs where an operator writes it."""
+    line = placed.line
+    step = operator_step(line.text) if line.number is not None and not line.bracketed else ""
+    return placed._replace(line=line._replace(text=step)) if step else placed
+
+
 def _parts(line: PlanLine) -> Iterator[PlanLine]:
     """Part a line of several steps: `walk to kitchen 2. open fridge`, or `walk to kitchen -> open fridge`."""
-    calls = calls_of(line.text) if line.text.endswith((")", ");", ").")) else []
-    if calls:
+    if calls := calls_of(line.text) or listed(line.text):
         yield from (line._replace(text=call) for call in calls)
         return
+    if not line.bracketed and (step := operator_step(line.text)):
+        yield line._replace(text=step)
+        return
+    if (owner := _OWNER.match(line.text)) and is_like_step(owned := line.text[owner.end() :]) and " " in owned:
+        line = line._replace(text=owned)
     if not _SEVERAL.search(line.text) and " then " not in line.text:
         yield line
         return
-    pieces = [line.text]
-    if line.numbered:
-        pieces = list(_numbered(line.text, line.number or 0))
+    pieces = list(_numbered(line.text, line.number or 0)) if line.numbered else [line.text]
     for piece in pieces:
         parts = CHAIN.split(piece) if piece.startswith("[") else chained_strongly(piece) or _JOINT.split(piece)
         for part in parts:
             if part.strip():
-                yield line._replace(text=part.strip())
+                yield line._replace(text=operator_step(part.strip()) or part.strip())
 
 
 def _numbered(text: str, number: int) -> Iterator[str]:

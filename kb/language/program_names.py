@@ -29,6 +29,12 @@ NAMES: dict[str, str] = {
 }
 """The key of a name in a program -> the action."""
 
+_ALONE: dict[str, str] = {
+    **dict.fromkeys(("putback", "putaway", "placeback", "returnobject"), "PutObjBack"),
+    **dict.fromkeys(("putdown", "setdown", "release"), "Release"),
+}
+"""Names that mean another action where they have one thing."""
+
 _ARITY = {PLACED: (2,), "PutIn": (2,)}
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
@@ -41,7 +47,9 @@ def action_of(name: str, objects: Sequence[str], relation: str = "") -> str:
         objects: names of the things.
         relation: how the last thing is named, as `on` in `place(obj="cup", on="table")`.
     """
-    meant = NAMES.get(key_of(words_of(name)).replace("_", ""), "")
+    key = key_of(words_of(name)).replace("_", "")
+    meant = _ALONE.get(key, "") if len(objects) == 1 else ""
+    meant = meant or NAMES.get(key, "")
     if not meant or len(objects) not in _ARITY.get(meant, (1,)):
         return ""
     return _put(default(), objects[1], relation) if meant == PLACED else meant

@@ -16,7 +16,8 @@ from hearth.kb.language.understanding import Candidate, Understood, understand, 
 from hearth.schemas.program import Step
 
 _JOINTS = re.compile(
-    r"(?:\s*[,;])?\s+(?:and then|then|and)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])", re.IGNORECASE
+    r"(?:\s*[,;])?\s+(?:and then|then|and|&{1,2}|\+)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])",
+    re.IGNORECASE,
 )
 _PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
 _THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)

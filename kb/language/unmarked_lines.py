@@ -5,6 +5,10 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from hearth.kb.language.lexicon import is_noun, is_verb
+from hearth.kb.language.operators import operator_step
+from hearth.kb.language.plan_lines import CHAIN
+from hearth.kb.language.typos import near_words
+from hearth.kb.loading.load import default
 from hearth.schemas.program_blocks import is_sentence
 
 _SUBJECT = r"(?:i|you|he|she|we|they|the (?:robot|person|agent|character|man|woman|child|user))"
@@ -19,6 +23,8 @@ _LEAD = re.compile(
     rf"|first|then|next|now|finally|lastly|afterwards?|meanwhile|and|also|just|kindly|after (?:that|this)"
     rf"|(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)(?= ?,)|um+|uh+|oh"
     r"|yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening)"
+    rf"|(?:(?:over|back|down|up|out) )?(?:in|on|at|from) (?:the|my|your|our) [a-z]+(?: [a-z]+)?(?=,)"
+    rf"|er+m?|yeah|yep|well|right|alright|okay|ok|so|great|good|you know|would you be so kind as to"
     rf"|at last|(?:could|would|can|will) you(?: mind)?|i['’]d like you to|let['’]s|do not forget to"
     rf"|{_SUBJECT}(?: (?:should|must|can|will|(?:need|have|has|needs)(?: to)?|['’]ll|then|now|first|also))*"
     rf"|(?!{_NO_MANNER})[a-z]{{3,}}ly)\b[\s,:]*)+",
@@ -33,10 +39,13 @@ _NO_ACT = frozenset((
 ))  # fmt: skip
 """Beginnings of explanations, such as `Make sure`, `Note`, `It is`, though some are verbs."""
 
-_STRONG = re.compile(r"\s*(?:->|=>|→|⟶|➔|➡|>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?then\s+", re.IGNORECASE)
+_STRONG = re.compile(rf"{CHAIN.pattern}|\s*(?:>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?then\s+", re.IGNORECASE)
 """Separators of steps in a line, and nothing else."""
 
-_WEAK = re.compile(r"\s*,\s*(?:and\s+)?(?:finally\s+)?|\s+and\s+(?:finally\s+)?", re.IGNORECASE)
+_LOOSE = tuple(map(re.compile, (r"\s+/{1,2}\s+", r"\s*[•·∧|]\s*", r"\s+&&\s+", r"\s+[-–—]{1,2}\s+")))
+"""What joins steps of a line only where each part is one."""
+
+_WEAK = re.compile(r"\s*,\s*(?:and\s+)?(?:finally\s+)?|\s+(?:and|&{1,2}|\+)\s+(?:finally\s+)?", re.IGNORECASE)
 _SENTENCES = re.compile(r"(?<=[a-z)][.!])\s+(?=[A-Z])")
 _WHOLE = 2 / 3
 
@@ -62,7 +71,17 @@ def is_like_step(text: str) -> bool:
     first, second = word[0].lower(), text[word.end() :].split(maxsplit=1)[:1]
     if first == "make" and second != ["sure"]:
         return True
-    return first not in _NO_ACT and is_verb(first)
+    return first not in _NO_ACT and (is_verb(first) or _is_misspelled_verb(first))
+
+
+def _is_misspelled_verb(word: str) -> bool:
+    """Return whether a word is no English one, and near a verb of actions."""
+    if len(word) < _SHORTEST or is_noun(word) or not word.isascii():
+        return False
+    return any(default().action(near) is not None for near in near_words(default(), word))
+
+
+_SHORTEST = 4
 
 
 def chained(text: str) -> list[str]:
@@ -76,9 +95,21 @@ def chained(text: str) -> list[str]:
 
 
 def chained_strongly(text: str) -> list[str]:
-    """Return the steps that `->`, `;` or `then` join; none where nothing does, or not steps."""
+    """Return the steps that `->`, `;` or `then` join, or `/` and `|` if all are; none where nothing does."""
     parts = [part for part in _STRONG.split(text) if part.strip()]
-    return parts if len(parts) > 1 and _are_steps(parts) else []
+    if len(parts) > 1 and _are_steps(parts):
+        return parts
+    return next((found for joint in _LOOSE if (found := _joined_by(joint, text))), [])
+
+
+def _joined_by(joint: re.Pattern[str], text: str) -> list[str]:
+    parts = [part for part in joint.split(text) if part.strip()]
+    fewest = 3 if joint is _LOOSE[-1] else 2  # what stands behind one dash may explain
+    return parts if len(parts) >= fewest and all(map(_is_whole, parts)) else []
+
+
+def _is_whole(part: str) -> bool:
+    return (" " in part and is_like_step(part)) or bool(operator_step(part))
 
 
 def clauses(text: str) -> list[str]:

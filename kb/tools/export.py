@@ -9,6 +9,7 @@ from hearth.kb.tools.graph_and_tables import fill, graph
 from hearth.kb.tools.pddl import domain
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.databases import open_database
 
 
 def export(knowledge: Knowledge, form: str, to: Path | None = None) -> str:
@@ -35,12 +36,10 @@ def _graphml(knowledge: Knowledge) -> str:
 
 
 def _database(knowledge: Knowledge, to: Path | None) -> str:
-    import duckdb
-
     if to is None:
         raise HearthError.of(Code.UNSUPPORTED_FILE, "a database needs a file", suggestion="give --to FILE")
     to.unlink(missing_ok=True)
-    with duckdb.connect(str(to)) as connection:
+    with open_database(to) as connection:
         fill(connection, knowledge)
     return ""
 

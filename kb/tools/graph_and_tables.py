@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.correction_reasons import Reasons
 from hearth.schemas.row_types import Row
+from hearth.storage.databases import open_database
 
 if TYPE_CHECKING:
     import duckdb
@@ -109,9 +110,7 @@ def tables(knowledge: Knowledge) -> dict[str, list[Row]]:
 
 def connect(knowledge: Knowledge) -> duckdb.DuckDBPyConnection:
     """A DuckDB database in memory with one table for each of `tables`."""
-    import duckdb
-
-    connection = duckdb.connect()
+    connection = open_database()
     fill(connection, knowledge)
     return connection
 

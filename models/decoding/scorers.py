@@ -71,7 +71,9 @@ class Scorer(Protocol):
         """See above."""
 
     def begin(self, worlds: Sequence[World], inputs: Sequence[Any]) -> Sequence[Any]:
-        """The state of each program before its first step, from the world at its start and the model's own input."""
+        """Return the state of each program before its first step, from the world at its start and the model's own
+        input.
+        """
 
     def score(self, asked: Sequence[Asked], part: Part) -> Sequence[Scores]:
         """Return the scores of the next part of each program."""

@@ -273,7 +273,7 @@ def _step(chosen: Partial, home: Home) -> Step:
 
 
 def numbered(steps: Sequence[Step]) -> tuple[Step, ...]:
-    """Steps bound to nodes, with instances: the nodes of a class are numbered as they are mentioned."""
+    """Return steps bound to nodes, with instances: the nodes of a class are numbered as they are mentioned."""
     instances: dict[str, dict[int | None, int]] = {}
 
     def named(ref: ObjectRef) -> ObjectRef:

@@ -131,7 +131,7 @@ def _range(count: int) -> str:
 def _groups(
     rows: Sequence[tuple[tuple[Example, str], Sequence[float]]], key: Callable[[Example], str], most: int
 ) -> tuple[Group, ...]:
-    """Groups by a key: in the order of the first words, or the largest `most`."""
+    """Return groups by a key: in the order of the first words, or the largest `most`."""
     members: dict[str, list[Sequence[float]]] = {}
     for (each, _), values in rows:
         members.setdefault(key(each), []).append(values)

@@ -225,7 +225,10 @@ class FrameBody(Seq2SeqBody):
         return found
 
     def start(self, memory: FrameMemory) -> State:  # type: ignore[override]
-        """The state before the first step: from the mean of the pictures; nothing attended to, nothing passed."""
+        """Return the state before the first step.
+
+        From the mean of the pictures; nothing attended to, nothing passed.
+        """
         weights = memory.mask[..., None].to(memory.states.dtype)
         mean = (memory.states * weights).sum(1) / weights.sum(1)  # (B, H)
         return self.bridge(mean).tanh(), torch.zeros_like(mean), torch.zeros_like(memory.kept)

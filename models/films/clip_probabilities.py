@@ -63,7 +63,10 @@ def of_film(trained: TrainedSeenModel, masks: NDArray[np.uint16]) -> ClipProbabi
 
 
 def of_scores(found: Scored, table: ClassTable) -> ClipProbabilities:
-    """The probabilities of each clip, of objects over all actions: those of actions that take none are row 0's."""
+    """Return the probabilities of each clip, of objects over all actions.
+
+    Those of actions that take none are row 0's.
+    """
     actions = np.exp(found.actions)  # (N, A)
     count = np.array(table.objects)
     objects = []

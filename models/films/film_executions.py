@@ -38,7 +38,7 @@ def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
 
 
 def by_class(steps: Steps, world: World) -> Steps:
-    """Steps with the classes of their nodes as names, as masks show them, and without nodes."""
+    """Return steps with the classes of their nodes as names, as masks show them, and without nodes."""
     home = world.home
 
     def named(ref: ObjectRef) -> ObjectRef:

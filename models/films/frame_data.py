@@ -89,7 +89,10 @@ Pictures = Sequence[NDArray[np.uint8]]
 
 
 def pictures_of(clips: Clips) -> Pictures:
-    """The colours of films as a network of whole frames looks at them: of larger ones some pixels are left out."""
+    """Return the colours of films as a network of whole frames looks at them.
+
+    Of larger ones some pixels are left out.
+    """
     return [_picture(film) for film in clips.films]
 
 

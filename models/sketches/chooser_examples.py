@@ -22,7 +22,7 @@ from hearth.simulation.engine import act
 
 
 def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]:
-    """The choice of a node for each object of each sketch that has several candidates, the right one among them."""
+    """Yield the choice of a node for each object of each sketch with several candidates, the right one among them."""
     for each in examples:
         places = Places(each.world, each.sketch, words)
         index = each.world.home.index

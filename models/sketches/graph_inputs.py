@@ -122,7 +122,7 @@ class Batch(NamedTuple):
 
 
 def batched(inputs: Sequence[GraphInput], steps: Sequence[np.ndarray] = ()) -> Batch:
-    """Inputs as one batch, with the steps that are to be predicted, if they are known."""
+    """Return inputs as one batch, with the steps that are to be predicted, if they are known."""
     count, nodes = len(inputs), max(len(each.nodes) for each in inputs)
     longest = max(len(each.sketch) for each in inputs)
     classes, real = np.zeros((count, nodes), np.int64), np.zeros((count, nodes), bool)

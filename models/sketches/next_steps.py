@@ -110,7 +110,7 @@ class NextSteps:
         return step.action, first, second
 
     def _found(self, optional: frozenset[str]) -> Iterator[tuple[Deed, Step]]:
-        """The next steps of plan and sketch, if they can be done, and optional ones about nodes that play a role."""
+        """Yield the next steps of plan and sketch, if possible, and optional ones about nodes that play a role."""
         for step in (self.coming, self.proposed):
             if step is not None and self.options.allows(step.action, self.nodes(step)):
                 yield self.deed(step), step

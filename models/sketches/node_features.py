@@ -61,7 +61,10 @@ class Places:
         }
 
     def _candidates(self, use: Use) -> list[int]:
-        """Indices of the nodes that an object may be, the nearest first: of its class, and fit for all its uses."""
+        """Return indices of the nodes that an object may be, the nearest first.
+
+        Of its class, and fit for all its uses.
+        """
         home, world = self.home, self.world
         able = home.everything & ~self.me.bit
         for action, place in use.uses:

@@ -56,7 +56,10 @@ class Progress:
         return next((self.next + each.source for each in self.plan if each.source >= 0), None)
 
     def _number(self, step: Step) -> int:
-        """The number of the sketch's step that a step is: the next one, or the next that the plan does; else -1."""
+        """Return the number of the sketch's step that a step is.
+
+        The next one, or the next that the plan does; else -1.
+        """
         for number in (self.next, self._coming):
             if number is not None and self.sketch[number : number + 1] == (step,):
                 return number

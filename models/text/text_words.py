@@ -16,7 +16,10 @@ BREAK = "|"
 
 
 def words(text: str) -> list[str]:
-    """The words of a text in lower case, without punctuation (thesis 4.3.2): `Don't TURN it` is don't, turn, it."""
+    """Return the words of a text in lower case, without punctuation (thesis 4.3.2).
+
+    `Don't TURN it` is don't, turn, it.
+    """
     return [found.group().lower() for found in _WORD.finditer(text[: LONGEST * 20])]
 
 

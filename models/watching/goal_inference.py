@@ -56,7 +56,7 @@ class GoalInference(Settings):
         self.multiple("width", self.heads, "its `heads` share it")
 
     def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:
-        """A network that has learnt nothing."""
+        """Return a network that has learnt nothing."""
         from hearth.models.watching.object_network import ThingNetwork
         from hearth.models.watching.state_network import MomentNetwork
 
@@ -73,7 +73,7 @@ class GoalInference(Settings):
         how: Training,
         seen: Seen = unseen,
     ) -> TrainedGoalInference:
-        """The network trained on demonstrations.
+        """Return the network trained on demonstrations.
 
         Args:
             examples: of single goal sets.
@@ -113,7 +113,7 @@ class GoalInference(Settings):
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGoalInference:
-        """The trained network of a checkpoint."""
+        """Return the trained network of a checkpoint."""
         from hearth.models.checkpoint_weights import filled
 
         settings = cls.of(checkpoint.settings)
@@ -155,7 +155,7 @@ class TrainedGoalInference:
     facts: Mapping[str, Any] = field(default_factory=dict)
 
     def counts(self, demonstrations: Sequence[Watched], possible: PossibleGoals) -> list[Counts]:
-        """The most probable goals of demonstrations, whose own goals are not looked at."""
+        """Return the most probable goals of demonstrations, whose own goals are not looked at."""
         import torch
 
         found = []
@@ -176,7 +176,7 @@ class TrainedGoalInference:
         return 2 * sum(map(min, pairs)) / max(1, sum(map(sum, pairs)))
 
     def infer(self, ticks: Sequence[Tick], predicates: Sequence[Predicate], goals: tuple[Goal, ...]) -> Goal:
-        """The goal of a demonstration.
+        """Return the goal of a demonstration.
 
         Args:
             ticks: of a demonstration.
@@ -206,7 +206,7 @@ class TrainedGoalInference:
 
 @lru_cache(maxsize=4)
 def restored(model: str) -> TrainedGoalInference:
-    """A trained network; read once.
+    """Return a trained network; read once.
 
     Args:
         model: a checkpoint's folder, or the name of one that comes with Hearth.

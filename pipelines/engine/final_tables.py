@@ -17,6 +17,7 @@ from hearth.datasets.format.catalog import write_catalog
 from hearth.datasets.format.codecs import node_row
 from hearth.datasets.format.croissant import write_croissant
 from hearth.datasets.format.ids import STAMP
+from hearth.datasets.format.image_tables import write_images
 from hearth.datasets.format.split_runs import Run, Runs
 from hearth.datasets.format.split_summary import summary
 from hearth.datasets.tensors import EDGE_TYPES
@@ -24,6 +25,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.activity_tables import COUNTED, Activities
 from hearth.pipelines.engine.annotated_sketches import ANNOTATED, Annotations, fitting, inherited_annotations
 from hearth.pipelines.engine.build_homes import Homes
+from hearth.pipelines.engine.split_tables import write_split_rows
 from hearth.pipelines.engine.stage import Job
 from hearth.pipelines.engine.stages import STAGES, record_of
 from hearth.schemas import published_rows, stage_rows
@@ -57,18 +59,15 @@ def finish(job: Job, counts: Counts) -> None:
         "home_nodes": lambda: _home_nodes(job, homes),
         "home_edges": lambda: _home_edges(job, homes),
         "splits": lambda: _splits(job),
-        "sketches": lambda: _sketches(job, annotated.rows),
-        "frames": lambda: _frames(job, ""),
-        "videos": lambda: _frames(job, "videos"),
-        "clips": lambda: _frames(job, "clips"),
-        "demonstration_frames": lambda: _frames(job, "demonstration_frames"),
         "vocabulary": lambda: _vocabulary(homes.knowledge),
         "rejects": lambda: (*_rejects(job), *annotated.rejects),
         "ledger": lambda: _ledger(job, counts),
     }
     for table, rows in makers.items():
         write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
+    _write_split(job, annotated.rows)
     _copy_pictures(job)
+    write_images(job.folder)
     copy_overlay(job.settings.kb_folder, job.folder)
     copy_homes(job.settings.homes_folder, job.folder)
     strength = strength_used(job)
@@ -107,6 +106,15 @@ def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
     """The programs that are published."""
     for path in sorted((job.folder / "programs").glob("part-*.parquet")):
         yield from read_rows(path, columns)
+
+
+def _write_split(job: Job, annotated: Iterable[stage_rows.SketchRow]) -> None:
+    """Write the tables that descend from programs, each row to its program's part; a clip to the part that it names."""
+    part_of = job.context.assignment.part_of
+    sketches = ((part_of(row["program_id"]), row) for row in _sketches(job, annotated))
+    write_split_rows(job.folder, "sketches", TABLES["sketches"], sketches)
+    for table in splits.DRAWN:
+        write_split_rows(job.folder, table, TABLES[table], _filmed(job, table))
 
 
 def _sketches(job: Job, annotated: Iterable[stage_rows.SketchRow]) -> Iterator[stage_rows.SketchRow]:
@@ -185,16 +193,24 @@ def _home_edges(job: Job, homes: Homes) -> Iterator[published_rows.HomeEdgeRow]:
             yield {"home": name, "source": edge.source, "relation": edge.relation, "target": edge.target}
 
 
-def _frames(job: Job, kind: str) -> Iterator[Row]:
-    drawn = {row["execution_id"] for row in _rows(job, "render", kind, ["execution_id"])}
-    home: dict[str, str] = {}
-    for path in (job.folder / "executions").glob("part-*.parquet") if drawn else ():
-        table = pq.read_table(path, columns=["execution_id", "home"], filters=[("execution_id", "in", drawn)])
-        home.update(zip(table["execution_id"].to_pylist(), table["home"].to_pylist(), strict=True))
+def _filmed(job: Job, table: str) -> Iterator[tuple[str | None, Row]]:
+    """Yield the rows of pictures and films of published executions, with the part of their programs or clips."""
+    kind, part_of = "" if table == "frames" else table, job.context.assignment.part_of
+    run_of = _runs_of(job, {row["execution_id"] for row in _rows(job, "render", kind, ["execution_id"])})
     for row in _rows(job, "render", kind):
-        if row["execution_id"] in home:
-            row["home"] = home[row["execution_id"]]
-            yield row
+        if row["execution_id"] in run_of:
+            program_id, home = run_of[row["execution_id"]]
+            yield row.get("part") or part_of(program_id), {**row, "home": home}
+
+
+def _runs_of(job: Job, names: set[str]) -> dict[str, tuple[str, str]]:
+    """Return the program and the home of executions, by id, as far as they are published."""
+    found: dict[str, tuple[str, str]] = {}
+    columns = ["execution_id", "program_id", "home"]
+    for path in (job.folder / "executions").glob("part-*.parquet") if names else ():
+        table = pq.read_table(path, columns=columns, filters=[("execution_id", "in", names)])
+        found.update((row["execution_id"], (row["program_id"], row["home"])) for row in table.to_pylist())
+    return found
 
 
 def _splits(job: Job) -> Iterable[published_rows.SplitRow]:

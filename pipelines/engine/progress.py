@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from typing import TextIO
 
+from hearth.schemas.terminal import shown
 from hearth.storage.partitions import Counts
 
 
@@ -113,7 +114,7 @@ class Bars(Progress):
 
     def note(self, text: str) -> None:
         """Print it."""
-        self._console.print(text, highlight=False, markup=False)
+        self._console.print(shown(text), highlight=False, markup=False)
 
     def start(self, stage: str, total: int | None) -> None:
         """Show a bar."""
@@ -134,7 +135,7 @@ class Bars(Progress):
         if self._rich.tasks:
             self._rich.remove_task(self._task)
         self._rich.stop()
-        self._console.print(line(stage, counts, seconds, fresh), highlight=False, markup=False)
+        self._console.print(shown(line(stage, counts, seconds, fresh)), highlight=False, markup=False)
 
 
 def line(stage: str, counts: Counts, seconds: float, fresh: bool) -> str:

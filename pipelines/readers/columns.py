@@ -154,12 +154,19 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
             name = next((name for name in likely if name not in found.values()), None)
             if name is not None and field not in given:
                 found.setdefault(field, name)
+    if "title" in found and "title" not in given and is_condition(found["title"], found):
+        found.pop("title")
     asked = found.get("description", "")
     if "title" not in found.keys() | given.keys() and words.get(asked) == ["instruction"]:
         found["title"] = found.pop("description")
         text = next((name for name in columns if words[name] == ["text"] and name not in found.values()), None)
         found.update({"description": text} if text else {})
     return found
+
+
+def is_condition(name: str, found: FieldColumns) -> bool:
+    """Return whether a column holds conditions: `goal` beside predictions, in files to score."""
+    return name.strip().lower() == "goal" and found.get("program", "").strip().lower() in ("prediction", "predicted")
 
 
 def rivals(names: Iterable[str], found: FieldColumns, given: FieldColumns) -> dict[str, list[str]]:

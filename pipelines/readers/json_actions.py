@@ -6,27 +6,14 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from hearth.kb.language.action_keys import ACTIONS, action_key, bare_key, holds_object, last_name
+from hearth.kb.language.composed_steps import class_of
 from hearth.kb.language.program_names import action_of
-from hearth.kb.language.things import thing_of
 from hearth.kb.loading.load import default
 from hearth.pipelines.readers.placed_texts import Pairs, Text, composed, pairs_of, pieces_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import normal_name
-
-ACTIONS = ("action", "verb", "act", "function", "skill", "primitive", "operator", "command", "name")
-"""Keys of the action of a step, the likeliest first."""
-
-_WITH_OBJECTS = frozenset({"skill", "primitive", "operator", "command", "name"})
-"""Keys that name an action only in a record with objects."""
-
-OBJECTS = frozenset({
-    "object", "objects", "obj", "noun", "object_name", "where", "container", "surface", "target", "targets",
-    "arg", "args", "arguments", "parameters",
-    "params", "item", "items", "receptacle", "location", "destination", "recipient", "room", "place", "to", "into",
-    "on", "onto", "in", "inside", "from", "with", "value",
-})  # fmt: skip
-"""Keys of the objects of a step; or one with a number, as `arg1`."""
 
 _NAME = re.compile(r"[A-Za-z][\w .'-]*")
 _ACTION = re.compile(r"[A-Z][A-Z_]+", re.ASCII)
@@ -39,53 +26,59 @@ def is_action(value: Any) -> bool:
 
     A row of a dataset's steps, whose objects are objects with a name, is none.
     """
+    if is_tool_use(value):
+        return True
     if not isinstance(value, dict) or _action(value) is None:
         return False
     objects = value.get("objects")
     return not (isinstance(objects, list) and all(isinstance(each, dict) for each in objects))
 
 
+def is_tool_use(value: Any) -> bool:
+    """Return whether a value is a call of a tool as parts of messages hold it, with a name and an input."""
+    is_call = isinstance(value, dict) and value.get("type") in _TOOL_USES
+    return is_call and isinstance(value.get("name"), str) and any(key in value for key in _INPUTS)
+
+
+_TOOL_USES = ("tool_use", "tool_call", "function_call")
+_INPUTS = ("input", "arguments", "args", "parameters")
+
+
 def is_only_action(value: Any) -> bool:
     """Return whether a value is an action with its objects, and nothing else."""
+    if is_tool_use(value):
+        return True
     if not is_action(value) or isinstance(value.get("function"), dict):
         return False
-    return all(key.lower() in ACTIONS or _holds_object(key) for key in value) and any(map(_holds_object, value))
+    return all(key.lower() in ACTIONS or holds_object(key) for key in value) and any(map(holds_object, value))
 
 
 def step_of(value: dict[str, Any]) -> str:
     """The text of a step: as in programs if the action's name is known, else a sentence."""
+    if is_tool_use(value):
+        return _step(value["name"], _arguments(next(value[key] for key in _INPUTS if key in value)))
     call = value.get("function")
     if isinstance(call, dict):
         return _step(call["name"], _arguments(call.get("arguments")))
     key = _action(value)
     assert key is not None
-    said = [(name, relation) for each in value if _holds_object(each) for name, relation in _related(each, value[each])]
-    return _step(value[key], [name for name, _ in said], said[-1][1] if said else "")
+    said = [(name, relation) for each in value if holds_object(each) for name, relation in _related(each, value[each])]
+    return _step(last_name(value[key]), [name for name, _ in said], said[-1][1] if said else "")
 
 
 def _related(key: str, value: Any) -> Iterator[tuple[str, str]]:
     """Yield the names in a value, each with its key: the word that relates it to the names before it."""
     if isinstance(value, dict):
-        yield from ((name, _bare(inside)) for inside, part in value.items() for name in _names({inside: part}))
+        yield from ((name, bare_key(inside)) for inside, part in value.items() for name in _names({inside: part}))
     else:
-        yield from ((name, _bare(key)) for name in _names(value))
-
-
-def _bare(key: str) -> str:
-    return key.lower().rstrip("_-# 0123456789")
+        yield from ((name, bare_key(key)) for name in _names(value))
 
 
 def _action(value: dict[str, Any]) -> str | None:
     call = value.get("function")
     if isinstance(call, dict):
         return "function" if isinstance(call.get("name"), str) else None
-    keys = {key.lower(): key for key, part in value.items() if isinstance(part, str)}
-    found = next((name for name in ACTIONS if name in keys), "")
-    return keys[found] if found and (found not in _WITH_OBJECTS or any(map(_holds_object, value))) else None
-
-
-def _holds_object(key: str) -> bool:
-    return _bare(key) in OBJECTS
+    return action_key(value) or None
 
 
 def _arguments(given: Any) -> list[str]:
@@ -117,24 +110,16 @@ def _names(value: Any) -> Iterator[str]:
 def _step(action: str, names: Sequence[str], relation: str = "") -> str:
     are_names = all(map(_NAME.fullmatch, names))
     if _takes(action, len(names)) and are_names:
-        return _written(action, [(_thing(name), "1") for name in names])
+        return _written(action, [(class_of(name), "1") for name in names])
     *verb, last = re.split(r"[\s_-]+", action.strip())
     if len(names) == 2 and verb and last.lower() in _BETWEEN:
         return composed(" ".join(verb), " ", names[0], f" {last} ", names[1])
     meant = action_of(action, names, relation) if names and are_names else ""
     if meant:
-        return _written(meant, [(_thing(name), "1") for name in names])
+        return _written(meant, [(class_of(name), "1") for name in names])
     if len(names) == 2 and relation in _BETWEEN:
         return composed(action, " ", names[0], f" {relation} ", names[1])
     return composed(action, *(piece for name in names for piece in (" ", name)))
-
-
-def _thing(name: str) -> str:
-    """Return the class of a thing that programs do not call so, and people do, as `ice cream`; else the name."""
-    known = default()
-    if known.object_class(name) or known.is_room(name):
-        return name
-    return thing_of(known, name.replace("_", " ").lower()) or name
 
 
 _BETWEEN = frozenset({"on", "in", "into", "onto", "to", "from", "at", "with", "inside"})
@@ -154,11 +139,6 @@ def _plain(action: str) -> str:
 def is_known(action: str, objects: Sequence[str] = ()) -> bool:
     """Return whether a word is the name of an action, or one that programs use for it with these objects."""
     return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(action, objects))
-
-
-def is_thing(name: str) -> bool:
-    """Return whether a word is the name of a thing or a room."""
-    return thing_of(default(), name.strip().replace("_", " ").lower()) is not None
 
 
 def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:

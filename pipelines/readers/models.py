@@ -2,6 +2,9 @@
 
 from typing import Any
 
+from hearth.kb.language.forms.orders import orders_in
+from hearth.kb.language.plan_lines import asked_title
+from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
 from hearth.schemas.program_blocks import TITLE
 
@@ -28,13 +31,24 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
 
 def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the last answer of a chat, with the request before it as title."""
+    if ordered := _ordered(messages):
+        return {"steps": ordered}
     last = max((at for at, each in enumerate(messages) if each["role"] == "assistant"), default=None)
     asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
     title = asked[-1] if asked else ""
     answer = _answer(messages[last]) if last is not None else {}
     first, _, rest = title.strip().partition("\n")
-    first = TITLE.sub("", first, count=1)
+    first = asked_title(TITLE.sub("", first, count=1))
     return {"title": first[:200], **({"description": rest.strip()} if rest.strip() else {}), **answer}
+
+
+def _ordered(messages: list[dict[str, Any]]) -> list[str]:
+    """Return the orders that one gives in a chat whose answers hold no plan."""
+    said = [(each["role"], _said(each.get("content"))) for each in messages]
+    if any(each.get("tool_calls") for each in messages) or any(is_plan(text.split("\n")) for _, text in said):
+        return []
+    at = orders_in([f"{role}: {text}" for role, text in said])
+    return [said[row][1] for row in at]
 
 
 def _answer(message: dict[str, Any]) -> dict[str, Any]:
@@ -65,8 +79,18 @@ def _used(content: list[Any]) -> list[dict[str, Any]]:
 _CHATS = ("messages", "conversations", "conversation", "contents", "dialogue", "dialog", "chat")
 """Keys of the messages of a chat."""
 
+
+def is_message(value: Any) -> bool:
+    """Return whether a value is one message of a chat, with its speaker and a text."""
+    if not isinstance(value, dict) or len(value) > _MOST_KEYS or not _messages([value]):
+        return False
+    return any(isinstance(value.get(key), str) for key in _CONTENTS)
+
+
+_MOST_KEYS = 5
+_SPEAKERS = ("role", "from", "speaker", "sender", "author")
 _ROLES = {"human": "user", "gpt": "assistant", "model": "assistant", "bot": "assistant", "chatgpt": "assistant"}
-_CONTENTS = ("content", "value", "parts", "text")
+_CONTENTS = ("content", "value", "parts", "text", "message")
 
 
 def _messages(value: Any) -> list[dict[str, Any]]:
@@ -78,7 +102,7 @@ def _messages(value: Any) -> list[dict[str, Any]]:
         return []
     found = []
     for each in value:
-        role = (each.get("role") or each.get("from")) if isinstance(each, dict) else None
+        role = next((each[key] for key in _SPEAKERS if each.get(key)), None) if isinstance(each, dict) else None
         if not isinstance(role, str):
             return []
         content = next((each[key] for key in _CONTENTS if key in each), None)

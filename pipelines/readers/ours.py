@@ -17,6 +17,7 @@ from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.found_records import FIELDS, named, records_in
 from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless, worker_hash
 from hearth.pipelines.readers.json_actions import is_action, step_of
+from hearth.pipelines.readers.models import is_message
 from hearth.pipelines.readers.placed_texts import Located, Text, pieces_of, texts_in
 from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
@@ -59,9 +60,31 @@ def _lines(path: Place, place: str) -> Iterator[Entry]:
 
 def of_entries(entries: Iterable[Entry], place: str, asked: Asked) -> Iterator[Item]:
     """Yield the items of the records of a file, of which several may be the steps of one program."""
-    for value, line, name in joined(entries, lambda value: row_of_json(value, asked)):
+    for value, line, name in joined(_talks(entries), lambda value: row_of_json(value, asked)):
         yield from items(value, place, line, name, asked)
     yield from absent(asked, place)
+
+
+def _talks(entries: Iterable[Entry]) -> Iterator[Entry]:
+    """Yield the entries, messages that follow each other as one chat."""
+    talk: list[Entry] = []
+    for entry in entries:
+        value = entry.value.value if isinstance(entry.value, Located) else entry.value
+        if is_message(value):
+            talk.append(entry._replace(value=value))
+            continue
+        yield from _talk(talk)
+        talk = []
+        yield entry
+    yield from _talk(talk)
+
+
+def _talk(talk: list[Entry]) -> Iterator[Entry]:
+    """Yield messages as a chat; one alone as it is."""
+    if len(talk) > 1:
+        yield talk[0]._replace(value={"messages": [each.value for each in talk]})
+    else:
+        yield from talk
 
 
 def scan_document(path: Place, place: str, asked: Asked) -> Iterator[Item]:

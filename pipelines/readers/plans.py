@@ -1,14 +1,15 @@
 """Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
 import itertools
+import re
 from collections.abc import Iterator
 from typing import Any
 
-from hearth.kb.language.forms import form_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
-from hearth.kb.language.program_lines import Titles, header, is_unmarked, titled, titles_of
+from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
 from hearth.kb.language.unmarked_lines import are_steps, is_order
+from hearth.kb.language.wrappings import bare, raw_of
 from hearth.pipelines.readers.elements import located_entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.placed_texts import Text
@@ -28,8 +29,9 @@ _LOOKED_AT = 60
 
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
-    for number, block in _programs((number, line) for number, (line, _) in enumerate(lines(path), 1)):
-        text = "\n".join(block)
+    numbered = ((number, line) for number, (line, _) in enumerate(lines(path), 1))
+    for number, block in _without_document_title(_programs(numbered)):
+        text = "\n".join(map(raw_of, block))
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
 
@@ -78,14 +80,40 @@ def read(item: Item) -> IngestedRow:
 def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs, in the form that its first lines are written in."""
     first = list(itertools.islice(lines, _LOOKED_AT))
-    form = form_of([line for _, line in first])
-    rest = itertools.chain(first, lines)
+    unwrap, form = reading_of([line for _, line in first])
+    rest = ((number, bare(line, unwrap)) for number, line in itertools.chain(first, lines))
+    looked_at = [bare(line, unwrap) for _, line in first]
     if form:
         return _blocks_of(form, rest)
-    looked_at = [line for _, line in first]
     if is_unmarked(looked_at):
         return unmarked_blocks(rest)
     return blocks(rest, titles=titles_of(looked_at, list(map(plan_line, looked_at))))
+
+
+def _without_document_title(blocks: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, list[str]]]:
+    """Yield the programs, the first without the heading of a document whose sections are programs."""
+    first, second = next(blocks, None), next(blocks, None)
+    for block in (first, second):
+        if block is not None and block is first and second is not None:
+            yield _below_document_title(block, second[1])
+        elif block is not None:
+            yield block
+    yield from blocks
+
+
+def _below_document_title(block: tuple[int, list[str]], following: list[str]) -> tuple[int, list[str]]:
+    """Return a first program from its own heading on, where that has the level of the next one's, and another above."""
+    number, found = block
+    headings = [(n, level_of(raw)) for n, raw in enumerate(found) if _HEADING.match(raw)]
+    level = next((level_of(raw) for raw in following if _HEADING.match(raw)), 0)
+    if len(headings) < 2 or headings[0][1] >= headings[1][1] or headings[1][1] != level:
+        return block
+    if headings[0][0] or any(plan_line(raw).number is not None for raw in found[: headings[1][0]]):
+        return block
+    return number + headings[1][0], found[headings[1][0] :]
+
+
+_HEADING = re.compile(r"#{1,6}\s+\S")
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
@@ -156,7 +184,7 @@ class _Block:
         self.has_title_below = False
         self._last, self._below, self._size = 0, 0, 0
         self._bulleted, self._by_headings = True, False
-        self._level = self._number = 0
+        self._level = self._deepest = self._number = 0
         self._texts: list[PlanLine] = []
         self._has_heading_below = self._is_titled = False
 
@@ -173,7 +201,7 @@ class _Block:
             is_nested = self._by_headings and not line.heading
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
-            self._level, self._texts, self._has_heading_below = 0, [], False
+            self._level, self._deepest, self._texts, self._has_heading_below = 0, 0, [], False
         elif line.text and self._last and not self._below and self._may_be_below(line):
             self._below = len(self.lines)
             is_apart = bool(self.lines) and not self.lines[-1].strip()
@@ -183,7 +211,8 @@ class _Block:
             self._has_heading_below = True
         self._is_titled = self._is_titled or line.heading
         if line.number is None and line.text:
-            self._level = self._level or (level_of(raw) if line.heading else 0)
+            self._deepest = level_of(raw) if line.heading else self._deepest
+            self._level = self._level or self._deepest
             self._texts.append(line)
         self.has_title_below = self.has_title_below or (self._below > 0 and line.heading)
         if (raw.strip() or self.lines) and self._size <= most:
@@ -212,6 +241,8 @@ class _Block:
             return not self._last and is_apart and len(self._texts) > 1 and not is_answer(self._texts[0])
         if not line.heading or not self._level or is_aside(line.text):
             return False
+        if level_of(raw) == self._deepest and all(each.heading for each in self._texts):
+            return True
         return level_of(raw) <= self._level or are_steps([each.text for each in self._texts if not each.heading])
 
     def ends_before(self, step: PlanLine) -> bool:
@@ -246,5 +277,6 @@ class _Block:
         self.lines, self.numbers = self.lines[:at], self.numbers[:at]
         rest._is_titled = any(plan_line(raw).heading for raw in rest.lines)
         rest._size = sum(map(len, rest.lines))
+        rest._deepest = self._deepest
         rest._level, rest._texts = self._level, self._texts if self._last else self._texts[-1:]
         return rest

@@ -83,6 +83,8 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:
         try:
             if not file.is_file():
                 raise ValueError("it is not a regular file")
+            if not file.resolve().is_relative_to(path.resolve()):
+                raise ValueError("it is a link that leads out of the dataset")
             with pq.ParquetFile(file) as source:
                 later = {*earlier(1).get(table, {}).get("lacks", ())} - {*source.schema_arrow.names}
                 columns = [name for name in columns if name not in later]

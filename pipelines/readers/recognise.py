@@ -11,6 +11,7 @@ from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import (
     crowd,
+    enclosed_json,
     found_records,
     ours,
     plans,
@@ -27,6 +28,7 @@ from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
 from hearth.pipelines.readers.json_actions import is_only_action
 from hearth.pipelines.readers.relaxed_json import uncommented
+from hearth.pipelines.readers.step_lists import is_pair
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph_wrappers import graph_in
@@ -55,7 +57,10 @@ _YAML = frozenset({".yaml", ".yml"})
 _TEXT = frozenset({"", ".txt", ".text", ".prog"})
 """Endings of texts that are read as programs even without a step; others, such as notes, need one."""
 
-_NUMBER = re.compile(r"\s*\[(?:\d{1,4}|[\d/-]*[ T]?\d{1,2}:\d\d[\d:.]*)\]\s+[^\s,\]}]")
+_NUMBER = re.compile(
+    r"\s*\[(?:\d{1,4}|[\d/.-]*,?[ T]?\d{1,2}:\d\d[\d:.]*(?:\s?[ap]m)?|[-+ox*✓✔✕✗✘ ])\]\s+[^\s,\]}]"
+    r"|\s*\[+[A-Za-z_][\w .-]*\]+\s*$|\s*\[(?:INFO|DEBUG|WARN)"
+)
 """The number of a step in brackets, `[1] Walk to fridge`, or its time, `[09:15] robot: walk to fridge`."""
 
 _COMMENT_LINE = re.compile(r"\s*(?://.*|/\*(?:(?!\*/).)*\*/\s*)$")
@@ -64,8 +69,11 @@ _COMMENT_LINE = re.compile(r"\s*(?://.*|/\*(?:(?!\*/).)*\*/\s*)$")
 _MARKUP = re.compile(
     r"\s*(?:(?P<HTML><!doctype html|<html\b)|(?P<SVG><svg\b)|(?P<XML><\?xml\b)|(?P<RTF>\{\\rtf))", re.IGNORECASE
 )
-_STEP_ELEMENT = re.compile(r"<(?:li|step|action)\b[^<>]*>\s*[^\s<]", re.IGNORECASE)
+_STEP_ELEMENT = re.compile(r"<(?:li|step|action|instruction|p|td|task|command)\b[^<>]*>\s*[^\s<]", re.IGNORECASE)
 """A step that HTML or XML marks on a line."""
+
+_ENCLOSED = re.compile(r"\s*(?:[\w *#-]{1,40}:\s*)?[{\[]\s*(?:[\"{\[]|$)")
+"""A line of a text on which JSON may begin."""
 
 _LOOKED_AT = 60
 _LONGEST = 100_000
@@ -195,6 +203,8 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return _refused(path, place, "a YAML file, which holds no programs")
     if first and is_plan(first):
         return Recognised(path, place, plans.NAME)
+    if any(map(_ENCLOSED.match, first)) and enclosed_json.holds_programs(path, place):
+        return Recognised(path, place, enclosed_json.NAME)
     if suffix not in _TEXT | _JSON | _TABLES and not any(plan_line(line).bracketed for line in first):
         return _refused(path, place, "a text without a step")
     return Recognised(path, place, text.NAME)
@@ -231,7 +241,7 @@ def _form_of_list(path: Place, place: str) -> str:
     for _, value in entries(path, place):
         if isinstance(value, str):
             return TEXTS if "\n" in value.strip() or TITLE.match(value) else DOCUMENT
-        if is_only_action(value):
+        if is_only_action(value) or is_pair(value):
             return DOCUMENT
         if not isinstance(value, Reject):
             return LISTED if isinstance(value, (dict, list)) else ""

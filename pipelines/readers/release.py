@@ -18,6 +18,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EdgeColumns, read_node
+from hearth.schemas.graph_faults import REMEDY, graph_fault
 from hearth.schemas.numbers import stored
 from hearth.schemas.row_types import ChangeRow, ConditionRow, GraphRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
@@ -228,6 +229,7 @@ def graphs_of(data: Any, place: str) -> tuple[GraphRow, ChangeRow | None] | Diag
 def _pair_row(
     read_it: Callable[[], tuple[JsonObject, Change | None] | Diagnostic], place: str
 ) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
+    start: JsonObject | None = None
     try:
         pair = read_it()
         if isinstance(pair, Diagnostic):
@@ -239,9 +241,9 @@ def _pair_row(
         _columns(change.added if change else ())
         return row, None if change is None else change_row(change)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        message = f"not a pair of environment graphs: {type(error).__name__} {error}"
-        suggestion = "nodes need id and class_name; edges need from_id, relation_type and to_id"
-        return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=suggestion)
+        why = graph_fault(start, error) if start else f"{type(error).__name__} {error}"
+        message = f"not a pair of environment graphs: {why}"
+        return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=REMEDY)
 
 
 def _edges(graph: JsonObject) -> set[Edge]:

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.columns import FieldColumns, Found, guessed, lacks, rivals
+from hearth.pipelines.readers.columns import FieldColumns, Found, guessed, is_condition, lacks, rivals
 from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
 from hearth.pipelines.readers.item import Item, refused
 from hearth.pipelines.readers.json_actions import is_action
 from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
-from hearth.pipelines.readers.step_lists import is_count, number_of, numbered_names, plain_name
+from hearth.pipelines.readers.step_lists import is_count, is_time, number_of, numbered_names, plain_name
 from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
 from hearth.pipelines.readers.step_texts import SAID
 from hearth.pipelines.readers.table_heads import NUMBERED, begun
@@ -77,9 +77,12 @@ def table_of(path: Place, given: FieldColumns) -> Table:
     cells = {name: [row[at] for row in sample if row[at].strip()] for at, name in enumerate(names)}
     counts = [name for name in names if cells[name] and all(map(is_count, cells[name]))]
     steps = tuple(numbered_names(names)) if "program" not in given else ()
-    texts = [name for name in names if name not in {*counts, *steps} or name in given.values()]
+    times = [name for name in names if cells[name] and all(map(is_time, cells[name]))]
+    texts = [name for name in names if name not in {*counts, *steps, *times} or name in given.values()]
     found = Found(guessed(texts, given))
     found.rivals, found.is_table = rivals(texts, found, given), True
+    if (times or counts) and not steps:
+        _ordered_steps(found, given, {name: cells[name] for name in texts})
     table = Table(first, layout, found, steps, _number(sample, layout, found, counts))
     if steps:
         found.pop("program", None)
@@ -88,7 +91,8 @@ def table_of(path: Place, given: FieldColumns) -> Table:
         _guess_program(table, {name: cells[name] for name in texts})
     found.note = f"{NUMBERED} {found.note}".strip() if is_row else found.note
     if "title" not in found and "title" not in given and found:
-        title = next((name for name in texts if name not in found.values() and _is_title(cells[name])), "")
+        rest = (name for name in texts if name not in found.values() and not is_condition(name, found))
+        title = next((name for name in rest if _is_title(cells[name])), "")
         found.update({"title": title} if title else {})
     if not (table.number or steps) and _is_by_title(sample, layout, found):
         found.note = f"{found.note} {_ROWS_ARE_STEPS}".strip()
@@ -96,11 +100,27 @@ def table_of(path: Place, given: FieldColumns) -> Table:
     return table
 
 
+def _ordered_steps(found: Found, given: FieldColumns, cells: Mapping[str, Sequence[str]]) -> None:
+    """Take the column of titles for that of steps, where numbers or times order its rows, which all differ."""
+    name = found.get("title", "")
+    if "program" in found or {"program", "title"} & given.keys() or not name:
+        return
+    reading, texts = reading_of(cells[name]), cells[name]
+    if column_of_steps({other: those for other, those in cells.items() if other != name}):
+        return
+    if len(set(texts)) == len(texts) and reading.are_steps and all(map(is_one_step, texts[:_FEW])):
+        found["program"] = found.pop("title")
+        found.note = _ROWS_ARE_STEPS
+
+
+_FEW = 12
+
+
 def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns, counts: Sequence[str]) -> str:
     """The column that counts steps: one whose name says so, else one that goes up by one while the task stays."""
     names = dict.fromkeys(counts, "1")
     sure, may = number_of(names), number_of(names, any_number=True)
-    if sure or not may or not ("title" in found or _row_is_step(layout, found)):
+    if sure or not may or not ("title" in found or _row_is_step(layout, found) or _are_single(sample, may, layout)):
         return sure
     title, number, program = (layout.columns.index(found.get(each, may)) for each in ("title", "", "program"))
     rows = [("title" in found and row[title], row[number], row[program]) for row in sample if is_count(row[number])]
@@ -108,6 +128,13 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
     begins = all(goes_on or row[1].strip() in ("0", "1") for goes_on, row in zip([False, *follows], rows, strict=True))
     single = "program" not in found or all(is_one_step(step) for _, _, step in rows if step.strip())
     return may if any(follows) and begins and single else ""
+
+
+def _are_single(sample: Sequence[Sequence[str]], number: str, layout: Layout) -> bool:
+    """Return whether no cell beside the numbers holds several steps."""
+    at = layout.columns.index(number)
+    rest = (cell for row in sample[:_FEW] for n, cell in enumerate(row) if n != at and cell.strip())
+    return all(map(is_one_step, rest))
 
 
 def _row_is_step(layout: Layout, found: FieldColumns) -> bool:
@@ -121,7 +148,7 @@ def _is_action(layout: Layout, found: FieldColumns) -> bool:
 
 def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
     """Return whether most rows hold one step and are next to another row of their title, which is nowhere else."""
-    if "title" not in found and "program" in found and _row_is_step(layout, found):
+    if "title" not in found and "program" in found and (_row_is_step(layout, found) or found.note == _ROWS_ARE_STEPS):
         program = layout.columns.index(found["program"])
         return len(sample) > 1 and all(is_one_step(row[program]) for row in sample if row[program])
     if not {"title", "program"} <= found.keys():
@@ -138,7 +165,7 @@ def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:
     found = table.columns
     if table.has_actions:
         found.note = _ROWS_ARE_STEPS
-    elif table.number:
+    elif table.number or "time" in table.layout.columns:
         rest = {name: reading_of(texts) for name, texts in cells.items() if name != found.get("title")}
         likeliest = max(rest, key=lambda name: rest[name].understood, default="")
         found.update({"program": found.pop("description", likeliest)} if likeliest else {})

@@ -6,11 +6,22 @@ from typing import Any
 
 from hearth.pipelines.readers.json_actions import is_action, is_known
 
-TEXTS = ("text", "description", "instruction", "content", "action", "step", "task", "name", "detail", "value", "what")
+TEXTS = (
+    "text", "description", "instruction", "content", "action", "act", "cmd", "command", "do", "move", "step", "task",
+    "name", "detail", "value", "what",
+)  # fmt: skip
 """Keys of the words of a step that is an object, the likeliest first."""
 
+_SEEN = frozenset({
+    "obs", "observation", "observations", "thought", "thoughts", "reason", "reasoning", "result", "feedback", "state",
+    "reward", "note", "comment", "status",
+})  # fmt: skip
+"""Keys of what is thought, seen or answered beside a step."""
+
 _COUNT_STEPS = frozenset({"order", "position", "sequence", "seq", "stepno", "stepnumber", "stepid", "schritt"})
-_MAY_COUNT = frozenset({"number", "num", "no", "nr", "index", "idx", "id", "n", "i", ""})
+_MAY_COUNT = frozenset(
+    {"number", "num", "no", "nr", "index", "idx", "id", "n", "i", "t", "ts", "time", "tick", "frame", "turn", ""}
+)
 _HOLD_PROGRAMS = frozenset({"plan", "plans", "steps", "actions", "program", "programs"})
 
 _OTHER = re.compile(r"[^a-z0-9]+")
@@ -35,7 +46,10 @@ def numbered_names(names: Iterable[str]) -> list[str]:
     return [found[number] for number in in_order] if follow else []
 
 
-_NAMED = frozenset({"plan", "steps", "step", "actions", "action", "action list", "program", "instructions", "script"})
+_NAMED = frozenset({
+    "plan", "steps", "step", "actions", "action", "action list", "program", "instructions", "script", "trajectory",
+    "commands", "sequence", "subtasks", "tasks", "moves", "calls",
+})  # fmt: skip
 _OURS = frozenset({
     "rooms", "props", "descriptions", "splits", "messages", "tool_calls", "choices", "graph", "init_graph",
     "final_graph", "nodes", "edges",
@@ -54,6 +68,8 @@ def with_step_lists(value: dict[str, Any]) -> dict[str, Any]:
     if not lists and own is None:
         return value
     rest = {key: lists.get(key, part) for key, part in value.items()}
+    if isinstance(value.get("action"), list) and "action" in lists and "steps" not in value:
+        rest["steps"] = rest.pop("action")
     if own is None:
         return rest
     keys = set(numbered_names(value))
@@ -93,6 +109,7 @@ def text_of(value: Mapping[str, Any], any_number: bool = False) -> str | None:
         value: the object.
         any_number: whether a number by any name counts the steps, or there may be none.
     """
+    value = {key: part for key, part in value.items() if plain_name(key) not in _SEEN} if len(value) > 1 else value
     names = {plain_name(key) for key in value}
     if names & _HOLD_PROGRAMS or not (number_of(value, any_number) or len(value) == 1):
         return None
@@ -116,6 +133,14 @@ def is_count(value: Any) -> bool:
     if isinstance(value, str):
         return value.strip().isdecimal() and len(value.strip()) <= 4
     return isinstance(value, int) and not isinstance(value, bool)
+
+
+_TIME = re.compile(r"\d{1,2}[:.]\d\d(?:[:.]\d\d)?(?:\s?[ap]\.?m\.?)?(?:\s*[-–]\s*\d{1,2}[:.]\d\d)?", re.IGNORECASE)
+
+
+def is_time(value: Any) -> bool:
+    """Return whether a value is a time of day, which orders steps and is none."""
+    return isinstance(value, str) and _TIME.fullmatch(value.strip()) is not None
 
 
 def is_line(value: Any) -> bool:
@@ -161,6 +186,13 @@ def _are_pairs(parts: Iterable[Any]) -> bool:
         return False
     known = [part for part in lists if is_known(part[0], part[1:])]
     return bool(known) and all(part in known or len(part[0].split()) == 1 for part in lists)
+
+
+def is_pair(value: Any) -> bool:
+    """Return whether a list is a known action with its objects."""
+    return (
+        isinstance(value, list) and 0 < len(value) <= 4 and all(map(_is_text, value)) and is_known(value[0], value[1:])
+    )
 
 
 def _is_text(value: Any) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from hearth.pipelines.readers.columns import FieldColumns, guessed
-from hearth.pipelines.readers.json_actions import is_action, step_of
+from hearth.pipelines.readers.json_actions import is_action, is_only_action, is_tool_use, step_of
 from hearth.pipelines.readers.placed_texts import Located
 from hearth.pipelines.readers.program_columns import is_one_step
 from hearth.pipelines.readers.step_lists import is_count, number_of, plain_name, text_of
@@ -81,11 +81,13 @@ def _program(rows: list[tuple[Entry, StepRow]], are_steps: bool) -> Entry:
 def row_of_json(found: Any, given: FieldColumns) -> StepRow | None:
     """Return the step that a JSON object is: an action or words with a number, perhaps with the name of its task."""
     value = found.value if isinstance(found, Located) else found
+    if is_tool_use(value):
+        return StepRow("", None, True, _record(value, "", step_of(value)))
     if not isinstance(value, dict) or any(isinstance(part, dict) for part in value.values()):
         return None
     number = number_of(value) or number_of(value, any_number=True)
     if not number:
-        return None
+        return StepRow("", None, True, _record(value, "", step_of(value))) if is_only_action(value) else None
     names = guessed([key for key, part in value.items() if isinstance(part, str)], given, exact=True)
     title = names.get("title", "")
     title = "" if plain_name(title) == "instruction" and "title" not in given else title  # that of a step
@@ -99,7 +101,7 @@ def row_of_json(found: Any, given: FieldColumns) -> StepRow | None:
 def _step(value: Mapping[str, Any], others: Container[str], number: str) -> str | None:
     """Return the step of an object, given its other keys."""
     rest = {key: part for key, part in value.items() if key not in others}
-    return step_of(rest) if is_action(rest) else text_of({**rest, number: value[number]})
+    return step_of(rest) if is_action(rest) else text_of({**rest, number: value[number]}, any_number=True)
 
 
 def _record(value: Mapping[str, Any], title: str, step: Any) -> dict[str, Any]:

@@ -120,12 +120,12 @@ def top_view(box: Box, name: str = "top", width: int = 320, height: int = 240, m
 
 
 def look_at(name: str, eye: Point, target: Point, width: int = 320, height: int = 240, fov: float = 60.0) -> Camera:
-    """A camera at `eye` that looks at `target`."""
+    """Return a camera at `eye` that looks at `target`."""
     return Camera(name, eye, target, width, height, fov)
 
 
 def point_of(vector: NDArray[Any]) -> Point:
-    """A vector as a tuple of floats."""
+    """Return a vector as a tuple of floats."""
     return float(vector[0]), float(vector[1]), float(vector[2])
 
 

@@ -135,12 +135,12 @@ def _closer(who: Target, objects: Sequence[Target], aspect: float) -> list[tuple
 
 
 def _nearest(who: Target, point: NDArray[np.float64]) -> int:
-    """The joint of a person that is nearest to a point."""
+    """Return the joint of a person that is nearest to a point."""
     return int(np.linalg.norm(who.points - point, axis=1).argmin())
 
 
 def framed(actor: Actor, who: Target, objects: Sequence[Target], aspect: float) -> tuple[NDArray[np.float64], float]:
-    """The middle of a camera's target, and the height that its picture should cover there, metres."""
+    """Return the middle of a camera's target, and the height that its picture should cover there, metres."""
     near = [target for target in objects if np.linalg.norm(_point(target, who) - who.points.mean(axis=0)) < FAR_APART]
     spans = [(who.low, who.high), *((_point(t, who) - _half(t), _point(t, who) + _half(t)) for t in near)]
     low, high = np.min([a for a, _ in spans], axis=0), np.max([b for _, b in spans], axis=0)
@@ -170,7 +170,7 @@ def _needed(target: Target, aspect: float) -> float:
 
 
 def _point(target: Target, who: Target) -> NDArray[np.float64]:
-    """The point of a thing's box nearest to a person."""
+    """Return the point of a thing's box nearest to a person."""
     half = _half(target)
     found: NDArray[np.float64] = np.clip(who.points.mean(axis=0), target.low + half, target.high - half)
     return found
@@ -200,6 +200,8 @@ def preference(cameras: Sequence[Camera], actor: Actor) -> NDArray[np.float64]:
 
 
 def free(cameras: Sequence[Camera], obstacles: Obstacles) -> tuple[list[Camera], NDArray[np.float64]]:
-    """The cameras with nothing close in front of them, and the worth that each loses by near objects (see `Ahead`)."""
+    """Return the cameras with nothing close in front of them, and the worth that each loses by near objects (see
+    `Ahead`).
+    """
     found = ahead(cameras, obstacles)
     return [cameras[number] for number in np.flatnonzero(found.free).tolist()], found.loss[found.free]

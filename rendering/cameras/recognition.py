@@ -49,7 +49,7 @@ def recognition(shot: Shot, node: int) -> Recognition:
 
 
 def least_share(class_name: str) -> float:
-    """The share of the picture that a thing of a class has to cover."""
+    """Return the share of the picture that a thing of a class has to cover."""
     return PERSON if class_name == CHARACTER_CLASS else OBJECT
 
 

@@ -64,19 +64,19 @@ class CameraSensor:
         self._world: World | None = None
 
     def __call__(self, env: Env, agent: int, modalities: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-        """The current pictures of an agent, by modality."""
+        """Return the current pictures of an agent, by modality."""
         how: dict[str, Any] = {"quality": self.quality, "class_ids": self.prepared.knowledge.class_ids}
         return render(self.scene(env), self.camera(env, agent), modalities, **how)
 
     def scene(self, env: Env) -> Scene:
-        """The current content of a picture: the scene and its moving parts."""
+        """Return the current content of a picture: the scene and its moving parts."""
         self._follow(env)
         if self._scene is None:
             self._scene = scene_at(self.prepared, self.places, self.actors)
         return self._scene
 
     def camera(self, env: Env, agent: int) -> Camera:
-        """The camera of an agent now."""
+        """Return the camera of an agent now."""
         self._follow(env)
         actor = self.actors[agent]
         if self.view == FIRST:
@@ -97,7 +97,7 @@ class CameraSensor:
 
     @staticmethod
     def _world_after(env: Env, ticks: int) -> World | None:
-        """The episode's world after that many ticks; None where it has had fewer."""
+        """Return the episode's world after that many ticks; None where it has had fewer."""
         if ticks < len(env.ticks):
             return env.ticks[ticks].before
         return env.world if ticks == len(env.ticks) else None

@@ -23,7 +23,7 @@ LOOKED_AT = 16
 
 
 def home_box(graph: EnvironmentGraph) -> Box:
-    """The box around all rooms."""
+    """Return the box around all rooms."""
     boxes = [node.box for node in graph.nodes if node.category == ROOM_CATEGORY and node.box]
     low = [min(box.center[axis] - box.size[axis] / 2 for box in boxes) for axis in range(3)]
     high = [max(box.center[axis] + box.size[axis] / 2 for box in boxes) for axis in range(3)]
@@ -50,7 +50,7 @@ def room_views(graph: EnvironmentGraph, width: int, height: int) -> Mapping[int,
 
 
 def _freed(camera: Camera, boxes: Sequence[Box], clear: float = 0.22) -> Camera:
-    """The camera, moved towards its target until no box contains it."""
+    """Return the camera, moved towards its target until no box contains it."""
     eye, target = np.array(camera.eye), np.array(camera.target)
     way = (target - eye) * (1.0, 0.0, 1.0)
     for step in np.arange(0.0, 0.6, 0.05):
@@ -67,7 +67,7 @@ def best_view(
     named: Sequence[int],
     room: Box | None = None,
 ) -> Camera:
-    """The camera that shows best what an actor does.
+    """Return the camera that shows best what an actor does.
 
     Candidates stand around the actor and the objects, and where the room's fixed cameras are, with nothing close in
     front of them. The first of the best that shows the actor and all objects recognisably, by its pixels, is chosen.
@@ -98,7 +98,7 @@ def _shows(scene: Scene, camera: Camera, actor: Actor, objects: Sequence[Target]
 
 
 def kept_inside(camera: Camera, room: Box | None) -> Camera:
-    """The camera, pulled back into its room."""
+    """Return the camera, pulled back into its room."""
     if room is None:
         return camera
     eye = [

@@ -45,7 +45,7 @@ class TickVisibility(NamedTuple):
 def tick_visibilities(
     trajectory: Trajectory, home: EnvironmentGraph, size: tuple[int, int] = SIZE
 ) -> Iterator[TickVisibility]:
-    """The visibility of each tick's objects in the pictures that `snapshots` takes."""
+    """Yield the visibility of each tick's objects in the pictures that `snapshots` takes."""
     views = room_views(home, *size)
     rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
     above = top_view(home_box(home), TOP, *size)
@@ -62,7 +62,7 @@ def tick_visibilities(
 
 
 def _shown_as(node: int, keyframe: Keyframe) -> int:
-    """The node that is drawn for a node: body parts and worn clothes are drawn with the body."""
+    """Return the node that is drawn for a node: body parts and worn clothes are drawn with the body."""
     location = keyframe.places.locations.get(node)
     part = next((known.category == "BodyParts" for known in keyframe.places.graph.nodes if known.id == node), False)
     if part:
@@ -71,7 +71,7 @@ def _shown_as(node: int, keyframe: Keyframe) -> int:
 
 
 def seen_as(node: int, places: Places) -> int:
-    """The node by which an onlooker sees a node.
+    """Return the node by which an onlooker sees a node.
 
     Body parts and worn clothes are drawn with their wearer; a closed container shows the objects inside it.
     """
@@ -90,14 +90,14 @@ def seen_as(node: int, places: Places) -> int:
 
 
 def objects_of(step: Step, trajectory: Trajectory, keyframe: Keyframe) -> tuple[int, ...]:
-    """The nodes by which a step's objects are seen, without rooms and the person itself."""
+    """Return the nodes by which a step's objects are seen, without rooms and the person itself."""
     named = named_nodes([step], trajectory.prepared.rooms)
     person = keyframe.actors[step.agent].node.id
     return tuple(dict.fromkeys(node for node in (seen_as(one, keyframe.places) for one in named) if node != person))
 
 
 def _missed(keyframe: Keyframe, camera: Camera, named: tuple[int, ...]) -> tuple[int, ...]:
-    """The nodes without a pixel in a camera's picture."""
+    """Return the nodes without a pixel in a camera's picture."""
     if not named:
         return ()
     shot = shoot(keyframe.scene, camera)

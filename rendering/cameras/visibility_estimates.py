@@ -78,7 +78,7 @@ class Target:
 
 
 def person(actor: Actor) -> Target:
-    """An actor as a target."""
+    """Return an actor as a target."""
     joints = {name: actor.world((float(x), float(y), float(z))) for name, (x, y, z) in actor.figure().joints().items()}
     points = np.array(list(joints.values()))
     low, high = points.min(axis=0) - 0.1, points.max(axis=0) + 0.1
@@ -87,7 +87,7 @@ def person(actor: Actor) -> Target:
 
 
 def thing(scene: Scene, node: int) -> Target | None:
-    """A node as a target; None if it is not drawn."""
+    """Return a node as a target; None if it is not drawn."""
     corners = [placed(one).corners for one in scene.everything if one.id == node and len(placed(one))]
     if not corners:
         return None
@@ -117,7 +117,7 @@ class Obstacles(NamedTuple):
 
     @classmethod
     def exact(cls, scene: Scene) -> Obstacles:
-        """The occluders of a scene with its figures and held objects, triangle by triangle."""
+        """Return the occluders of a scene with its figures and held objects, triangle by triangle."""
         geometry = scene.geometry
         parts = [part for part in (geometry.static, geometry.moving) if len(part.mesh)]
         return cls(tuple((part, np.array([one.id for one in part.things], np.int64)[part.owner]) for part in parts))

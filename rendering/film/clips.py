@@ -138,12 +138,12 @@ def _clips(kept: Sequence[tuple[Frame, Camera]], classes: Mapping[int, str]) -> 
 
 
 def by_class(step: Step, classes: Mapping[int, str]) -> Step:
-    """A step with the classes of its nodes as names: a `table` may be a `kitchen_table`."""
+    """Return a step with the classes of its nodes as names: a `table` may be a `kitchen_table`."""
     return replace(step, objects=tuple(replace(ref, name=classes.get(ref.node or 0, ref.name)) for ref in step.objects))
 
 
 def stored(film: ClipFilm) -> bytes:
-    """The pictures of a film as the bytes of an .npz file, which NumPy reads; equal films are equal bytes."""
+    """Return the pictures of a film as the bytes of an .npz file, which NumPy reads; equal films are equal bytes."""
     buffer = BytesIO()
     np.savez_compressed(buffer, allow_pickle=False, **{name: film.pictures[name] for name in sorted(film.pictures)})
     return buffer.getvalue()

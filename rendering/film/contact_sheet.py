@@ -49,7 +49,7 @@ def write(page: Image, text: str, x: int, y: int, scale: float) -> None:
 
 
 def fitted(text: str, width: int, scale: float) -> str:
-    """The text, truncated with dots to at most `width` pixels."""
+    """Return the text, truncated with dots to at most `width` pixels."""
     cv2 = library("cv2")
 
     while text and cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)[0][0] > width - 4:

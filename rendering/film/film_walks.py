@@ -26,7 +26,7 @@ MOVED = 0.01
 
 
 def on_the_floor(prepared: PreparedScene, keyframe: Keyframe) -> list[Solid]:
-    """The solid things of a keyframe that a walk can lead through."""
+    """Return the solid things of a keyframe that a walk can lead through."""
     floor = min(room.box.center[1] - room.box.size[1] / 2 for room in prepared.rooms.values() if room.box)
     return [
         solid
@@ -60,7 +60,7 @@ class Walk(NamedTuple):
 
 
 def walks(prepared: PreparedScene, keyframes: Sequence[Keyframe], frames: Iterable[Frame]) -> list[Walk]:
-    """The walks of a film.
+    """Return the walks of a film.
 
     Args:
         prepared, keyframes: of its trajectory.

@@ -86,7 +86,7 @@ def _opened(path: Path) -> Any:
 
 
 def pictures_in(path: Path) -> Iterator[NDArray[Any]]:
-    """The pictures of a modality's archive, frame by frame, as `png.decode` gives them.
+    """Yield the pictures of a modality's archive, frame by frame, as `png.decode` gives them.
 
     Raises:
         HearthError: the file does not hold pictures.

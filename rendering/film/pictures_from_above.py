@@ -74,7 +74,7 @@ def demonstration(
 
 
 def stored(found: Demonstration) -> bytes:
-    """The pictures as the bytes of an .npz file, which NumPy reads; equal pictures are equal bytes.
+    """Return the pictures as the bytes of an .npz file, which NumPy reads; equal pictures are equal bytes.
 
     Colours are stored as changes from picture to picture, modulo 256: an eighth of the size.
     """

@@ -17,7 +17,7 @@ LEVEL = 1
 
 
 def encode(image: NDArray[Any]) -> bytes:
-    """An image as PNG, without metadata.
+    """Return an image as PNG, without metadata.
 
     Args:
         image: (H, W) or (H, W, 3 in the order red, green, blue), uint8 or uint16; float32 unit vectors (normals)
@@ -54,7 +54,7 @@ def _flow_code(flow: NDArray[Any]) -> NDArray[np.uint16]:
 
 
 def decode(data: bytes) -> NDArray[Any]:
-    """The inverse of `encode`; components in the order red, green, blue.
+    """Return the inverse of `encode`; components in the order red, green, blue.
 
     Raises:
         HearthError: the data are not a picture.

@@ -14,7 +14,7 @@ from hearth.simulation.engine import Execution
 
 
 def home_shapes(home: EnvironmentGraph, knowledge: Knowledge) -> dict[str, Any]:
-    """A home as it was built, without characters, and without ceilings, which would hide it from above.
+    """Return a home as it was built, without characters, and without ceilings, which would hide it from above.
 
     Returns:
         `shapes` as `PackedShapes.as_json`, and `things`: for each thing the number of its shape, x, y, z in metres, yaw

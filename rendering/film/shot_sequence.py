@@ -27,7 +27,7 @@ class Acts(NamedTuple):
 
 
 def best_cut(worth: Worths, shortest: int, cost: float, acts: Acts | None = None) -> list[int]:
-    """The row to show at each moment: the greatest sum of values and gains, less the cost of cuts.
+    """Return the row to show at each moment: the greatest sum of values and gains, less the cost of cuts.
 
     Dynamic programming over the row, the length of its run so far, and the acts of the tick seen so far.
 

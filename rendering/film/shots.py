@@ -83,7 +83,7 @@ class Shots:
     cameras: tuple[Camera, ...]
 
     def at(self, time: float) -> Camera:
-        """The camera at a time, in seconds from the film's start."""
+        """Return the camera at a time, in seconds from the film's start."""
         return self.cameras[min(int(time * RATE + 1e-6), len(self.cameras) - 1)]
 
 
@@ -127,7 +127,7 @@ class Planner:
             yield Moment(frame, tuple(rooms[number] for number in range(len(frame.actors))))
 
     def shots(self) -> Shots:
-        """The camera of each moment."""
+        """Return the camera of each moment."""
         for tick in sorted(set(self.ticks)):
             for agent in self.acting(self._span(tick)[-1]):
                 self.add(self._candidates(self._span(tick), agent), self._span(tick))
@@ -172,7 +172,7 @@ class Planner:
         return [frozenset(moments) for moments in found]
 
     def acting(self, moment: int) -> list[int]:
-        """The agents to be seen at a moment."""
+        """Return the agents to be seen at a moment."""
         frame = self.moments[moment].frame
         if self.agent is not None:
             return [self.agent]
@@ -195,7 +195,7 @@ class Planner:
         return person(frame.actors[agent]), [target for target in objects if target is not None]
 
     def _candidates(self, span: Sequence[int], agent: int) -> list[Camera]:
-        """The best cameras for an act: at its end, on the way to it, and together with the next act."""
+        """Return the best cameras for an act: at its end, on the way to it, and together with the next act."""
         last = self.moments[span[-1]]
         actor, room = last.frame.actors[agent], self.rooms.get(last.rooms[agent])
         who, objects = self._targets(last.frame, agent)
@@ -214,7 +214,7 @@ class Planner:
         return kept
 
     def _next(self, number: int, agent: int) -> int | None:
-        """The last moment of the next tick, if the agent acts then in the same room."""
+        """Return the last moment of the next tick, if the agent acts then in the same room."""
         here = self.moments[number]
         later = [n for n, moment in enumerate(self.moments) if moment.frame.tick == here.frame.tick + 1]
         if not later or agent not in self.acting(later[-1]) or self.moments[later[-1]].rooms != here.rooms:
@@ -277,7 +277,7 @@ class Planner:
 
 
 def _distinct(cameras: Sequence[Camera], most: int) -> list[Camera]:
-    """The first of some cameras that stand apart, or see more or less than each other."""
+    """Return the first of some cameras that stand apart, or see more or less than each other."""
     found: list[Camera] = []
     for camera in cameras:
         if all(_apart(camera, other) for other in found):
@@ -307,7 +307,7 @@ class Verified:
         self.gains = [SEEN] * len(planner.agents)
 
     def rows(self) -> list[int]:
-        """The camera of each moment."""
+        """Return the camera of each moment."""
         rows, missed = self._cut()
         if self._add_closer(missed):
             rows, missed = self._cut()
@@ -318,7 +318,7 @@ class Verified:
         return rows
 
     def _acts(self) -> list[tuple[int, int]]:
-        """The (tick, agent's number among those that act) of all acts."""
+        """Return the (tick, agent's number among those that act) of all acts."""
         planner, ends = self.planner, np.flatnonzero(np.diff(self.ticks, append=-1))
         return [
             (int(self.ticks[end]), planner.agents.index(agent))
@@ -333,7 +333,7 @@ class Verified:
         return {bit for bit in acts if unseen[bit] > acts[bit] / 2}
 
     def _cut(self) -> tuple[list[int], list[tuple[int, int]]]:
-        """A cut whose acts are verified, and those that it does not show."""
+        """Return a cut whose acts are verified, and those that it does not show."""
         rows: list[int] = []
         missed: list[tuple[int, int]] = []
         for _ in range(ROUNDS):
@@ -344,7 +344,7 @@ class Verified:
         return rows, missed
 
     def _checked(self, rows: Sequence[int]) -> tuple[list[tuple[int, int]], bool]:
-        """The acts that a cut does not show, and whether it was mistaken about any."""
+        """Return the acts that a cut does not show, and whether it was mistaken about any."""
         missed: list[tuple[int, int]] = []
         wrong = False
         for tick, bit in self._acts():
@@ -397,7 +397,7 @@ def _together(found: Sequence[Target]) -> Target:
 
 
 def room_at(rooms: Mapping[int, Box], spot: Spot) -> int:
-    """The room whose box contains a spot; 0 in doorways."""
+    """Return the room whose box contains a spot; 0 in doorways."""
     return next((room for room, box in rooms.items() if _holds(box, spot)), 0)
 
 

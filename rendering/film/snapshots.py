@@ -10,6 +10,7 @@ import numpy as np
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.modifiers import numbers
 from hearth.rendering.cameras.camera import Camera, top_view
+from hearth.rendering.cameras.recognition import PERSON, recognition
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.action_poses import Actor, elsewhere, initial_actors, moved, outermost
@@ -73,13 +74,16 @@ class Keyframe:
 
 
 def acting(steps: Sequence[Step], count: int) -> int:
-    """The number, below `count`, of the agent that cameras follow: the first with a step in this tick, else 0."""
+    """Return the number, below `count`, of the agent that cameras follow.
+
+    The first with a step in this tick, else 0.
+    """
     found = min((step.agent for step in steps), default=0)
     return found if found < count else 0
 
 
 def named_nodes(steps: Sequence[Step], rooms: Container[int]) -> tuple[int, ...]:
-    """The objects that steps name, in order, without rooms."""
+    """Return the objects that steps name, in order, without rooms."""
     return tuple(
         dict.fromkeys(ref.node for step in steps for ref in step.objects if ref.node and ref.node not in rooms)
     )
@@ -94,6 +98,7 @@ class Snapshot:
         camera: the camera.
         pictures: modality -> array, as `modalities.render` gives them.
         seen: visible share of the objects that the steps name; None where they name none.
+        person: whether the acting character can be recognised: it is large enough, and less than half hidden.
     """
 
     tick: int
@@ -101,12 +106,13 @@ class Snapshot:
     camera: Camera
     pictures: Mapping[str, Any]
     seen: float | None = None
+    person: bool = False
 
 
 def keyframes(
     execution: Execution, home: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0
 ) -> Iterator[Keyframe]:
-    """The scene at the start and after each tick of an execution.
+    """Yield the scene at the start and after each tick of an execution.
 
     Args:
         execution: a recorded run; objects that its environment adds to the home or moves are placed by their relations.
@@ -176,7 +182,7 @@ def check_geometry(home: EnvironmentGraph) -> None:
 
 
 def _static_things(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
-    """The things that are equal in all scenes, and from moment to moment."""
+    """Return the things that are equal in all scenes, and from moment to moment."""
     common = set(scenes[0].things)
     for scene in scenes[1:]:
         common &= set(scene.things)
@@ -186,7 +192,7 @@ def _static_things(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
 def _keyframes(
     execution: Execution, home: EnvironmentGraph, prepared: PreparedScene, variation: Variation
 ) -> Iterator[Keyframe]:
-    """The keyframes of an execution, each scene with all of its things."""
+    """Yield the keyframes of an execution, each scene with all of its things."""
     floors = Floors(prepared)
     ticks: list[tuple[Step, ...]] = [(), *execution.program.ticks()]
     places = Places.start(home, prepared.knowledge, prepared)
@@ -212,7 +218,7 @@ def people_seed(execution: Execution, seed: int) -> int:
 
 
 def _wandered(actors: tuple[Actor, ...], floor: FreeFloor, variation: Variation) -> tuple[Actor, ...]:
-    """The actors; those that stand, at a random free spot of their room, facing a random direction."""
+    """Return the actors; those that stand, at a random free spot of their room, facing a random direction."""
     found: list[Actor] = []
     for actor in actors:
         taken = [other.spot for other in (*found, *actors[len(found) + 1 :])]
@@ -223,7 +229,7 @@ def _wandered(actors: tuple[Actor, ...], floor: FreeFloor, variation: Variation)
 
 
 def standing(actors: Iterable[Actor], world: World) -> tuple[Actor, ...]:
-    """The actors; those that stand, where the world says if it knows."""
+    """Return the actors; those that stand, where the world says if it knows."""
     return tuple(
         actor
         if agent.pose is None or actor.body_pose.posture != "standing"
@@ -288,7 +294,10 @@ def _with_room(
     step: Step,
     others: Iterator[Actor],
 ) -> Actor:
-    """The actor where it acts with the fewest joints in solid things: as it is, or at one of some other spots."""
+    """Return the actor where it acts with the fewest joints in solid things.
+
+    As it is, or at one of some other spots.
+    """
     if actor.body_pose.posture != "standing" or not gesture_of(step).near:
         return actor
     near = {ref.node for ref in step.objects if ref.node}
@@ -313,7 +322,7 @@ def _with_room(
 
 
 def scene_at(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...]) -> Scene:
-    """The scene of one keyframe; held objects are drawn in the hands."""
+    """Return the scene of one keyframe; held objects are drawn in the hands."""
     held = held_things(prepared, places, actors)
     nodes = [node for node in places.nodes() if node.id not in held]
     figures = [(actor.node, actor.figure(), actor.position, actor.yaw) for actor in actors]
@@ -372,7 +381,8 @@ def snapshots(
             if "graph" in wanted:
                 pictures["graph"] = to_release(keyframe.places.graph)
             row = {name: pictures[name] for name in wanted}
-            yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named))
+            person = recognition(shot, keyframe.acting.node.id).suffices(PERSON) if keyframe.actors else False
+            yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named), person)
 
 
 def _seen(shot: Shot, named: tuple[int, ...]) -> float | None:

@@ -38,7 +38,7 @@ VIEWS = (AUTO, TOP, FIRST, THIRD)
 
 
 def agent_of(view: str) -> tuple[str, int | None]:
-    """A view's name and its agent: (`first`, 1) for `first.1`; None without an agent."""
+    """Return a view's name and its agent: (`first`, 1) for `first.1`; None without an agent."""
     name, _, number = view.partition(".")
     return (name, int(number)) if name in (AUTO, FIRST, THIRD) and number.isdecimal() else (view, None)
 
@@ -68,7 +68,7 @@ def film(
     fps: float = 15.0,
     quality: str = "draft",
 ) -> Iterator[FilmFrame]:
-    """The pictures of a video.
+    """Yield the pictures of a video.
 
     Args:
         trajectory: as `snapshots.trajectory_of` gives it.
@@ -139,7 +139,7 @@ class CameraSelector:
         return Planner(self.trajectory, self.home, self.views, self.size, self.agent).shots()
 
     def camera(self, frame: Frame) -> Camera:
-        """The camera of a frame.
+        """Return the camera of a frame.
 
         Raises:
             HearthError: the agent does not exist.
@@ -160,7 +160,7 @@ class CameraSelector:
 
 
 def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Camera:
-    """A camera between the actor's eyes, along its gaze; without a gaze it looks `pitch` degrees down.
+    """Return a camera between the actor's eyes, along its gaze; without a gaze it looks `pitch` degrees down.
 
     A slight pitch shows the hands and the objects in them.
     """
@@ -278,24 +278,24 @@ def record(
 
 
 def _share(seen: Collection[int], wanted: Collection[int]) -> float | None:
-    """The share of some things that were seen; None where there are none."""
+    """Return the share of some things that were seen; None where there are none."""
     return round(len(seen) / len(wanted), 4) if wanted else None
 
 
 def _graphs(trajectory: Trajectory) -> dict[int, Any]:
-    """The scene graph after each tick."""
+    """Return the scene graph after each tick."""
     return {keyframe.tick: to_release(keyframe.places.graph) for keyframe in trajectory.keyframes}
 
 
 def named_in(trajectory: Trajectory, steps: Sequence[Step]) -> frozenset[int]:
-    """The objects that steps name, without rooms."""
+    """Return the objects that steps name, without rooms."""
     return frozenset(
         ref.node for step in steps for ref in step.objects if ref.node and ref.node not in trajectory.prepared.rooms
     )
 
 
 def _newly_seen(film_frame: FilmFrame, wanted: frozenset[int]) -> frozenset[int]:
-    """The wanted nodes that a frame shows."""
+    """Return the wanted nodes that a frame shows."""
     if not wanted:
         return wanted
     shot = film_frame.shot

@@ -88,23 +88,26 @@ Regions = Callable[[Look], tuple[Region, ...]]
 
 
 def top(look: Look) -> tuple[Region, ...]:
-    """The whole upper side without its rim."""
+    """Return the whole upper side without its rim."""
     return (over(look, look.size[1]),)
 
 
 def over(look: Look, y: float, inset: float = 0.02) -> Region:
-    """The whole footprint at height `y` without its rim."""
+    """Return the whole footprint at height `y` without its rim."""
     x, z = max(look.size[0] / 2 - inset, 0.01), max(look.size[2] / 2 - inset, 0.01)
     return Region(y, -x, x, -z, z)
 
 
 def nowhere(look: Look) -> tuple[Region, ...]:
-    """An empty tuple of regions."""
+    """Return an empty tuple of regions."""
     return ()
 
 
 def shelves(look: Look, count: int, low: float = 0.03, high: float = 0.03, inset: float = 0.03) -> tuple[Region, ...]:
-    """The regions of `count` shelves, spaced evenly from `low` above the foot to `high` below the top; lowest first."""
+    """Return the regions of `count` shelves, spaced evenly from `low` above the foot to `high` below the top.
+
+    Lowest first.
+    """
     step = (look.size[1] - low - high) / count
     return tuple(over(look, low + step * k, inset)._replace(clear=step - 0.03) for k in range(count))
 

@@ -27,13 +27,13 @@ CELL = 0.05
 
 
 def drape(w: float, h: float, d: float, paint: Paint, edge: Paint) -> Mesh:
-    """A blanket whose end at +z lies over somebody's feet, as far as it is higher than an empty one."""
+    """Return a blanket whose end at +z lies over somebody's feet, as far as it is higher than an empty one."""
     turned = min(TURNED, d / 3)
     return join((_part(w, h, d, -d / 2, d / 2, 0.0, paint), _part(w, h, d, -d / 2, turned - d / 2, 0.012, edge)))
 
 
 def _part(w: float, h: float, d: float, start: float, end: float, more: float, paint: Paint) -> Mesh:
-    """The part of a blanket between two lines across it, `more` metres higher, with sides down to the mattress."""
+    """Return a part of a blanket between two lines `more` metres higher, its sides down to the mattress."""
     x, z = _ticks(-w / 2 - more / 2, w / 2 + more / 2), _ticks(start - more / 2, end)
     across, along = np.meshgrid(x, z)
     filled = min(max((h - EMPTY) / (OVER_FEET - EMPTY), 0.0), 1.0)
@@ -71,7 +71,7 @@ def _ticks(low: float, high: float) -> Floats:
 
 
 def _normals(points: Floats) -> Floats:
-    """Unit normals of a surface's points, which look up."""
+    """Return unit normals of a surface's points, which look up."""
     found = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
     unit: Floats = found / np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-12)
     return unit

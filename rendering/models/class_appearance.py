@@ -61,14 +61,14 @@ def choice_of(class_name: str, knowledge: Knowledge) -> Choice:
 
 
 def recipe_of(class_name: str, knowledge: Knowledge) -> Recipe:
-    """The recipe that draws a class."""
+    """Return the recipe that draws a class."""
     return RECIPES[choice_of(class_name, knowledge).recipe]
 
 
 def model_of(
     class_name: str, size: Size, states: frozenset[str], seed: int, knowledge: Knowledge, **more: Any
 ) -> Model:
-    """The model of one object.
+    """Return the model of one object.
 
     Args:
         class_name: any, known or unknown.
@@ -93,13 +93,13 @@ def _rounded(size: Size) -> Size:
 
 @lru_cache(maxsize=4096)
 def draw(model: Model) -> Mesh:
-    """The mesh of a model, which stands on y = 0 and faces +z."""
+    """Return the mesh of a model, which stands on y = 0 and faces +z."""
     mesh = RECIPES[model.recipe].draw(model.look)
     return _soiled(mesh) if "DIRTY" in model.look.states else mesh
 
 
 def _soiled(mesh: Mesh) -> Mesh:
-    """The mesh with stains on all untextured triangles."""
+    """Return the mesh with stains on all untextured triangles."""
     bare = mesh.textures == SLOTS["plain"]
     textures, uvs, surface = mesh.textures.copy(), mesh.uvs.copy(), mesh.surface.copy()
     textures[bare] = SLOTS["grime"]

@@ -74,12 +74,12 @@ def join(meshes: Iterable[Mesh]) -> Mesh:
 
 
 def shift(mesh: Mesh, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Mesh:
-    """The mesh translated by (x, y, z) metres."""
+    """Return the mesh translated by (x, y, z) metres."""
     return replace(mesh, corners=mesh.corners + np.array((x, y, z), np.float32))
 
 
 def transform(mesh: Mesh, matrix: Floats, offset: Iterable[float] = (0.0, 0.0, 0.0)) -> Mesh:
-    """The mesh rotated by `matrix` (3, 3), then translated by `offset`."""
+    """Return the mesh rotated by `matrix` (3, 3), then translated by `offset`."""
     turn_ = np.asarray(matrix, np.float32).T
     # One product of all points takes a quarter of the time of one for each triangle.
     corners, normals = ((a.reshape(-1, 3) @ turn_).reshape(a.shape) for a in (mesh.corners, mesh.normals))
@@ -87,7 +87,7 @@ def transform(mesh: Mesh, matrix: Floats, offset: Iterable[float] = (0.0, 0.0, 0
 
 
 def stretch(mesh: Mesh, x: float = 1.0, y: float = 1.0, z: float = 1.0) -> Mesh:
-    """The mesh scaled along the axes about the origin; normals stay perpendicular to their surfaces."""
+    """Return the mesh scaled along the axes about the origin; normals stay perpendicular to their surfaces."""
     scale = np.array((x, y, z), np.float32)
     normals = mesh.normals / scale
     normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
@@ -95,7 +95,7 @@ def stretch(mesh: Mesh, x: float = 1.0, y: float = 1.0, z: float = 1.0) -> Mesh:
 
 
 def rotation(axis: str, degrees: float) -> Floats:
-    """The rotation by `degrees` about `axis` (x, y or z), right-handed: y by 90 maps +z to +x."""
+    """Return the rotation by `degrees` about `axis` (x, y or z), right-handed: y by 90 maps +z to +x."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     rows = {
         "x": ((1, 0, 0), (0, c, -s), (0, s, c)),
@@ -106,7 +106,7 @@ def rotation(axis: str, degrees: float) -> Floats:
 
 
 def turn(mesh: Mesh, axis: str, degrees: float, about: Iterable[float] = (0.0, 0.0, 0.0)) -> Mesh:
-    """The mesh rotated by `degrees` about the line through `about` along `axis`."""
+    """Return the mesh rotated by `degrees` about the line through `about` along `axis`."""
     pivot = np.array(tuple(about), np.float32)
     matrix = rotation(axis, degrees)
     return transform(mesh, matrix, pivot - matrix @ pivot)

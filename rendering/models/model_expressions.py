@@ -54,20 +54,20 @@ class Scope:
     key: str = ""
 
     def at(self, key: str) -> Scope:
-        """The scope of the value under `key`."""
+        """Return the scope of the value under `key`."""
         return replace(self, key=key)
 
     def knowing(self, names: Iterable[str]) -> Scope:
-        """The scope with further names."""
+        """Return the scope with further names."""
         return replace(self, known=self.known | set(names))
 
     def fault(self, message: str, suggestion: str = "") -> HearthError:
-        """An error that names this place."""
+        """Return an error that names this place."""
         where = ": ".join(part for part in (self.model, self.key) if part)
         return HearthError.of(Code.BAD_TABLE, f"{where}: {message}", file=self.file, suggestion=suggestion)
 
     def expression(self, node: Node) -> Expression:
-        """The compiled expression of a text; lists become tuples.
+        """Return the compiled expression of a text; lists become tuples.
 
         Raises:
             HearthError: its syntax is not allowed, or it uses an unknown name.
@@ -82,7 +82,8 @@ class Scope:
         return Expression(compile(tree, f"<{self.file}>", "eval"), needs, text, self.fault)
 
     def loop(self, node: Node) -> tuple[tuple[str, ...], Expression]:
-        """The names bound by `k in range(3)`, `x, z in spots` or `i in a for k in b`, and the tuples of their values.
+        """Return the names bound by `k in range(3)`, `x, z in spots` or `i in a for k in b`, and the tuples of their
+        values.
 
         Raises:
             HearthError: the text is not of that form.
@@ -108,7 +109,7 @@ class Scope:
         return dict(zip(names, [*[None] * (len(names) - len(defaults)), *defaults], strict=True))
 
     def _parsed(self, text: str) -> tuple[ast.Expression, list[ast.Name]]:
-        """The checked syntax tree of a text, and the names in it."""
+        """Return the checked syntax tree of a text, and the names in it."""
         try:
             tree = ast.parse(text, mode="eval")
         except SyntaxError as error:
@@ -152,7 +153,10 @@ class Expression:
 
 
 def _source(node: Node) -> str:
-    """The Python source of an expression or of nested lists of them, which become tuples; `#rrggbb` is a string."""
+    """Return the Python source of an expression or of nested lists of them, which become tuples.
+
+    `#rrggbb` is a string.
+    """
     if isinstance(node, list):
         return f"({''.join(f'{_source(part)}, ' for part in node)})"
     if isinstance(node, dict):
@@ -162,19 +166,22 @@ def _source(node: Node) -> str:
 
 @cache
 def text_of(package: str, file: str) -> str:
-    """The text of a file of entries."""
+    """Return the text of a file of entries."""
     return (files(package) / file).read_text(encoding="utf-8")
 
 
 @cache
 def entries_of(package: str, file: str) -> dict[str, Any]:
-    """The entries of a file, with scalars as text."""
+    """Return the entries of a file, with scalars as text."""
     found: dict[str, Any] = yaml.load(text_of(package, file), getattr(yaml, "CBaseLoader", yaml.BaseLoader))
     return found
 
 
 def shared_of(package: str, file: str, known: Values) -> Values:
-    """The values of a file's entry `shared`, which all its entries can use besides `known`; mappings are tables."""
+    """Return the values of a file's entry `shared`, which all its entries can use besides `known`.
+
+    Mappings are tables.
+    """
     names, found = dict(known), Values()
     place = f"{package.removeprefix('hearth.').replace('.', '/')}/{file}"
     for name, node in entries_of(package, file).get("shared", {}).items():

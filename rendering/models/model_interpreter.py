@@ -31,7 +31,7 @@ class Interpreter:
         self.find = find
 
     def definition(self, entry: dict[str, Node], parameters: str, shared: Values, scope: Scope) -> Draw:
-        """An entry as a shape for other entries; `parameters` as in `w, d, paint, inset=0`."""
+        """Return an entry as a shape for other entries; `parameters` as in `w, d, paint, inset=0`."""
         takes = scope.parameters(parameters)
         build = self.part(entry, scope.knowing(takes))
 
@@ -45,7 +45,7 @@ class Interpreter:
         return draw
 
     def part(self, node: Node, scope: Scope) -> Build:
-        """The builder of one shape with its options and moves, or of a named mesh."""
+        """Return the builder of one shape with its options and moves, or of a named mesh."""
         if not isinstance(node, dict):
             return scope.expression(node)
         if not node:
@@ -68,7 +68,7 @@ class Interpreter:
         return build
 
     def named(self, node: Node, scope: Scope) -> tuple[list[tuple[str, Build]], Scope]:
-        """The named builders of a `let`, in order, and the scope after it."""
+        """Return the named builders of a `let`, in order, and the scope after it."""
         if not isinstance(node, dict):
             raise scope.fault("`let` takes names and their values")
         found = []

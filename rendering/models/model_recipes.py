@@ -27,7 +27,7 @@ class Catalog(Mapping[str, Recipe]):
     """The models, each read and compiled at its first use."""
 
     def __getitem__(self, name: str) -> Recipe:
-        """The model's recipe."""
+        """Return the model's recipe."""
         return _recipe(name)
 
     def __iter__(self) -> Iterator[str]:
@@ -61,7 +61,7 @@ def _shared(family: str) -> Values:
 
 @cache
 def _drawn(name: str) -> Draw | None:
-    """The shape of that name; None if no entry defines it."""
+    """Return the shape of that name; None if no entry defines it."""
     family, takes = _index().get(name, ("", ""))
     if not family:
         return None
@@ -94,7 +94,7 @@ def _recipe(name: str) -> Recipe:
 
 
 def _regions(key: str, entry: dict[str, Node], scope: Scope) -> Regions:
-    """The regions under `key` of an entry; their expressions may use the names of its `let`."""
+    """Return the regions under `key` of an entry; their expressions may use the names of its `let`."""
     named, inside = INTERPRETER.named(entry.get("let", {}), scope)
     regions = inside.at(key).expression(entry[key])
     needed, needs = [], regions.needs

@@ -63,7 +63,7 @@ def sheet(columns: int = 14, side: int = TILE, quality: str = "fine") -> NDArray
 
 
 def labelled(image: NDArray[np.uint8], label: str) -> NDArray[np.uint8]:
-    """The picture above a line of text."""
+    """Return the picture above a line of text."""
     cv2 = library("cv2")
 
     strip: NDArray[Any] = np.full((LABEL, image.shape[1], 3), 255, np.uint8)

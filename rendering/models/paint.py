@@ -31,11 +31,11 @@ class Paint:
     shine: float = 0.0
 
     def tinted(self, color: str) -> Paint:
-        """The paint in another colour; unchanged if `color` is empty."""
+        """Return the paint in another colour; unchanged if `color` is empty."""
         return replace(self, color=color) if color else self
 
     def lit(self, glow: float) -> Paint:
-        """The paint with emitted light."""
+        """Return the paint with emitted light."""
         return replace(self, glow=glow)
 
 

@@ -8,7 +8,7 @@ from hearth.rendering.models.shapes import quads
 
 
 def leaf(reach: float, rise: float) -> Mesh:
-    """A leaf that arches from the origin to `reach` metres along +z, and rises by `rise` metres."""
+    """Return a leaf that arches from the origin to `reach` metres along +z, and rises by `rise` metres."""
     t = np.linspace(0, 1, 6)
     z, y = reach * t, rise * (1.9 * t - 0.9 * t * t * t)
     half = 0.2 * reach * np.sin(np.pi * np.clip(t * 0.93 + 0.07, 0, 1)) ** 0.8

@@ -71,12 +71,12 @@ def names_of(look: Look) -> Values:
 
 
 def _over(look: Look, y: float, inset: float = 0.02, **more: float) -> Region:
-    """The footprint at height `y` without its rim; `more` replaces further sides."""
+    """Return the footprint at height `y` without its rim; `more` replaces further sides."""
     return over(look, y, inset)._replace(**more)
 
 
 def _bottom(look: Look) -> tuple[Region, ...]:
-    """The bottom of a vessel."""
+    """Return the bottom of a vessel."""
     w, h, d = look.size
     return (Region(min(0.03, h * 0.2), -w * 0.25, w * 0.25, -d * 0.25, d * 0.25, h),)
 

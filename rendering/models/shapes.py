@@ -18,7 +18,7 @@ CREASE = 40.0
 
 
 def triangles(corners: Floats, paint: Paint, normals: Floats | None = None, uvs: Floats | None = None) -> Mesh:
-    """A mesh of the (T, 3, 3) corners; flat normals and flat texture coordinates where none are given."""
+    """Return a mesh of the (T, 3, 3) corners; flat normals and flat texture coordinates where none are given."""
     corners = np.asarray(corners, np.float32).reshape(-1, 3, 3)
     if normals is None and uvs is None:
         # Triangles without an area are never visible.
@@ -80,18 +80,18 @@ _SIDES = np.array([[1, 5, 7, 3], [4, 0, 2, 6], [5, 4, 6, 7], [0, 1, 3, 2], [3, 7
 
 
 def box(center: Point, size: Point, paint: Paint) -> Mesh:
-    """A box of full `size` about `center`."""
+    """Return a box of full `size` about `center`."""
     points = _CORNERS * np.array(size, np.float32) + np.array(center, np.float32)
     return quads(points[_SIDES], paint)
 
 
 def block(x0: float, x1: float, y0: float, y1: float, z0: float, z1: float, paint: Paint) -> Mesh:
-    """A box between two corners."""
+    """Return a box between two corners."""
     return box(((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2), (x1 - x0, y1 - y0, z1 - z0), paint)
 
 
 def panel(center: Point, width: float, height: float, paint: Paint, facing: str = "+z") -> Mesh:
-    """A rectangle facing `facing` (+z, -z, +x, -x, +y) that shows its texture once, upright."""
+    """Return a rectangle facing `facing` (+z, -z, +x, -x, +y) that shows its texture once, upright."""
     w, h = width / 2, height / 2
     # Right and up as a viewer sees them; the frame is left-handed, so clockwise faces outwards.
     axes = {
@@ -107,7 +107,7 @@ def panel(center: Point, width: float, height: float, paint: Paint, facing: str 
 
 
 def medallion(center: Point, radius: float, paint: Paint, sides: int = 28) -> Mesh:
-    """A disc towards +z that shows the texture's inscribed circle once, upright."""
+    """Return a disc towards +z that shows the texture's inscribed circle once, upright."""
     angle = np.linspace(0, 2 * np.pi, sides + 1)
     ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides + 1)], axis=1)
     points = np.stack([np.zeros((sides, 3)), ring[:-1], ring[1:]], axis=1)
@@ -117,7 +117,7 @@ def medallion(center: Point, radius: float, paint: Paint, sides: int = 28) -> Me
 
 
 def cushion(center: Point, size: Point, paint: Paint, roundness: float = 0.5, steps: int = 5) -> Mesh:
-    """A box with soft edges; `roundness` 0 is a box, 1 an ellipsoid."""
+    """Return a box with soft edges; `roundness` 0 is a box, 1 an ellipsoid."""
     return shift(_cushion((float(size[0]), float(size[1]), float(size[2])), paint, roundness, steps), *center)
 
 
@@ -155,13 +155,16 @@ def _normalised(vectors: Floats) -> Floats:
 
 
 def ball(center: Point, radii: Point | float, paint: Paint, steps: int = 5) -> Mesh:
-    """An ellipsoid."""
+    """Return an ellipsoid."""
     size = (radii, radii, radii) if isinstance(radii, int | float) else radii
     return cushion(center, (size[0] * 2, size[1] * 2, size[2] * 2), paint, roundness=1.0, steps=steps)
 
 
 def lathe(profile: Sequence[tuple[float, float]], paint: Paint, sides: int = 18) -> Mesh:
-    """The surface of revolution of a profile of (radius, height) about y; its outside is left of the upward profile."""
+    """Return the surface of revolution of a profile of (radius, height) about y.
+
+    Its outside is left of the upward profile.
+    """
     return join(_ring(profile, i, paint, sides) for i in range(len(profile) - 1) if profile[i] != profile[i + 1])
 
 
@@ -195,7 +198,7 @@ def _ring(profile: Sequence[tuple[float, float]], i: int, paint: Paint, sides: i
 
 
 def _profile_normal(profile: Sequence[tuple[float, float]], i: int, end: int) -> Floats:
-    """Normal (outwards, up) at one end of segment i, smoothed with its neighbour unless the edge is sharp."""
+    """Return normal (outwards, up) at one end of segment i, smoothed with its neighbour unless the edge is sharp."""
 
     def normal(k: int) -> Floats:
         (r0, y0), (r1, y1) = profile[k], profile[k + 1]
@@ -211,7 +214,7 @@ def _profile_normal(profile: Sequence[tuple[float, float]], i: int, end: int) ->
 def cylinder(
     center: Point, radius: float, height: float, paint: Paint, top: float | None = None, sides: int = 18
 ) -> Mesh:
-    """A closed cylinder or cone on `center`; `top` is its upper radius."""
+    """Return a closed cylinder or cone on `center`; `top` is its upper radius."""
     return shift(_cylinder(float(radius), float(height), paint, radius if top is None else float(top), sides), *center)
 
 
@@ -224,7 +227,7 @@ def _cylinder(radius: float, height: float, paint: Paint, upper: float, sides: i
 def rod(
     start: Point, end: Point, radius: float, paint: Paint, end_radius: float | None = None, sides: int = 10
 ) -> Mesh:
-    """A closed cylinder from `start` to `end`."""
+    """Return a closed cylinder from `start` to `end`."""
     a, b = np.array(start, np.float64), np.array(end, np.float64)
     # Bones keep their lengths up to rounding errors; rounded lengths hit the cache.
     length = round(float(np.linalg.norm(b - a)), 7)
@@ -235,7 +238,7 @@ def rod(
 
 
 def upright_to(direction: Floats) -> Floats:
-    """A rotation that maps +y to the unit vector `direction`."""
+    """Return a rotation that maps +y to the unit vector `direction`."""
     y = np.asarray(direction, np.float64)
     helper = np.array((0.0, 0.0, 1.0)) if abs(y[2]) < 0.9 else np.array((1.0, 0.0, 0.0))
     x = np.cross(y, helper)
@@ -262,7 +265,7 @@ def arc(center: Point, radius: float, start: float, end: float, plane: str = "xy
 
 
 def prism(outline: Sequence[tuple[float, float]], depth: float, paint: Paint) -> Mesh:
-    """A plate: the simple polygon `outline` in x and y (counter-clockwise), from z = -depth/2 to depth/2."""
+    """Return a plate: the simple polygon `outline` in x and y (counter-clockwise), from z = -depth/2 to depth/2."""
     flat = np.array(outline, np.float64)
     cut = np.array(_ears([tuple(p) for p in flat]), int)
     front = np.insert(flat, 2, depth / 2, axis=1)

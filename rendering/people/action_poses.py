@@ -66,13 +66,13 @@ class Actor:
         return self.spot[0], self.level, self.spot[1]
 
     def local(self, point: Point) -> Point:
-        """A world point in the figure's frame."""
+        """Return a world point in the figure's frame."""
         x, z = point[0] - self.spot[0], point[2] - self.spot[1]
         c, s = cos(radians(self.yaw)), sin(radians(self.yaw))
         return x * c - z * s, point[1] - self.level, x * s + z * c
 
     def world(self, point: Point) -> Point:
-        """A point of the figure's frame in the world."""
+        """Return a point of the figure's frame in the world."""
         c, s = cos(radians(self.yaw)), sin(radians(self.yaw))
         return (
             self.spot[0] + point[0] * c + point[2] * s,
@@ -91,7 +91,7 @@ class Actor:
 
 
 def initial_actors(graph: EnvironmentGraph, floor: FreeFloor, places: Places, seed: int) -> tuple[Actor, ...]:
-    """The characters of a graph before the first tick, sorted by id."""
+    """Return the characters of a graph before the first tick, sorted by id."""
     actors: list[Actor] = []
     for number, node in enumerate(n for n in graph.nodes if n.category == CHARACTER_CATEGORY):
         body = person(derive(seed, "body", number))
@@ -102,7 +102,10 @@ def initial_actors(graph: EnvironmentGraph, floor: FreeFloor, places: Places, se
 
 
 def _initial(node: Node, room: int, floor: FreeFloor, taken: list[Spot]) -> Spot:
-    """The free spot nearest to the character's box if that is in its room; else the middle of the room's free floor."""
+    """Return the free spot nearest to the character's box if that is in its room.
+
+    Else the middle of the room's free floor.
+    """
     if node.box:
         x, z = node.box.center[0], node.box.center[2]
         near = next(floor.spots_for(node.box, None, room, (x, z), taken), None)
@@ -112,7 +115,7 @@ def _initial(node: Node, room: int, floor: FreeFloor, taken: list[Spot]) -> Spot
 
 
 def room_of(graph: EnvironmentGraph, node_id: int) -> int:
-    """The id of the room a node is INSIDE, or 0."""
+    """Return the id of the room a node is INSIDE, or 0."""
     rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
     return next(
         (e.target for e in graph.edges if e.source == node_id and e.relation == "INSIDE" and e.target in rooms), 0
@@ -122,7 +125,7 @@ def room_of(graph: EnvironmentGraph, node_id: int) -> int:
 def moved(
     actor: Actor, graph: EnvironmentGraph, places: Places, floor: FreeFloor, step: Step | None, others: list[Spot]
 ) -> Actor:
-    """The character at the position where it performs a step, hands in default pose.
+    """Return the character at the position where it performs a step, hands in default pose.
 
     The actor is seated if the graph says so, and gets up only for objects that its hands cannot reach from there.
     """
@@ -155,7 +158,7 @@ def moved(
 def elsewhere(
     actor: Actor, graph: EnvironmentGraph, places: Places, floor: FreeFloor, step: Step, others: list[Spot]
 ) -> Iterator[Actor]:
-    """The character at other spots from which it can act, best first."""
+    """Yield the character at other spots from which it can act, best first."""
     target = _goal(step)
     pose, front = reachable(target, places) if target else (None, None)
     if pose is None:
@@ -191,7 +194,7 @@ def _out_of_reach(seated: Actor, places: Places, step: Step | None) -> bool:
 
 
 def _goal(step: Step | None) -> int:
-    """The object that hands or gaze go to in a step; 0 for none."""
+    """Return the object that hands or gaze go to in a step; 0 for none."""
     if step is None or not step.objects:
         return 0
     return step.objects[min(gesture_of(step).about, len(step.objects) - 1)].node or 0
@@ -208,13 +211,13 @@ def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -
 
 
 def open_side(pose: Pose) -> float | None:
-    """The direction of the front of a couch, the only side from which one lies down there; None for beds."""
+    """Return the direction of the front of a couch, the only side from which one lies down there; None for beds."""
     yaw = pose.yaw or 0.0
     return None if local_size(pose.box.size, yaw)[2] >= LONG else yaw
 
 
 def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
-    """The pose of a thing, and the direction of its front, or of its container's front."""
+    """Return the pose of a thing, and the direction of its front, or of its container's front."""
     pose = places.poses.get(node_id)
     top, inside = outermost(node_id, places)
     outer = places.poses.get(top)
@@ -224,7 +227,7 @@ def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
 
 
 def outermost(node_id: int, places: Places) -> tuple[int, bool]:
-    """The outermost support or container of a thing (itself if it has none), and whether it is inside any."""
+    """Return the outermost support or container of a thing (itself if it has none), and whether it is inside any."""
     top, inside = node_id, False
     for _ in range(6):
         location = places.locations.get(top)
@@ -238,7 +241,7 @@ def outermost(node_id: int, places: Places) -> tuple[int, bool]:
 
 
 def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
-    """The actor on the seat or bed that the graph gives; unchanged if it gives none."""
+    """Return the actor on the seat or bed that the graph gives; unchanged if it gives none."""
     states = _states(graph, actor.node.id)
     seat = _seat(actor, graph, step)
     pose = places.poses.get(seat)
@@ -283,7 +286,7 @@ def _depth(z0: float, z1: float) -> float:
 
 
 def _crowd(at: Point, places: Places, seat: int) -> float:
-    """Number of things on a seat near a point."""
+    """Return the number of things on a seat near a point."""
     on = [
         places.poses[i].box.center
         for i, location in places.locations.items()
@@ -297,7 +300,7 @@ def _states(graph: EnvironmentGraph, node_id: int) -> frozenset[str]:
 
 
 def _seat(actor: Actor, graph: EnvironmentGraph, step: Step | None) -> int:
-    """The seat or bed in use. A character stays ON a seat after it stands up, so step and posture decide."""
+    """Return the seat or bed in use. A character stays ON a seat after it stands up, so step and posture decide."""
     on = sorted(e.target for e in graph.edges if e.source == actor.node.id and e.relation == "ON")
     named = _goal(step) if gesture_of(step).rests else actor.place
     return named if named in on else next(iter(on), 0)
@@ -316,7 +319,7 @@ def _towards(spot: Spot, point: Point, usual: float) -> float:
 
 
 def dressed_for(body: Body, graph: EnvironmentGraph, me: int) -> Body:
-    """The body in the colours of its worn clothes."""
+    """Return the body in the colours of its worn clothes."""
     classes = {node.id: node.class_name for node in graph.nodes}
     for edge in sorted(e for e in graph.edges if e.target == me and e.relation == "ON"):
         name = classes.get(edge.source, "")

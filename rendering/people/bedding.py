@@ -54,7 +54,7 @@ BESIDE = 0.3
 
 
 def turned_back(places: Places, actors: Sequence[Actor]) -> Places:
-    """The places with the bedding laid around those who lie, and folded back where nobody does any more."""
+    """Return the places with the bedding laid around those who lie, and folded back where nobody does any more."""
     poses = dict(places.poses)
     sleepers = {actor.place: actor for actor in actors if actor.body_pose.posture == "lying" and actor.place in poses}
     for bed, nodes in _bedding_on(places).items():
@@ -82,7 +82,7 @@ def covers(pose: Pose) -> bool:
 
 
 def drawn(pose: Pose, share: float) -> Pose:
-    """A blanket over legs, drawn over them by a share: folded back to the foot at 0, as it is at 1."""
+    """Return a blanket over legs, drawn over them by a share: folded back to the foot at 0, as it is at 1."""
     yaw, (x, y, z) = pose.yaw or 0.0, pose.box.center
     w, high, deep = local_size(pose.box.size, yaw)
     d = OPENED + (deep - OPENED) * share
@@ -93,7 +93,7 @@ def drawn(pose: Pose, share: float) -> Pose:
 
 
 def edge(pose: Pose) -> Point:
-    """The middle of a blanket's upper edge, which hands hold."""
+    """Return the middle of a blanket's upper edge, which hands hold."""
     yaw, (x, y, z), h = pose.yaw or 0.0, pose.box.center, pose.box.size[1]
     half = local_size(pose.box.size, yaw)[2] / 2
     return x - half * sin(radians(yaw)), y + (GRASPED - 0.5) * h + PALM, z - half * cos(radians(yaw))
@@ -144,7 +144,7 @@ class Remade:
 
 
 def glided(start: Pose, end: Pose, share: float) -> Pose:
-    """A pose between two, in an arc over what lies there; bedding is the same from both ends."""
+    """Return a pose between two, in an arc over what lies there; bedding is the same from both ends."""
     turn = ((end.yaw or 0.0) - (start.yaw or 0.0) + 90) % 180 - 90
     yaw = (end.yaw or 0.0) - turn * (1 - share)
     sizes = (local_size(pose.box.size, pose.yaw or 0.0) for pose in (start, end))
@@ -182,7 +182,7 @@ class _Bed:
         return (BESIDE, high) if high > -low else (low, -BESIDE)
 
     def laid(self, nodes: Sequence[Node], places: Places) -> dict[int, Pose]:
-        """The poses of its bedding, by id; what would be in another is on top of it."""
+        """Return the poses of its bedding, by id; what would be in another is on top of it."""
         covers = [node for node in nodes if places.knowledge.has(node.class_name, "COVER_OBJECT")]
         pillows = [node for node in nodes if node not in covers]
         wanted = [(node, self._under_head()) for node in pillows[:1]] + [
@@ -226,7 +226,7 @@ class _Bed:
 
 
 def _lifted(box: Box, others: Sequence[Box]) -> Box:
-    """A box, lifted onto those in which it would be."""
+    """Return a box, lifted onto those in which it would be."""
     (x, y, z), (w, h, d) = box
     for (ox, oy, oz), (ow, oh, od) in sorted(others, key=lambda other: other.center[1]):
         beside = abs(x - ox) >= (w + ow) / 2 - 1e-6 or abs(z - oz) >= (d + od) / 2 - 1e-6
@@ -236,7 +236,7 @@ def _lifted(box: Box, others: Sequence[Box]) -> Box:
 
 
 def _folded(node: Node, places: Places) -> Point:
-    """The size of bedding that is not spread."""
+    """Return the size of bedding that is not spread."""
     if node.box is not None:
         return local_size(node.box.size, node.yaw or 0.0)
     known = form(node.class_name, places.knowledge)

@@ -59,7 +59,7 @@ PLACE_OF: Mapping[str, str] = _DATA["classes"]
 
 
 def at_body(actor: Actor, class_name: str, acting: str, busy: Mapping[str, int], grip: str = "flat") -> dict[str, Aim]:
-    """The aims of hands at the place on the body of a garment or a part of the body.
+    """Return the aims of hands at the place on the body of a garment or a part of the body.
 
     Args:
         actor: with hands in default pose.

@@ -118,11 +118,11 @@ class BodyPose:
     sink: float = 0.0
 
     def target(self, side: str) -> Point | None:
-        """The target of the `r` or `l` palm."""
+        """Return the target of the `r` or `l` palm."""
         return self.right if side == "r" else self.left
 
     def hand(self, side: str) -> Hand:
-        """The `r` or `l` hand."""
+        """Return the `r` or `l` hand."""
         return self.right_hand if side == "r" else self.left_hand
 
     def tuck(self, side: str) -> float:
@@ -134,7 +134,7 @@ STILL = BodyPose()
 
 
 def drawn_in(pose: BodyPose, tucked: tuple[float, float]) -> BodyPose:
-    """A pose with arms drawn in, also those that carry something with one hand."""
+    """Return a pose with arms drawn in, also those that carry something with one hand."""
     right, left = (
         _nearer(pose.target(side), pose.hand(side), tuck) for side, tuck in zip("rl", tucked, strict=True)
     )  # fmt: skip

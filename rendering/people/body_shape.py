@@ -93,7 +93,7 @@ def is_present() -> bool:
 
 @cache
 def body_data() -> BodyData:
-    """The file of bodies, read once."""
+    """Return the file of bodies, read once."""
     with (files("hearth.rendering.people") / FILE).open("rb") as file, np.load(file) as stored:
         names = [str(name) for name in stored["target_names"]]
         # Stored are differences to the point before, low bytes apart from high ones.
@@ -115,7 +115,7 @@ def body_data() -> BodyData:
 
 
 def target_weights(shape: Shape) -> dict[str, float]:
-    """The weight of each target that shapes a person, as MakeHuman combines them."""
+    """Return the weight of each target that shapes a person, as MakeHuman combines them."""
     found: dict[str, float] = {}
     for sex, of_sex in (("female", 1 - shape.sex), ("male", shape.sex)):
         for age, of_age in zip(("child", "young", "old"), _ages(shape.age), strict=True):
@@ -160,7 +160,7 @@ class Shaped(NamedTuple):
 
 @lru_cache(maxsize=64)
 def shaped(shape: Shape, height: float) -> Shaped:
-    """A shape's points and bones, scaled to a height in metres."""
+    """Return a shape's points and bones, scaled to a height in metres."""
     data = body_data()
     weights = target_weights(shape)
     rows = [data.targets[name] for name in weights]
@@ -177,7 +177,7 @@ def shaped(shape: Shape, height: float) -> Shaped:
 
 @lru_cache(maxsize=64)
 def proportions(shape: Shape, height: float) -> Proportions:
-    """The proportions of a shaped person, which are those of its bones."""
+    """Return the proportions of a shaped person, which are those of its bones."""
     data, person = body_data(), shaped(shape, height)
     head = {bone: person.heads[number] for number, bone in enumerate(data.bones)}
     tail = {bone: person.tails[number] for number, bone in enumerate(data.bones)}

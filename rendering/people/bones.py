@@ -161,7 +161,7 @@ def _palm_frame(shape: Shape, height: float, side: str) -> tuple[Vector, Vector]
 
 @lru_cache(maxsize=512)
 def _fingers(shape: Shape, height: float, side: str, grip: str) -> Motions:
-    """The motions of the finger bones in the frame of a hand in the rest pose."""
+    """Return the motions of the finger bones in the frame of a hand in the rest pose."""
     rest, rig, bends = _rest(shape, height), RIG_SIDE[side], GRIPS[grip]
     along, palm = _palm_frame(shape, height, side)
     axis = unit(np.cross(along, palm))
@@ -200,7 +200,7 @@ def _thumb(rest: Joints, rig: str, bends: tuple[float, float, float], along: Vec
 
 
 def _swing(a: Vector, b: Vector) -> Floats:
-    """The smallest rotation from one direction to another."""
+    """Return the smallest rotation from one direction to another."""
     a, b = unit(a), unit(b)
     cross, cosine = np.cross(a, b), float(a @ b)
     if cosine < -0.9999:

@@ -44,7 +44,7 @@ def in_world(actor: Actor, points: Iterable[Floats]) -> Floats:
 
 
 def at_rest(actor: Actor, solids: Solids, acting: Sequence[str] = ()) -> Actor:
-    """The actor with arms drawn in, or elbows turned, where they would be in something solid.
+    """Return the actor with arms drawn in, or elbows turned, where they would be in something solid.
 
     Args:
         actor: in a pose.
@@ -73,7 +73,7 @@ def _arms_inside(actor: Actor, solids: Solids) -> list[bool]:
 
 
 def _elbow_turned(actor: Actor, side: str, solids: Solids) -> Actor:
-    """The actor with the least turn of an elbow that keeps it out of solid things; unchanged if none does."""
+    """Return the actor with the least turn of an elbow that keeps it out of solid things; unchanged if none does."""
     hand = actor.body_pose.hand(side)
     for swivel in (0.0, *ELBOWS):
         turned = hand._replace(swivel=hand.swivel + swivel)

@@ -65,7 +65,7 @@ class Dressed:
 
 
 def parts_worn(body: Body) -> tuple[str, ...]:
-    """The names of the surfaces that draw a body."""
+    """Return the names of the surfaces that draw a body."""
     hair = HAIR.get(body.style, HAIR["short"])
     bare = dict.fromkeys((*UNDER[body.garment], *UNDER[body.legwear]))
     return ("head", "hands", *bare, "eyes", "brows", body.garment, body.legwear, "shoes", *hair)
@@ -73,7 +73,7 @@ def parts_worn(body: Body) -> tuple[str, ...]:
 
 @lru_cache(maxsize=32)
 def dressed(body: Body, asleep: bool = False) -> Dressed:
-    """A body's surfaces in the rest pose; with its eyes closed if it is asleep."""
+    """Return a body's surfaces in the rest pose; with its eyes closed if it is asleep."""
     assert body.shape is not None
     data = body_data()
     shape = body.shape._replace(face=(*body.shape.face, ("closed", 1.0))) if asleep else body.shape
@@ -181,7 +181,7 @@ def _uvs(points: Floats, triangles: NDArray[np.int64], density: Floats) -> Float
 
 
 def dressed_mesh(body: Body, body_pose: BodyPose) -> Mesh:
-    """The mesh of a body in a pose, in the figure's frame."""
+    """Return the mesh of a body in a pose, in the figure's frame."""
     from hearth.rendering.people.skinning import skinned
 
     assert isinstance(body.shape, Shape)

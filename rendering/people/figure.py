@@ -30,7 +30,7 @@ def _joints(figure: Figure) -> Joints:
 
 @lru_cache(maxsize=16)
 def figure_mesh(figure: Figure) -> Mesh:
-    """The mesh of a figure, in its own frame."""
+    """Return the mesh of a figure, in its own frame."""
     if figure.body.shape is None:
         return simple_mesh(figure.body, figure.body_pose, figure.joints())
     return dressed_mesh(figure.body, figure.body_pose)

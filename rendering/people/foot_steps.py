@@ -12,7 +12,7 @@ from hearth.rendering.people.skeleton import feet_of
 
 
 def planted(actor: Actor, feet: Actor) -> Actor:
-    """An actor whose feet are where another's are."""
+    """Return an actor whose feet are where another's are."""
     pair = feet_of(feet.body_pose, feet.body.proportions)
     places = [in_world(Place(*feet.spot, feet.yaw), foot) for foot in pair]
     here = Place(*actor.spot, actor.yaw)
@@ -21,7 +21,7 @@ def planted(actor: Actor, feet: Actor) -> Actor:
 
 
 def stepping(one: Actor, other: Actor, share: float) -> tuple[Foot, Foot]:
-    """The feet, in the frame of `one` at present, of a body whose feet step to where another's are, one by one.
+    """Return the feet, in the frame of `one` at present, of a body whose feet step to where another's are, one by one.
 
     Args:
         one: the actor now, anywhere between the start and `other`; its feet are those at the start.

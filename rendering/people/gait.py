@@ -96,12 +96,12 @@ class Print(NamedTuple):
 
 
 def angle(start: float, end: float) -> float:
-    """The smaller angle from one direction to another, degrees."""
+    """Return the smaller angle from one direction to another, degrees."""
     return (end - start + 180) % 360 - 180
 
 
 def between(a: Spot, b: Spot, share: float) -> Spot:
-    """A point of a line."""
+    """Return a point of a line."""
     return a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share
 
 
@@ -134,7 +134,7 @@ class Route:
         return self.points[-1]
 
     def spot(self, way: float) -> Spot:
-        """The point after some metres."""
+        """Return the point after some metres."""
         near = min(ROUNDED, way, self.length - way)
         if near <= 1e-6:
             return self._on_line(way)
@@ -142,7 +142,7 @@ class Route:
         return sum(m[0] for m in marks) / 5, sum(m[1] for m in marks) / 5
 
     def heading(self, way: float) -> float:
-        """The direction of walking after some metres, degrees."""
+        """Return the direction of walking after some metres, degrees."""
         a, b = self.spot(max(way - AROUND, 0.0)), self.spot(min(way + AROUND, self.length))
         return degrees(atan2(b[0] - a[0], b[1] - a[1]))
 
@@ -168,7 +168,7 @@ class Movement(NamedTuple):
 
 
 def turning(place: Place, yaw: float, reach: float = 0.0) -> Movement:
-    """A turn on the spot, with hands as far as `reach` metres from the body's axis."""
+    """Return a turn on the spot, with hands as far as `reach` metres from the body's axis."""
     turn = angle(place.yaw, yaw)
     # An eased turn is fastest in its middle.
     seconds = max(abs(turn) / TURNING, abs(radians(turn)) * reach * pi / 2 / SWUNG, 0.4)
@@ -176,7 +176,7 @@ def turning(place: Place, yaw: float, reach: float = 0.0) -> Movement:
 
 
 def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float, reach: float = 0.0) -> Movement:
-    """A walk along a route, which starts in the direction of `place` and ends in the direction `yaw`.
+    """Return a walk along a route, which starts in the direction of `place` and ends in the direction `yaw`.
 
     Hands are as far as `reach` metres from the body's axis.
     """
@@ -199,7 +199,7 @@ def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float, reac
 
 
 def slowed(move: Movement, reach: float = 0.0) -> Movement:
-    """The same movement, slower where the body turns faster than `CORNERING`, or hands at `reach` than `SWUNG`."""
+    """Return the movement, slower where the body turns faster than `CORNERING` or hands at `reach` than `SWUNG`."""
     most = min(CORNERING, degrees(SWUNG / max(reach, 1e-6)))
     count = max(1, ceil(move.seconds / LOOKED))
     times = [move.seconds * k / count for k in range(count + 1)]
@@ -285,7 +285,7 @@ class Gait:
         return found[0], found[1]
 
     def place(self, time: float) -> Place:
-        """The body's place."""
+        """Return the body's place."""
         for move in self.moves:
             if time < move.seconds:
                 return move.at(time)
@@ -364,7 +364,7 @@ class Gait:
         return float(np.interp(time / BOBBING, np.arange(len(self.sinks)), self.sinks)) * ends
 
     def stride(self, time: float) -> float:
-        """The swing of the arms: as far as the feet are apart on average over some moments, -1.3 to 1.3."""
+        """Return the swing of the arms: as far as the feet are apart on average over some moments, -1.3 to 1.3."""
         found = 0.0
         for shift, weight in SMOOTHED:
             now = min(max(time + shift, 0.0), self.moving)
@@ -373,13 +373,13 @@ class Gait:
         return min(max(found, -1.3), 1.3) * eased(min(time, self.seconds - time) / SETTLING)
 
     def carried(self, tucked: tuple[float, float]) -> BodyPose:
-        """The pose of trunk and arms, drawn in by some shares more than at the start."""
+        """Return the pose of trunk and arms, drawn in by some shares more than at the start."""
         pose, start = self.actor.body_pose, self.actor.body_pose.tucked
         more = tuple(max(now - was, 0.0) for now, was in zip(tucked, start, strict=True))
         return replace(drawn_in(pose, (more[0], more[1])), tucked=tucked)
 
     def at(self, time: float) -> Actor:
-        """The actor after some seconds."""
+        """Return the actor after some seconds."""
         if time >= self.seconds:
             place, feet = self.place(self.moving), None
         else:
@@ -397,7 +397,7 @@ def in_world(place: Place, foot: Foot) -> Place:
 
 
 def local(place: Place, foot: Place, lift: float, pitch: float) -> Foot:
-    """A foot that is somewhere, in the frame of a body at a place."""
+    """Return a foot that is somewhere, in the frame of a body at a place."""
     c, s = cos(place.yaw * pi / 180), sin(place.yaw * pi / 180)
     dx, dz = foot.x - place.x, foot.z - place.z
     return Foot(dx * c - dz * s, dx * s + dz * c, lift, angle(place.yaw, foot.yaw), pitch)

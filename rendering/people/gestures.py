@@ -55,5 +55,5 @@ GESTURES: dict[str, Gesture] = {
 
 
 def gesture_of(step: Step | None) -> Gesture:
-    """The gesture of a step; None gives a gaze ahead."""
+    """Return the gesture of a step; None gives a gaze ahead."""
     return STILL if step is None else GESTURES.get(step.action, LOOK)

@@ -46,7 +46,7 @@ TILTED, DRINKING = 80.0, 38.0
 def gesturing(
     gesture: Gesture, actor: Actor, held: Mapping[str, int], graph: EnvironmentGraph, places: Places, step: Step | None
 ) -> dict[str, Aim]:
-    """The aims of the hands that act."""
+    """Return the aims of the hands that act."""
     if step is None or not gesture.hand:
         return {}
     acting = _acting(gesture, actor, held, graph, places, step)
@@ -72,7 +72,7 @@ def gesturing(
 def _acting(
     gesture: Gesture, actor: Actor, held: Mapping[str, int], graph: EnvironmentGraph, places: Places, step: Step
 ) -> str:
-    """The acting hand: the one that holds a tool of the gesture, unless a hand is asked for."""
+    """Return the acting hand: the one that holds a tool of the gesture, unless a hand is asked for."""
     if gesture.tools and not value(step, "hand"):
         for side, number in sorted(held.items(), reverse=True):
             name = node_of(graph, number).class_name
@@ -82,7 +82,7 @@ def _acting(
 
 
 def _putting(actor: Actor, thing: int, side: str, graph: EnvironmentGraph, places: Places) -> dict[str, Aim]:
-    """The hand where the thing has been put down."""
+    """Return the hand where the thing has been put down."""
     pose = places.poses.get(thing)
     if pose is None:
         return {}
@@ -203,7 +203,7 @@ def _rubbing(
 def _on_body(
     actor: Actor, held: Mapping[str, int], side: str, target: int, graph: EnvironmentGraph, places: Places
 ) -> dict[str, Aim]:
-    """A hand, or what it holds, on a part of one's own body; nothing if the target is none."""
+    """Return a hand, or what it holds, on a part of one's own body; nothing if the target is none."""
     name = node_of(graph, target).class_name if target else ""
     if name == TEETH:
         return _to_mouth(actor, held, side, graph, places)
@@ -230,7 +230,10 @@ def _pushing(actor: Actor, held: Mapping[str, int], target: int, places: Places)
 def _by_nearer_hand(
     touch: Callable[[str], dict[str, Aim]], side: str, held: Mapping[str, int], asked: bool
 ) -> dict[str, Aim]:
-    """A touch by the hand that is meant; by the other, if both are free and the first would reach across the body."""
+    """Return a touch by the hand that is meant.
+
+    By the other, if both are free and the first would reach across the body.
+    """
     found = touch(side)
     across = any(SIDES[side] * aim.palm[0] < -ACROSS for aim in found.values())
     return touch(OTHER[side]) if across and not held and not asked else found
@@ -239,7 +242,7 @@ def _by_nearer_hand(
 def _touching(
     gesture: Gesture, actor: Actor, side: str, target: int, graph: EnvironmentGraph, places: Places
 ) -> dict[str, Aim]:
-    """A hand on an object: at its handle if the gesture opens it, else at the nearest point."""
+    """Return a hand on an object: at its handle if the gesture opens it, else at the nearest point."""
     pose = places.poses.get(target) or reachable(target, places)[0]
     if pose is None:
         return _on_body(actor, {}, side, target, graph, places)

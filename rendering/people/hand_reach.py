@@ -29,7 +29,7 @@ from hearth.schemas.program import Step
 
 
 def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
-    """The character with hands and gaze on the step's targets."""
+    """Return the character with hands and gaze on the step's targets."""
     gesture = gesture_of(step)
     body = dressed_for(actor.body, graph, actor.node.id)
     pose = replace(actor.body_pose, asleep=gesture.asleep)
@@ -49,7 +49,7 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
 
 
 def _stooped(aim: Aim, actor: Actor, acting: Aims) -> Aim:
-    """The aim of a hand that carries something, which sinks with the shoulders as the other hand reaches down."""
+    """Return the aim of a hand that carries a thing, which sinks with the shoulders as the other hand reaches down."""
     if not acting:
         return aim
     up, down = (
@@ -61,7 +61,7 @@ def _stooped(aim: Aim, actor: Actor, acting: Aims) -> Aim:
 
 
 def reach_for(here: Actor, there: Actor, places: Places, step: Step) -> Actor:
-    """The character at the moment its hand reaches the object, before the world changes.
+    """Return the character at the moment its hand reaches the object, before the world changes.
 
     Args:
         here: at its acting position, hands in default pose.
@@ -86,7 +86,7 @@ def reach_for(here: Actor, there: Actor, places: Places, step: Step) -> Actor:
 
 
 def target_point(step: Step | None, which: str, places: Places, actor: Actor) -> Point | None:
-    """The target of the gaze in the world: the nearest point of a step's object."""
+    """Return the target of the gaze in the world: the nearest point of a step's object."""
     if step is None or not step.objects:
         return None
     ref = step.objects[-1 if which == "second" else 0]

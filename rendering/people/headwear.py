@@ -44,7 +44,7 @@ WORN: Mapping[str, Worn] = {
 
 
 def on_head(prepared: PreparedScene, places: Places, actor: Actor, node: Node) -> Iterator[Thing]:
-    """The drawn things of a node that is worn on the head, which they turn and nod with; none of other nodes."""
+    """Yield the drawn things of a node that is worn on the head, which they turn and nod with; none of other nodes."""
     worn = WORN.get(node.class_name)
     if worn is None:
         return

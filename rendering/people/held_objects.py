@@ -105,14 +105,16 @@ def hold_of_node(node: Node, places: Places, side: str) -> Hold:
 
 
 def grip_point(hold: Hold, box: Box, yaw: float) -> Point:
-    """The grip point in the world of a thing that stands somewhere."""
+    """Return the grip point in the world of a thing that stands somewhere."""
     c, s = cos(radians(yaw)), sin(radians(yaw))
     (x, y, z), (px, py, pz) = box.center, hold.point
     return x + px * c + pz * s, y - box.size[1] / 2 + py, z - px * s + pz * c
 
 
 def held_things(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...]) -> dict[int, tuple[Thing, ...]]:
-    """The drawn things that hands hold and heads wear, their contents, and the liquid that pours out of them, by id."""
+    """Return the drawn things that hands hold and heads wear, their contents, and the liquid that pours out of them, by
+    id.
+    """
     nodes = {node.id: node for node in places.graph.nodes}
     found: dict[int, tuple[Thing, ...]] = {}
     for actor in actors:
@@ -128,7 +130,7 @@ def held_things(prepared: PreparedScene, places: Places, actors: tuple[Actor, ..
 def _contents(
     prepared: PreparedScene, places: Places, vessel: Node, drawn: Thing, nodes: Mapping[int, Node]
 ) -> dict[int, tuple[Thing, ...]]:
-    """The drawn things that are in and on one, by id."""
+    """Return the drawn things that are in and on one, by id."""
     found: dict[int, tuple[Thing, ...]] = {}
     turn = rotation("y", drawn.yaw) @ tilted(drawn.tilt)
     for number, pose in places.packed.get(vessel.id, {}).items():
@@ -159,7 +161,7 @@ def _in_hand(prepared: PreparedScene, places: Places, actor: Actor, node: Node, 
 
 @lru_cache(maxsize=1024)
 def nearest_surface(model: Model, point: Point) -> Point:
-    """The point of a model's surface nearest to a point of its frame."""
+    """Return the point of a model's surface nearest to a point of its frame."""
     corners = own_mesh(Thing(0, "", model)).corners.astype(np.float64)
     a, b, c = (corners[:, k] for k in range(3))
     best, least = point, np.inf
@@ -182,7 +184,7 @@ POURED = {"water": "#bcd8ea", "milk": "#f4f1ea", "juice": "#e8a13a", "wine": "#6
 def _stream(
     prepared: PreparedScene, actor: Actor, node: Node, hold: Hold, held: Held, palm: Vector, size: Point
 ) -> Iterator[Thing]:
-    """The stream that pours from the lip of a tilted thing."""
+    """Yield the stream that pours from the lip of a tilted thing."""
     lip = palm + tilted((held.pitch, held.roll, 0.0)) @ _lip(hold, held, size)
     assert held.stream is not None
     high = float(lip[1] - held.stream[1])

@@ -77,7 +77,7 @@ def _ready(sits: Actor, up: Actor) -> Actor:
 
 
 def _swung(sits: Actor, up: Actor) -> Segment:
-    """The legs are raised onto the bed while the body turns along it."""
+    """Return the legs are raised onto the bed while the body turns along it."""
     ends = feet_of(up.body_pose, up.body.proportions)
     starts = feet_of(sits.body_pose, sits.body.proportions)
 
@@ -95,7 +95,7 @@ def _swung(sits: Actor, up: Actor) -> Segment:
 
 
 def _between(one: Foot, other: Foot, raised: float, turned: float) -> Foot:
-    """A foot that is raised, and stretched and turned meanwhile."""
+    """Return a foot that is raised, and stretched and turned meanwhile."""
     flat = ((foot.x, foot.z, foot.yaw, foot.pitch) for foot in (one, other))
     x, z, yaw, pitch = (a + (b - a) * turned for a, b in zip(*flat, strict=True))
     lift = one.lift + (other.lift - one.lift) * raised + RAISED * sin(pi * turned)
@@ -103,7 +103,7 @@ def _between(one: Foot, other: Foot, raised: float, turned: float) -> Foot:
 
 
 def _moving(actor: Actor, way: Callable[[float], Point]) -> Callable[[float], Actor]:
-    """The actor at each share of a way along which both hands take something.
+    """Return the actor at each share of a way along which both hands take something.
 
     The body stoops evenly: how far it has to for each point alone changes by leaps.
     """
@@ -117,7 +117,7 @@ def _moving(actor: Actor, way: Callable[[float], Point]) -> Callable[[float], Ac
 
 
 def _holding(actor: Actor, at: Point) -> Actor:
-    """The actor with both hands at a point of the world, and looking there."""
+    """Return the actor with both hands at a point of the world, and looking there."""
     x, y, z = actor.local(at)
     hand = Hand("sheet", (0.0, -1.0, 0.0))
     pose = replace(actor.body_pose, right=(x + APART, y, z), left=(x - APART, y, z), right_hand=hand, left_hand=hand)

@@ -51,7 +51,7 @@ class Span(NamedTuple):
 
 
 def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Iterator[Frame]:
-    """The frames of a film of an execution.
+    """Yield the frames of a film of an execution.
 
     Args:
         trajectory: as `snapshots.trajectory_of` gives it.
@@ -148,8 +148,8 @@ class _SceneCache:
         moved: Mapping[int, Pose],
         time: float,
     ) -> Scene:
-        """A keyframe's scene with actors as in a frame, some things partly open or elsewhere, and effects as they are
-        at a time.
+        """Return a keyframe's scene with actors as in a frame, some things partly open or elsewhere, and effects as
+        they are at a time.
         """
         prepared, places = self.trajectory.prepared, keyframe.places
         held = held_things(prepared, places, actors)
@@ -183,5 +183,5 @@ class _SceneCache:
 
 
 def _opened(node: Node) -> Node:
-    """The node with state OPEN, drawn while it swings."""
+    """Return the node with state OPEN, drawn while it swings."""
     return replace(node, states=tuple(sorted({*node.states, "OPEN"} - {"CLOSED"})))

@@ -36,7 +36,7 @@ def holds_of(actor: Actor, places: Places) -> Holds:
 
 
 def paced(segment: Segment, holds: Holds) -> Segment:
-    """The same motion, slower if anything would be too fast."""
+    """Return the same motion, slower if anything would be too fast."""
     points = np.stack([_points(segment.at(number / LOOKED), holds) for number in range(LOOKED + 1)])
     steps = np.diff(points, axis=0)
     most = np.array([FASTEST] * BODY + [THINGS] * (points.shape[1] - BODY))

@@ -76,7 +76,7 @@ class Track:
         return None
 
     def at(self, time: float) -> Actor:
-        """The actor `time` seconds after the start of the tick."""
+        """Return the actor `time` seconds after the start of the tick."""
         for segment in self.segments:
             if time < segment.seconds:
                 return segment.at(time / segment.seconds)
@@ -85,7 +85,7 @@ class Track:
 
 
 def track(one: Actor, other: Actor, before: Keyframe, after: Keyframe, step: Step | None) -> Track:
-    """An actor's motion from one keyframe to the next."""
+    """Return an actor's motion from one keyframe to the next."""
     segments: list[Segment] = []
     rest = _resting(one, before)
     held, then = holds_of(one, before.places), holds_of(other, after.places)
@@ -110,7 +110,7 @@ def track(one: Actor, other: Actor, before: Keyframe, after: Keyframe, step: Ste
 
 
 def acted(actor: Actor, gesture: Gesture) -> Segment:
-    """The hands at work: what they do once they have arrived."""
+    """Return the hands at work: what they do once they have arrived."""
 
     def at(share: float) -> Actor:
         time, soft = share * gesture.seconds, sin(pi * min(max(share, 0.0), 1.0)) ** 0.5 if 0 < share < 1 else 0.0
@@ -137,12 +137,12 @@ def _at_work(at: Point | None, motion: str, time: float, soft: float, side: str,
 
 
 def motionless(actor: Actor, seconds: float) -> Segment:
-    """An actor who does not move."""
+    """Return an actor who does not move."""
     return Segment(seconds, lambda share: actor)
 
 
 def _resting(actor: Actor, keyframe: Keyframe) -> Actor:
-    """The actor with arms hanging, or carrying what it holds."""
+    """Return the actor with arms hanging, or carrying what it holds."""
     return posed(actor, keyframe.places.graph, keyframe.places, None)
 
 
@@ -234,7 +234,7 @@ def _got_up(
 
 
 def _not_below(hand: Point | None, low: float) -> Point | None:
-    """A hand that comes along as one rises from the floor, so that one need not stoop for it."""
+    """Return a hand that comes along as one rises from the floor, so that one need not stoop for it."""
     return hand and (hand[0], max(hand[1], low), hand[2])
 
 

@@ -46,7 +46,7 @@ class Arrivals:
         return max(map(_takes, self.ways.values()), default=0.0)
 
     def at(self, scene: Scene, past: float) -> Scene:
-        """The scene `past` seconds after the hands arrived."""
+        """Return the scene `past` seconds after the hands arrived."""
         left = {node: 1 - eased(past / _takes(way)) for node, way in self.ways.items() if past < _takes(way)}
 
         def moved(thing: Thing) -> Thing:

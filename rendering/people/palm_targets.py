@@ -40,7 +40,7 @@ Aims = Mapping[str, Aim]
 
 
 def with_aims(pose: BodyPose, aims: Aims) -> BodyPose:
-    """A pose with hands where they are aimed."""
+    """Return a pose with hands where they are aimed."""
     right, left = aims.get("right"), aims.get("left")
     return replace(
         pose,
@@ -58,7 +58,7 @@ def held_by(graph: EnvironmentGraph, me: int) -> dict[str, int]:
 
 
 def node_of(graph: EnvironmentGraph, number: int) -> Node:
-    """The node of a number."""
+    """Return the node of a number."""
     return next(node for node in graph.nodes if node.id == number)
 
 
@@ -96,7 +96,7 @@ def carrying(actor: Actor, held: Mapping[str, int], graph: EnvironmentGraph, pla
 
 
 def acting_side(step: Step, graph: EnvironmentGraph, me: int, held: Mapping[str, int]) -> str:
-    """The acting hand: the one that holds the object, else a free one, preferring the right."""
+    """Return the acting hand: the one that holds the object, else a free one, preferring the right."""
     if asked := value(step, "hand"):
         return asked
     named = {ref.node for ref in step.objects}
@@ -107,7 +107,7 @@ def acting_side(step: Step, graph: EnvironmentGraph, me: int, held: Mapping[str,
 
 
 def thing_aim(actor: Actor, hold: Hold, pose: Pose, side: str) -> Aim:
-    """The palm at a thing that stands somewhere: at its handle, else on the side nearest to the chest."""
+    """Return the palm at a thing that stands somewhere: at its handle, else on the side nearest to the chest."""
     yaw = pose.yaw or 0.0
     grip = np.array(actor.local(grip_point(hold, pose.box, yaw)))
     if hold.fixed:
@@ -125,14 +125,17 @@ def thing_aim(actor: Actor, hold: Hold, pose: Pose, side: str) -> Aim:
 
 
 def nearest_point(actor: Actor, pose: Pose) -> Point:
-    """The point of a box nearest to the chest, in the world."""
+    """Return the point of a box nearest to the chest, in the world."""
     chest = actor.world((0.12, actor.body.height * 0.72, 0.1))
     x, y, z = (min(max(p, c - s / 2), c + s / 2) for p, c, s in zip(chest, pose.box.center, pose.box.size, strict=True))
     return x, y, z
 
 
 def front_point(places: Places, node: Node, actor: Actor) -> Point | None:
-    """The point of a thing's handles, what protrudes from its front, that is nearest to the hands; None without any."""
+    """Return the point of a thing's handles, what protrudes from its front, that is nearest to the hands.
+
+    None without any.
+    """
     pose = places.poses.get(node.id)
     if places.prepared is None or pose is None:
         return None

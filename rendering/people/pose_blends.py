@@ -45,12 +45,12 @@ class Segment(NamedTuple):
     backwards: bool = False
 
     def reversed(self) -> Segment:
-        """The same from its end to its start."""
+        """Return the same from its end to its start."""
         return Segment(self.seconds, lambda share: self.at(1 - share), self.work, not self.backwards)
 
 
 def changed(one: Actor, other: Actor, seconds: float) -> Segment:
-    """A change of posture in place: every joint goes from where it is to where it will be."""
+    """Return a change of posture in place: every joint goes from where it is to where it will be."""
     offset, turn = other.local(one.position), angle(other.yaw, one.yaw)
 
     def at(share: float) -> Actor:
@@ -63,7 +63,7 @@ def changed(one: Actor, other: Actor, seconds: float) -> Segment:
 
 
 def blended(one: Actor, other: Actor, seconds: float) -> Segment:
-    """A transition between two actors' poses, slow enough for heads and hands."""
+    """Return a transition between two actors' poses, slow enough for heads and hands."""
 
     def at(share: float) -> Actor:
         return other if share >= 1 else blend(one, other, eased(share))
@@ -72,7 +72,7 @@ def blended(one: Actor, other: Actor, seconds: float) -> Segment:
 
 
 def least_seconds(one: Actor, other: Actor) -> float:
-    """The least time of an eased motion between two poses."""
+    """Return the least time of an eased motion between two poses."""
     a, b = one.figure().joints(), other.figure().joints()
     least = 0.0
     for name, speed in (("head", HEADS), ("hand_r", HANDS), ("hand_l", HANDS)):
@@ -115,7 +115,7 @@ def _tucked(one: BodyPose, other: BodyPose, share: float) -> tuple[float, float]
 
 
 def with_hands(body_pose: BodyPose, other: BodyPose) -> BodyPose:
-    """A body pose with the hands of another; unchanged when lying."""
+    """Return a body pose with the hands of another; unchanged when lying."""
     if body_pose.posture == "lying" or other.posture == "lying":
         return body_pose
     return replace(
@@ -146,7 +146,7 @@ def _hand(one: Actor, other: Actor, side: str, share: float) -> Point | None:
 
 
 def _turned(one: Actor, other: Actor, side: str, share: float) -> Hand:
-    """The form of a hand between two poses; the fingers close in the second half."""
+    """Return the form of a hand between two poses; the fingers close in the second half."""
     a, b = (actor.body_pose.hand(side) for actor in (one, other))
     if a == b:
         return b

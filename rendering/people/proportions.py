@@ -55,7 +55,7 @@ class Proportions(NamedTuple):
 
 @lru_cache(maxsize=64)
 def standard(height: float) -> Proportions:
-    """The proportions of the simple figure."""
+    """Return the proportions of the simple figure."""
     h = height
     return Proportions(
         h, HIP * h,

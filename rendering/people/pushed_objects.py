@@ -56,7 +56,7 @@ def _slides(places: Places, target: int) -> bool:
 
 
 def _with(places: Places, target: int) -> list[int]:
-    """A thing and all that is on or in it."""
+    """Return a thing and all that is on or in it."""
     found = [target]
     for number in found:
         found += places.contents(number)

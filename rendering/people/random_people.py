@@ -26,7 +26,7 @@ CHILDREN = 0.07
 
 @lru_cache(maxsize=256)
 def person(seed: int) -> Body:
-    """The person of a seed; a simple figure where the file of bodies is not installed."""
+    """Return the person of a seed; a simple figure where the file of bodies is not installed."""
     if not is_present():
         return BODIES[sorted(BODIES)[seed % len(BODIES)]]
     numbers = random.Random(derive(seed, "person"))
@@ -68,7 +68,7 @@ def _face(numbers: random.Random) -> tuple[tuple[str, float], ...]:
 
 
 def _clothed(body: Body, sex: str, age: float, ancestry: Any, numbers: random.Random) -> Body:
-    """The person with skin, eyes, hair and clothes."""
+    """Return the person with skin, eyes, hair and clothes."""
     from dataclasses import replace
 
     grey = numbers.random() < min(max((age - 38) / 35, 0.0), 0.95)

@@ -10,19 +10,19 @@ Vector = NDArray[np.floating[Any]]
 
 
 def leaning(degrees: float) -> Vector:
-    """The rotation by which a body leans forward."""
+    """Return the rotation by which a body leans forward."""
     c, s = cos(radians(degrees)), sin(radians(degrees))
     return np.array(((1, 0, 0), (0, c, -s), (0, s, c)))
 
 
 def yawed(degrees: float) -> Vector:
-    """The rotation about y from +z towards +x."""
+    """Return the rotation about y from +z towards +x."""
     c, s = cos(radians(degrees)), sin(radians(degrees))
     return np.array(((c, 0, s), (0, 1, 0), (-s, 0, c)))
 
 
 def about(axis: Vector, degrees: float) -> Vector:
-    """The right-handed rotation about a unit vector (Rodrigues)."""
+    """Return the right-handed rotation about a unit vector (Rodrigues)."""
     c, s = cos(radians(degrees)), sin(radians(degrees))
     x, y, z = axis
     cross = np.array(((0, -z, y), (z, 0, -x), (-y, x, 0)))
@@ -31,5 +31,5 @@ def about(axis: Vector, degrees: float) -> Vector:
 
 
 def unit(vector: Vector) -> Vector:
-    """The vector with length 1."""
+    """Return the vector with length 1."""
     return vector / max(sqrt(float(vector @ vector)), 1e-9)

@@ -15,7 +15,7 @@ from hearth.schemas.graph import Point
 
 
 def simple_mesh(body: Body, body_pose: BodyPose, found: Joints) -> Mesh:
-    """The mesh of a body around the joints of its pose, in the figure's frame."""
+    """Return the mesh of a body around the joints of its pose, in the figure's frame."""
     return join((_trunk(body, found), *(_limbs(body, found, side) for side in "rl"), _head(body, found, body_pose)))
 
 
@@ -79,7 +79,7 @@ def _limbs(body: Body, found: Joints, side: str) -> Mesh:
 
 
 def _sleeved(a: Vector, b: Vector, c: Vector, cover: float, radii: Point, cloth: Paint, skin: Paint) -> list[Mesh]:
-    """An arm through shoulder, elbow and wrist, with a sleeve from its upper end."""
+    """Return an arm through shoulder, elbow and wrist, with a sleeve from its upper end."""
     half = min(cover * 2, 1.0)
     cut = a + (b - a) * half
     parts = [_bone(a, cut, radii[0] * 1.08, radii[1] * 1.15, cloth)]
@@ -97,7 +97,7 @@ def _sleeved(a: Vector, b: Vector, c: Vector, cover: float, radii: Point, cloth:
 
 
 def _shoe(ankle: Vector, toe: Vector, h: float, paint: Paint) -> Mesh:
-    """A shoe around ankle and toe."""
+    """Return a shoe around ankle and toe."""
     heel = ankle - np.array((0, 0.02 * h, 0))
     front = ball(_point(toe - (toe - ankle) * 0.12), (0.03 * h, 0.022 * h, 0.036 * h), paint, 4)
     back = ball(_point(heel), (0.028 * h, 0.027 * h, 0.032 * h), paint, 4)
@@ -151,18 +151,18 @@ def _bone(a: Vector, b: Vector, ra: float, rb: float, paint: Paint) -> Mesh:
 
 
 def _along(at: Vector, towards: Vector, size: Point, paint: Paint, up: float) -> Mesh:
-    """A soft block at `at`, upright along the direction to `towards`."""
+    """Return a soft block at `at`, upright along the direction to `towards`."""
     way = towards - at
     return transform(cushion((0, up, 0), size, paint, 0.7, 4), _upright(way), at)
 
 
 def _between(a: Vector, b: Vector, size: Point, paint: Paint, roundness: float) -> Mesh:
-    """A soft block at the middle of two joints, upright along the line between them."""
+    """Return a soft block at the middle of two joints, upright along the line between them."""
     return transform(cushion((0, 0, 0), size, paint, roundness, 4), _upright(b - a), (a + b) / 2)
 
 
 def _upright(way: Vector) -> np.ndarray:
-    """A rotation that maps +y to `way` and keeps +x sideways."""
+    """Return a rotation that maps +y to `way` and keeps +x sideways."""
     y = way / max(float(np.linalg.norm(way)), 1e-9)
     x = np.array((1.0, 0.0, 0.0)) - y * y[0]
     if np.linalg.norm(x) < 1e-3:

@@ -54,7 +54,7 @@ def laid(body_pose: BodyPose, body: Proportions) -> tuple[Vector | None, Vector]
 
 
 def upright(body_pose: BodyPose, body: Proportions) -> Joints:
-    """The joints, a lying body's as if it stood."""
+    """Return the joints, a lying body's as if it stood."""
     drop, lean = bend(body_pose, body)
     found = _legs(body_pose, body, drop)
     _torso(found, body, lean)
@@ -94,7 +94,9 @@ def effort_of(body_pose: BodyPose, body: Proportions) -> float:
 
 
 def in_reach(target: Point, body_pose: BodyPose, body: Proportions) -> Point:
-    """A target of a hand, raised until who does not stoop reaches it, or brought nearer where that is too little."""
+    """Return a target of a hand, raised until who does not stoop reaches it, or brought nearer where that is too
+    little.
+    """
     drop, lean = _stooping(0.0, body_pose, body)
     shoulder = _shoulders(_hips(body_pose, body, drop), body, lean)
     way, reach = np.array(target) - shoulder, body.arm * REACH
@@ -133,13 +135,13 @@ def seated(body_pose: BodyPose, body: Proportions) -> float:
 
 
 def _shoulders(hips: Vector, body: Proportions, lean: float) -> Vector:
-    """The point between the shoulders of a body that leans by some degrees."""
+    """Return the point between the shoulders of a body that leans by some degrees."""
     found: Vector = hips + leaning(lean * 0.67) @ body.spine + leaning(lean) @ body.chest
     return found
 
 
 def feet_of(body_pose: BodyPose, body: Proportions) -> tuple[Foot, Foot]:
-    """The right and the left foot of a pose."""
+    """Return the right and the left foot of a pose."""
     if body_pose.feet is not None:
         return body_pose.feet
     if body_pose.posture == "sitting":
@@ -172,7 +174,7 @@ def sinking(body_pose: BodyPose, body: Proportions) -> float:
 
 
 def ankle_of(foot: Foot, body: Proportions) -> Vector:
-    """The position of a foot's ankle."""
+    """Return the position of a foot's ankle."""
     turn = yawed(foot.yaw)
     at = np.array((foot.x, foot.lift, foot.z))
     pitch = radians(abs(foot.pitch))

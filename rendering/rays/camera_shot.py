@@ -76,7 +76,7 @@ def shoot(
     *,
     by_rays: bool = False,
 ) -> Shot:
-    """The first hits of a camera's rays; see `Shot`."""
+    """Return the first hits of a camera's rays; see `Shot`."""
     rays, skipped = camera_rays(camera)
     geometry = scene.geometry if camera.cut is None else scene.opened
     by_rays = by_rays or not drawable(camera)
@@ -88,7 +88,7 @@ def shoot(
 
 
 def shoot_after(scene: Scene, shot: Shot) -> Shot:
-    """The shot of a later scene by the same camera; only moving things are looked for again."""
+    """Return the shot of a later scene by the same camera; only moving things are looked for again."""
     camera = shot.camera
     geometry = scene.geometry if camera.cut is None else scene.opened
     if shot.behind is None or geometry.static is not shot.geometry.static:
@@ -99,7 +99,7 @@ def shoot_after(scene: Scene, shot: Shot) -> Shot:
 
 
 def hits_on_static(geometry: Geometry, camera: Camera, rays: Floats, *, by_rays: bool = False) -> Hits:
-    """The first hits of a camera's rays on static things."""
+    """Return the first hits of a camera's rays on static things."""
     hits = Hits.none(len(rays))
     if not by_rays and drawable(camera):
         static_hits(geometry.static, camera, rays, hits)
@@ -175,7 +175,7 @@ def draft(shot: Shot) -> NDArray[np.uint8]:
 
 
 def setting_of(shot: Shot, *, fine: bool = False, share: float = 1.0) -> Setting:
-    """The light of a shot; one ray covers `share` of a pixel."""
+    """Return the light of a shot; one ray covers `share` of a pixel."""
     above = shot.camera.cut is not None
     day = from_above(shot.scene.day) if above else shot.scene.day
     return Setting.of(shot.scene.lights, day, plain=above, angle=pixel_angle(shot) * share, fine=fine)

@@ -54,7 +54,7 @@ def fine(shot: Shot) -> Bytes:
 
 
 def _looked(shot: Shot, setting: Setting, chunks: list[Ints]) -> LightVisibility:
-    """The lights' visibility from each pixel, sampled with one ray per light."""
+    """Return the lights' visibility from each pixel, sampled with one ray per light."""
     size = len(shot.rays)
     points, flats = np.empty((2, size, 3), np.float32)
     seen = np.empty((size, len(setting.lights) + 2), np.uint8)

@@ -60,7 +60,7 @@ class Canvas:
         return found[: rasterizer.in_view(part.extents, things, *where, tiles, found)]
 
     def tiles(self) -> Floats:
-        """The least inverse depth of each tile."""
+        """Return the least inverse depth of each tile."""
         rows, columns = (-(-side // rasterizer.TILE) for side in self.depth.shape)
         found = scratch(f"{self.use} tiles", rows, columns)
         rasterizer.farthest(self.depth, 0, len(self.depth), found)
@@ -99,7 +99,7 @@ SEVERAL = 2000
 
 
 def bands(height: int) -> list[tuple[int, int]]:
-    """The rows of a picture, in bands for threads."""
+    """Return the rows of a picture, in bands for threads."""
     size = -(-height // (BANDS * count()))
     return [(top, min(top + size, height)) for top in range(0, height, size)]
 

@@ -104,7 +104,7 @@ KEPT = 3
 
 
 def incremental_frame(scene: Scene, camera: Camera, last: IncrementalFrame | None = None) -> IncrementalFrame:
-    """A draft picture of a scene; cheaper if `last` is by the same camera and has the same static things."""
+    """Return a draft picture of a scene; cheaper if `last` is by the same camera and has the same static things."""
     known = (last.layer, *last.others) if last else ()
     ready = next((one for one in known if one.serves(scene, camera)), None)
     layer = ready or StaticLayer.of(scene, camera)
@@ -145,7 +145,7 @@ def _drawn(layer: StaticLayer, scene: Scene, geometry: Geometry, rest: tuple[Sta
 
 
 def pictures_of(shown: IncrementalFrame, modalities: Iterable[str]) -> dict[str, NDArray[Any]]:
-    """The pictures of a frame by modality, as `modalities.render` gives them."""
+    """Return the pictures of a frame by modality, as `modalities.render` gives them."""
     names = list(modalities)
     found = others(shown.shot, [name for name in names if name != "rgb"])
     return {name: shown.shot.image(shown.rgb) if name == "rgb" else found[name] for name in names}

@@ -157,7 +157,7 @@ def gather_rows(pixels: Ints, triangle: Ints, static: Floats, moving: Floats, ou
 
 @kernel
 def slab(low: Any, high: Any, start: Any, way: Any, near: Any, far: Any) -> Any:
-    """The part of a ray segment, from `near` to `far`, between two planes across an axis."""
+    """Return the part of a ray segment, from `near` to `far`, between two planes across an axis."""
     if abs(way) < TINY:
         return (near, far) if low <= start <= high else (ONE, ZERO)
     one, other = (low - start) / way, (high - start) / way

@@ -21,7 +21,7 @@ ROUNDED = 1e-4
 
 @kernel
 def middle(corners: Floats, chosen: Any) -> Floats:
-    """The middle of some triangles' first corners."""
+    """Return the middle of some triangles' first corners."""
     total = np.zeros(3)
     for t in chosen:
         for k in range(3):
@@ -65,7 +65,7 @@ def project(
 
 @kernel
 def cells(places: Floats, n: int, frame: Floats, size: int) -> Any:
-    """The columns and rows of cells that a triangle may touch; the last ones are included."""
+    """Return the columns and rows of cells that a triangle may touch; the last ones are included."""
     left, down, scale = np.float32(frame[12]), np.float32(frame[13]), np.float32(frame[14])
     x0, x1, x2 = places[n, 0, 0], places[n, 1, 0], places[n, 2, 0]
     y0, y1, y2 = places[n, 0, 1], places[n, 1, 1], places[n, 2, 1]

@@ -58,7 +58,9 @@ class LightGrid:
 
     @classmethod
     def of(cls, corners: Floats, edges: Floats, chosen: Ints, light: Floats, *, is_sun: bool) -> LightGrid | None:
-        """A light's grid; None if the triangles lie all around the lamp, or are so large that a grid is not worth it.
+        """Return a light's grid.
+
+        None if the triangles lie all around the lamp, or are so large that a grid is not worth it.
 
         Args:
             corners, edges: of all triangles.
@@ -99,7 +101,7 @@ class LightGrid:
 
 
 def _axes(corners: Floats, chosen: Ints, light: Floats, is_sun: bool) -> Floats:
-    """The frame of a grid, without its place and scale."""
+    """Return the frame of a grid, without its place and scale."""
     place = np.zeros(3) if is_sun else np.asarray(light, np.float64)
     forward = -np.asarray(light, np.float64) if is_sun else loops.middle(corners, chosen) - place
     forward = forward / max(float(np.linalg.norm(forward)), 1e-9)
@@ -133,7 +135,7 @@ class LightGrids:
         return edges
 
     def of(self, light: Floats, *, is_sun: bool) -> LightGrid | None:
-        """A light's grid; see `LightGrid.of`."""
+        """Return a light's grid; see `LightGrid.of`."""
         key = (is_sun, *light.tolist())
         if key not in self.made:
             with self.lock:

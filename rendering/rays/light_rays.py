@@ -125,7 +125,7 @@ def aim_at_sun(
 
 @kernel
 def strength(window: bool, cosine: Any, leaving: Any, square: Any) -> Any:
-    """A light's strength at a point, before shadows.
+    """Return a light's strength at a point, before shadows.
 
     Args:
         window: whether the light is a window; else a lamp.
@@ -143,7 +143,10 @@ def strength(window: bool, cosine: Any, leaving: Any, square: Any) -> Any:
 
 @kernel
 def reaching(wx: Any, wy: Any, wz: Any, nx: Any, ny: Any, nz: Any, window: bool, fx: Any, fy: Any, fz: Any) -> Any:
-    """A light's strength, before shadows, at a point with a normal n, from which w leads to it; a window faces f."""
+    """Return a light's strength, before shadows, at a point with a normal n, from which w leads to it.
+
+    A window faces f.
+    """
     square = dot3(wx, wy, wz, wx, wy, wz)
     norm = ONE / root(square)
     return strength(window, dot3(nx, ny, nz, wx, wy, wz) * norm, -dot3(fx, fy, fz, wx, wy, wz) * norm, square)

@@ -37,7 +37,7 @@ def mirrored(
 
 
 def showing(hits: Hits, geometry: Geometry, among: Ints | None = None) -> Ints:
-    """The pixels, all or some, that show a mirror."""
+    """Return the pixels, all or some, that show a mirror."""
     mirrors = np.concatenate((geometry.static.mirrors, geometry.moving.mirrors, [np.False_]))
     if not mirrors.any():
         return np.empty(0, np.int32)

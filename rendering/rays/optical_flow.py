@@ -76,7 +76,7 @@ def _shifts(shot: Shot, after: Shot) -> Floats:
 
 
 def _part(thing: Thing) -> tuple[int, str]:
-    """The identity of a part of a node: a machine's steam is not the machine."""
+    """Return the identity of a part of a node: a machine's steam is not the machine."""
     return thing.id, thing.model.recipe if isinstance(thing.model, Model) else ""
 
 

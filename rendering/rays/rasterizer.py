@@ -24,7 +24,10 @@ TILE = 16
 
 @kernel
 def between(low: Any, high: Any, limit: int) -> Any:
-    """The pixels of a row or column whose middles lie between two numbers: the first, and the one after the last."""
+    """Return the pixels of a row or column whose middles lie between two numbers.
+
+    The first, and the one after the last.
+    """
     first = 0 if low <= 0.0 else int(np.ceil(min(low, limit + 1.0) - 0.5))
     last = limit if high >= limit else int(np.ceil(max(high, 0.0) - 0.5))
     return first, last

@@ -23,7 +23,7 @@ SYSTEM_LIBRARIES = "libusb-1.0-0 libgl1 libegl1 libx11-6 libgomp1"
 
 @cache
 def engine() -> Any:
-    """The module open3d.
+    """Return the module open3d.
 
     Raises:
         HearthError: it, or a system library that it needs, is not installed; the suggestion names the package.
@@ -67,7 +67,7 @@ class Hits(NamedTuple):
         return cls(far, np.full(size, -1, np.int32), flat, flat.copy())
 
     def copy(self) -> Hits:
-        """A writable copy."""
+        """Return a writable copy."""
         return Hits(self.distance.copy(), self.triangle.copy(), self.u.copy(), self.v.copy())
 
 
@@ -87,7 +87,7 @@ class Caster:
 
     @classmethod
     def of(cls, corners: Floats) -> Caster:
-        """A caster of triangles with (T, 3, 3) corners."""
+        """Return a caster of triangles with (T, 3, 3) corners."""
         core, geometry = engine().core, engine().t.geometry
         scene = geometry.RaycastingScene(1 if len(corners) < SMALL else 0)
         if len(corners):
@@ -106,7 +106,7 @@ class Caster:
         return answer["t_hit"].numpy(), answer["primitive_ids"].numpy(), answer["primitive_uvs"].numpy()
 
     def cast(self, rays: Floats) -> Hits:
-        """The first hit of each of (N, 6) rays."""
+        """Return the first hit of each of (N, 6) rays."""
         distance, number, uvs = self.raw(rays)
         return Hits(distance, number.view(np.int32), np.ascontiguousarray(uvs[:, 0]), np.ascontiguousarray(uvs[:, 1]))
 

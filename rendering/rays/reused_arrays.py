@@ -21,7 +21,7 @@ _kept = _Kept()
 
 
 def scratch(use: str, *shape: int, dtype: Any = np.float32) -> NDArray[Any]:
-    """An uninitialised array, valid until the calling thread asks for another of the same use."""
+    """Return an uninitialised array, valid until the calling thread asks for another of the same use."""
     size = prod(shape)
     buffer = _kept.buffers.get((use, dtype))
     if buffer is None or buffer.size < size:

@@ -54,7 +54,7 @@ class Setting:
 
     @classmethod
     def of(cls, lights: tuple[Light, ...], day: Daylight, *, plain: bool, angle: float, fine: bool = False) -> Setting:
-        """The rows of a scene's lights.
+        """Return the rows of a scene's lights.
 
         Args:
             lights: lamps that are on, and windows.
@@ -67,7 +67,7 @@ class Setting:
         return cls(lights, rows, _day_row(day, plain, angle), fine)
 
     def reaching(self, bounds: Floats) -> Ints:
-        """The lights that reach (x0, x1, z0, z1)."""
+        """Return the lights that reach (x0, x1, z0, z1)."""
         area = self.rows[:, light_rays.L_AREA : light_rays.L_AREA + 4].T
         x0, x1, z0, z1 = bounds
         return np.flatnonzero((area[0] < x1) & (area[1] > x0) & (area[2] < z1) & (area[3] > z0)).astype(np.int32)
@@ -121,7 +121,10 @@ class SurfacePoints:
 
 
 def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str = "spots") -> SurfacePoints:
-    """The surface points of some pixels, given all rays and hits; valid until this thread's next call with `use`."""
+    """Return the surface points of some pixels, given all rays and hits.
+
+    Valid until this thread's next call with `use`.
+    """
     count = len(pixels)
     rows = scratch(f"{use} rows", count, COLUMNS)
     gather_rows(pixels, hits.triangle, geometry.static.rows, geometry.moving.rows, rows)
@@ -237,7 +240,7 @@ def _blocked(
 
 
 def _marked(seen: Bytes, column: int, index: Ints, blocked: NDArray[np.bool_], value: np.uint8) -> Ints:
-    """The points with unblocked rays; the others are marked in `seen`."""
+    """Return the points with unblocked rays; the others are marked in `seen`."""
     lit = scratch("lit", len(index), dtype=np.int32)
     return lit[: light_rays.mark(index, blocked, seen, column, value, lit)].copy()
 
@@ -268,7 +271,7 @@ def dim(exposure: Exposure, geometry: Geometry, setting: Setting, skipped: NDArr
 def _darkened(
     lit: Ints, points: Floats, moving: Part, setting: Setting, column: int, skipped: NDArray[np.bool_]
 ) -> Ints:
-    """The points, of those that a light reaches, that moving things shade."""
+    """Return the points, of those that a light reaches, that moving things shade."""
     is_sun, far = column == SUN, 0.999 if column == SUN else 0.97
     if not len(lit) or not _moves_before(moving, setting, column):
         return NO_LIGHT
@@ -289,7 +292,7 @@ def make_grids(exposures: Sequence[Exposure], moving: Part, setting: Setting) ->
 
 
 def _target(setting: Setting, column: int) -> Floats:
-    """The direction to the sun, or a light's position."""
+    """Return the direction to the sun, or a light's position."""
     return setting.day[:3] if column == SUN else setting.rows[column - 1, :3]
 
 

@@ -97,7 +97,7 @@ def draw(
 
 @kernel
 def face_of(face: int, x: Any, y: Any, z: Any) -> Any:
-    """A vector from a lamp as a face of its cube sees it: right, up, and depth."""
+    """Return a vector from a lamp as a face of its cube sees it: right, up, and depth."""
     if face == 0:
         return -z, y, x
     if face == 1:

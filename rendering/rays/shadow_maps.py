@@ -81,7 +81,7 @@ class ShadowMaps:
         return self._groups
 
     def of(self, light: Floats, rays: int) -> ShadowMap | None:
-        """The map of a light that is asked for some rays more; None if there is none yet.
+        """Return the map of a light that is asked for some rays more; None if there is none yet.
 
         Args:
             light: a lamp's place and the area that it lights, or the direction to the sun.

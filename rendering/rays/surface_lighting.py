@@ -62,7 +62,9 @@ TONE_SCALE = np.float32(TONE_STEPS / 4.0)
 def glint(
     shine: Any, wx: Any, wy: Any, wz: Any, nx: Any, ny: Any, nz: Any, vx: Any, vy: Any, vz: Any
 ) -> Any:  # fmt: skip
-    """The share of a light that a polished surface with a normal n reflects; w leads to the light, v from the viewer.
+    """Return the share of a light that a polished surface with a normal n reflects.
+
+    W leads to the light, v from the viewer.
 
     Faint ones are 0.
     """
@@ -144,7 +146,7 @@ def texel(slot: Any, u: Any, v: Any, footprint: Any) -> Any:
 
 @kernel
 def mirrored(shine: Any, ny: Any, vy: Any, cosine: Any) -> Any:
-    """The share of surrounding light that a polished surface reflects: of a bright ceiling or a darker floor."""
+    """Return the share of surrounding light that a polished surface reflects: of a bright ceiling or a darker floor."""
     up = vy + TWO * cosine * ny
     away = ONE - min(max(cosine, ZERO), ONE)
     square = away * away

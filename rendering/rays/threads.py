@@ -11,13 +11,13 @@ R = TypeVar("R")
 
 
 def count() -> int:
-    """Number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @cache
 def _pool(process: int) -> ThreadPoolExecutor:
-    """The threads of a process; they do not survive a fork."""
+    """Return the threads of a process; they do not survive a fork."""
     return ThreadPoolExecutor(count(), "pixels")
 
 

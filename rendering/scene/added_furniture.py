@@ -40,7 +40,7 @@ LEGS = 0.45
 
 
 def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places:
-    """The places of a home, with those of furniture that the graph adds to rooms.
+    """Return the places of a home, with those of furniture that the graph adds to rooms.
 
     Args:
         places: of the home as it was built.
@@ -88,7 +88,10 @@ class Place(NamedTuple):
 
 
 def _pose(node: Node, room: Node, places: Places, floors: Floors) -> Pose | None:
-    """The pose of a thing in a room, narrower where it would block a way; None where it does not fit or always does."""
+    """Return the pose of a thing in a room, narrower where it would block a way.
+
+    None where it does not fit or always does.
+    """
     assert room.box is not None
     (width, height, depth), level = places.size_of(node), room.box.center[1] - room.box.size[1] / 2
     box = Box((room.box.center[0], level + height / 2, room.box.center[2]), (width, height, depth))
@@ -106,7 +109,7 @@ def _pose(node: Node, room: Node, places: Places, floors: Floors) -> Pose | None
 
 
 def _place(size: Point, room: Box, places: Places, floor: FreeFloor) -> Place | None:
-    """The best place for a thing of that size that leaves all ways, and room for legs where it can."""
+    """Return the best place for a thing of that size that leaves all ways, and room for legs where it can."""
     assert floor.walkable is not None
     free, origin = floor.walkable.free, floor.walkable.wide.floor.origin
     fits = [place for place in _candidates(size, room) if _fits(place, free, origin)]
@@ -130,7 +133,7 @@ def _candidates(size: Point, room: Box) -> Iterator[Place]:
 
 
 def _cost(place: Place, room: Box) -> float:
-    """The distance of a place's back from the wall behind it, and of its side from the nearest corner."""
+    """Return the distance of a place's back from the wall behind it, and of its side from the nearest corner."""
     gaps = [room.size[2 * k] / 2 - abs(place.spot[k] - room.center[2 * k]) - place.size[k] / 2 for k in (0, 1)]
     facing = (sin(radians(place.yaw)), cos(radians(place.yaw)))
     along = 0 if abs(facing[0]) > 0.5 else 1
@@ -179,5 +182,5 @@ SPECK = 6
 
 
 def _cells(spot: Spot, size: Spot, origin: Spot) -> tuple[slice, slice]:
-    """The cells of a rectangle, with those that it only touches."""
+    """Return the cells of a rectangle, with those that it only touches."""
     return cells_of(Box((spot[0], 0.0, spot[1]), (size[0] + CELL, 1.0, size[1] + CELL)), origin)

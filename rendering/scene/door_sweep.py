@@ -36,7 +36,7 @@ class Floors:
         self._leaves: dict[int, Floats] = {}
 
     def at(self, nodes: Sequence[Node]) -> FreeFloor:
-        """The free floor between nodes with their current boxes and states."""
+        """Return the free floor between nodes with their current boxes and states."""
         standing = [node for node in nodes if node.box and is_in_the_way(node, self.level)]
         key = tuple((node.id, node.box, "OPEN" in node.states) for node in standing)
         if key not in self._known:

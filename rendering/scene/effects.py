@@ -70,7 +70,7 @@ EFFECTS: Mapping[str, Mapping[str, Effect]] = {
 
 
 def effects_of(recipe: str, states: frozenset[str]) -> Iterator[Effect]:
-    """The effects of a recipe in some states."""
+    """Yield the effects of a recipe in some states."""
     for state, effect in EFFECTS.get(recipe, {}).items():
         if state in states:
             yield effect
@@ -86,7 +86,10 @@ def changes(thing: Thing) -> bool:
 
 
 def at_time(thing: Thing, time: float) -> Iterator[Thing]:
-    """A thing as it looks some seconds after a film's start, then the steam above it: a node's first part is itself."""
+    """Yield a thing as it looks some seconds after a film's start, then the steam above it.
+
+    A node's first part is itself.
+    """
     model, moved, above = thing.model, thing, list[Thing]()
     for effect in effects_of(model.recipe, model.look.states) if isinstance(model, Model) else ():
         assert isinstance(model, Model)
@@ -112,7 +115,10 @@ def _steam(thing: Thing, look: Look, height: float, moment: int) -> Thing:
 
 
 def shining(recipe: str, states: frozenset[str], lamp: float | None) -> Iterator[tuple[Shine, float]]:
-    """The lights of a recipe in some states, each with its height as a share of the box; `lamp` is the model's."""
+    """Yield the lights of a recipe in some states, each with its height as a share of the box.
+
+    `lamp` is the model's.
+    """
     for effect in effects_of(recipe, states):
         up = lamp if effect.light is None or effect.light.up is None else effect.light.up
         if effect.light is not None and up is not None:

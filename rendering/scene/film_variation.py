@@ -38,11 +38,11 @@ class Variation:
     wander: bool = False
 
     def random(self, *use: object) -> random.Random:
-        """A random generator for one use, the same for the same seed."""
+        """Return a random generator for one use, the same for the same seed."""
         return random.Random(derive(self.seed, "variation", *use))
 
     def moved(self, camera: Camera) -> Camera:
-        """A camera with an offset of at most `jitter`, the same for the same name."""
+        """Return a camera with an offset of at most `jitter`, the same for the same name."""
         if not self.jitter:
             return camera
         numbers = self.random("camera", camera.name)
@@ -50,12 +50,12 @@ class Variation:
         return replace(camera, eye=(x, y, z), fov=camera.fov * numbers.uniform(0.95, 1.05))
 
     def row(self) -> VariationRow:
-        """The variation as a row of the published table."""
+        """Return the variation as a row of the published table."""
         return cast(VariationRow, asdict(self))
 
 
 def scattered(home: EnvironmentGraph, variation: Variation) -> EnvironmentGraph:
-    """A home with its small things moved slightly on their supports, without collisions."""
+    """Return a home with its small things moved slightly on their supports, without collisions."""
     if not variation.scatter:
         return home
     boxes = {node.id: node.box for node in home.nodes if node.box}
@@ -76,7 +76,7 @@ TRIES = 6
 
 
 def _nudged(box: Box, support: Box, others: list[Box], variation: Variation, node_id: int) -> Box | None:
-    """The box at another position on its support; None if none was found."""
+    """Return the box at another position on its support; None if none was found."""
     numbers = variation.random("place", node_id)
     (x, y, z), far = box.center, variation.scatter
     for _ in range(TRIES):
@@ -98,7 +98,7 @@ PLAIN = Variation()
 
 
 def drawn(seed: int, record_id: str = "") -> Variation:
-    """A random variation.
+    """Return a random variation.
 
     Args:
         seed: of the run.

@@ -21,7 +21,7 @@ class Pose(NamedTuple):
 
 
 def lying_flat(size: Point) -> Point:
-    """The size of a flat thing lying down."""
+    """Return the size of a flat thing lying down."""
     w, h, d = size
     return (w, d, h) if h > d else size
 
@@ -29,7 +29,7 @@ def lying_flat(size: Point) -> Point:
 def best(
     size: Point, regions: Iterable[Region], support: Pose, others: list[Box], near: tuple[Point, ...], seed: int
 ) -> Pose:
-    """The free pose nearest to a character, in the first region that has one; stacked if none has."""
+    """Return the free pose nearest to a character, in the first region that has one; stacked if none has."""
     yaw = support.yaw or 0.0
     fallback: tuple[float, Pose] | None = None
     for region in regions:
@@ -45,7 +45,7 @@ def best(
 
 
 def _fitted(size: Point, region: Region) -> Point:
-    """The size, scaled down to fit the region."""
+    """Return the size, scaled down to fit the region."""
     room = (region.x1 - region.x0, region.clear, region.z1 - region.z0)
     share = min(1.0, *(max(r, 0.01) / max(s, 1e-6) for r, s in zip(room, size, strict=True)))
     return size[0] * share, size[1] * share, size[2] * share
@@ -90,7 +90,7 @@ def overlap(a: Box, b: Box) -> float:
 
 
 def _stacked(pose: Pose, others: list[Box]) -> Pose:
-    """The pose lifted onto things at its position that are small enough to carry it."""
+    """Return the pose lifted onto things at its position that are small enough to carry it."""
     (x, y, z), size = pose.box.center, pose.box.size
     low = y - size[1] / 2
     tops = [o.center[1] + o.size[1] / 2 for o in others if overlap(pose.box, o) > 1e-9 and o.size[1] < 0.35]

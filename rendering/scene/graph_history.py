@@ -11,7 +11,7 @@ SHOWN = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})
 
 
 def graphs(execution: Execution) -> Iterator[EnvironmentGraph]:
-    """The graph at the start and after each tick, with the relations of `SHOWN`."""
+    """Yield the graph at the start and after each tick, with the relations of `SHOWN`."""
     start = execution.worlds[0].graph()
     graph = WorkingGraph(start.nodes, filter(_shown, start.edges))
     yield graph.graph()

@@ -22,7 +22,7 @@ class DrawableHome(NamedTuple):
     unmet: int = 0
 
     def note(self, home: str) -> str:
-        """A note for the user about a layout that was made; empty for a home with geometry."""
+        """Return a note for the user about a layout that was made; empty for a home with geometry."""
         if not self.made:
             return ""
         few = f"{self.unmet} of its {len(self.graph.edges)} relations do not show"
@@ -30,7 +30,7 @@ class DrawableHome(NamedTuple):
 
 
 def with_geometry(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> DrawableHome:
-    """A home's graph, with a deterministic layout if it has no geometry.
+    """Return a home's graph, with a deterministic layout if it has no geometry.
 
     Raises:
         HearthError: NO_ROOM: it has no room.

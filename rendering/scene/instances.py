@@ -40,20 +40,20 @@ class Thing:
 
 
 def tilted(tilt: Point) -> Floats:
-    """The rotation of a `Thing.tilt`."""
+    """Return the rotation of a `Thing.tilt`."""
     pitch, roll, turn = tilt
     found: Floats = rotation("z", -roll) @ rotation("x", -pitch) @ rotation("y", turn)
     return found
 
 
 def own_mesh(thing: Thing) -> Mesh:
-    """A thing's mesh in its own frame, tilted."""
+    """Return a thing's mesh in its own frame, tilted."""
     mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
     return transform(mesh, tilted(thing.tilt)) if any(thing.tilt) else mesh
 
 
 def placed(thing: Thing) -> Mesh:
-    """A thing's mesh in world coordinates."""
+    """Return a thing's mesh in world coordinates."""
     return (_figures if isinstance(thing.model, Figure) else _things)(thing)
 
 

@@ -59,7 +59,7 @@ def write(scene: Scene, path: Path, form: str = "gltf") -> int:
 
 
 def glb(scene: Scene, textures: bool = True) -> bytes:
-    """A scene as a glTF file in memory, as `write` describes it; without textures it has plain colours.
+    """Return a scene as a glTF file in memory, as `write` describes it; without textures it has plain colours.
 
     Raises:
         HearthError: MISSING_FILE without trimesh.
@@ -69,7 +69,7 @@ def glb(scene: Scene, textures: bool = True) -> bytes:
 
 
 def node_names(scene: Scene) -> dict[Thing, str]:
-    """The node of a glTF that each thing of a scene is; of equal things, the first's."""
+    """Return the node of a glTF that each thing of a scene is; of equal things, the first's."""
     found: dict[Thing, str] = {}
     for thing, name in zip(scene.everything, _names(scene), strict=True):
         found.setdefault(thing, name)
@@ -122,7 +122,7 @@ class _Exchanged:
             graph.update(frame_from=name, frame_to=f"{name}.{number}", geometry=key)
 
     def _keys(self, thing: Thing, name: str) -> list[str]:
-        """The names of a thing's geometries, one for each material."""
+        """Return the names of a thing's geometries, one for each material."""
         if thing.structural:
             return self._kept(name, placed(thing))
         if thing.model not in self._models:
@@ -153,7 +153,7 @@ def _standing(thing: Thing) -> Mesh:
 
 
 def _by_material(mesh: Mesh, textures: bool) -> list[Any]:
-    """A mesh as one of trimesh for each colour, texture, glow and shine."""
+    """Return a mesh as one of trimesh for each colour, texture, glow and shine."""
     slots = mesh.textures if textures else np.full_like(mesh.textures, SLOTS["plain"])
     rows = np.column_stack((mesh.surface.round(4), slots.astype(np.float32)))
     kinds, of = np.unique(rows, axis=0, return_inverse=True)
@@ -174,7 +174,7 @@ def _piece(mesh: Mesh, chosen: Any, kind: Floats) -> Any:
 
 @cache
 def _material(kind: tuple[float, ...]) -> Any:
-    """The material of (red, green, blue, glow, shine, slot of the texture)."""
+    """Return the material of (red, green, blue, glow, shine, slot of the texture)."""
     from trimesh.visual.material import PBRMaterial
 
     *color, glow, shine, slot = kind
@@ -192,7 +192,7 @@ def _material(kind: tuple[float, ...]) -> Any:
 
 @cache
 def _picture(slot: int) -> tuple[Any, float]:
-    """A texture as a picture in sRGB, and the linear value of its brightest part."""
+    """Return a texture as a picture in sRGB, and the linear value of its brightest part."""
     from PIL import Image
 
     light = decode()[atlas()[slot, OFFSETS[0] : OFFSETS[1]].reshape(SIDE, SIDE, 3)]

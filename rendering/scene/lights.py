@@ -51,7 +51,7 @@ SUNRISE, SUNSET = 6.0, 20.0
 
 
 def daylight(hour: float = 10.0) -> Daylight:
-    """The light at an hour from 0 to 24; the sun rises in the east (+x) and stands in the south (-z) at noon."""
+    """Return the light at an hour from 0 to 24; the sun rises in the east (+x) and stands in the south (-z) at noon."""
     if not SUNRISE + 0.5 < hour < SUNSET - 0.5:
         return Daylight(None, (0, 0, 0), (0.01, 0.015, 0.04), (0.03, 0.035, 0.06), 0.17, 0.02)
     share = (hour - SUNRISE) / (SUNSET - SUNRISE)
@@ -72,7 +72,7 @@ def daylight(hour: float = 10.0) -> Daylight:
 
 
 def from_above(day: Daylight) -> Daylight:
-    """The same hour for views without a ceiling: more of the sky, less sun, and from nearly overhead."""
+    """Return the same hour for views without a ceiling: more of the sky, less sun, and from nearly overhead."""
     if day.sun is None:
         return replace(day, ambient=day.ambient * 1.3)
     red, green, blue = (0.42 * c for c in day.sunlight)
@@ -93,14 +93,14 @@ def lamp(
     spill: float = SPILL,
     color: LinearColor = LAMP_COLOR,
 ) -> Light:
-    """A lamp that lights its room and `spill` metres around it."""
+    """Return a lamp that lights its room and `spill` metres around it."""
     red, green, blue = (strength * c for c in color)
     beyond = room and (room[0] - spill, room[1] + spill, room[2] - spill, room[3] + spill)
     return Light(position, (red, green, blue), room=beyond)
 
 
 def window(center: Point, size: Point, facing: Point, room: tuple[float, float, float, float], day: Daylight) -> Light:
-    """The light of the sky through a window of full `size` that faces into `room` along `facing`."""
+    """Return the light of the sky through a window of full `size` that faces into `room` along `facing`."""
     area = sorted(size)[1] * sorted(size)[2]
     strength = 0.62 * area * day.sky
     color = (0.94 * strength, 0.98 * strength, 1.04 * strength)

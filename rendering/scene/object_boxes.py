@@ -64,14 +64,16 @@ class Places:
 
     @classmethod
     def start(cls, home: EnvironmentGraph, knowledge: Knowledge, prepared: PreparedScene | None = None) -> Places:
-        """The places of a home as it was built, with its boxes."""
+        """Return the places of a home as it was built, with its boxes."""
         poses = {node.id: Pose(node.box, node.yaw) for node in home.nodes if node.box}
         return cls(home, locations_of(home), poses, knowledge, prepared)
 
     def settled(
         self, graph: EnvironmentGraph, near: Mapping[int, Point] | None = None, at: Mapping[int, Spot] = NOWHERE
     ) -> Places:
-        """The places after the graph changed: things with an unchanged location stay, others get a free position.
+        """Return the places after the graph changed.
+
+        Things with an unchanged location stay, others get a free position.
 
         Args:
             graph: of the next keyframe.
@@ -99,7 +101,7 @@ class Places:
         return Places(graph, locations, poses, self.knowledge, self.prepared)
 
     def nodes(self) -> list[Node]:
-        """The graph's nodes with their current boxes."""
+        """Return the graph's nodes with their current boxes."""
         found = []
         for node in self.graph.nodes:
             pose = self.poses.get(node.id)
@@ -191,7 +193,7 @@ class Places:
         return found
 
     def _room_at(self, point: Point, nodes: Mapping[int, Node]) -> Node | None:
-        """The room over whose floor a point is."""
+        """Return the room over whose floor a point is."""
         x, _, z = point
         for number, pose in self.poses.items():
             (cx, _, cz), (w, _, d) = pose.box.center, pose.box.size
@@ -203,7 +205,7 @@ class Places:
     def _in_or_on(
         self, node: Node, parent: Node, support: Pose, kind: str, poses: Mapping[int, Pose], near: tuple[Point, ...]
     ) -> Pose:
-        """A pose in or on a thing that has a pose."""
+        """Return a pose in or on a thing that has a pose."""
         if node.class_name in LIQUIDS and kind == "inside" and max(support.box.size) < 0.5:
             return Pose(liquid(node, support.box).box or support.box, support.yaw)
         return self._placed(node, parent, support, kind, poses, near)
@@ -211,7 +213,7 @@ class Places:
     def _placed(
         self, node: Node, parent: Node, support: Pose, kind: str, poses: Mapping[int, Pose], near: tuple[Point, ...]
     ) -> Pose:
-        """The free pose on or in a support with a box that is nearest to a character."""
+        """Return the free pose on or in a support with a box that is nearest to a character."""
         recipe = recipe_of(parent.class_name, self.knowledge)
         yaw = support.yaw or 0.0
         known = form(parent.class_name, self.knowledge)
@@ -228,7 +230,7 @@ class Places:
         return best(wanted, regions, support, others, near, derive(0, "place", node.id))
 
     def _around(self, box: Box, poses: Mapping[int, Pose], but: tuple[int, ...]) -> list[Box]:
-        """The boxes of other things above or in a box."""
+        """Return the boxes of other things above or in a box."""
         (x, y, z), (w, h, d) = box
         space = Box((x, y + 0.5, z), (w, h + 1.0, d))
         bulky = {node.id for node in self.graph.nodes if node.category == ROOM_CATEGORY}

@@ -25,7 +25,7 @@ class Location(NamedTuple):
 
 
 def locations_of(graph: EnvironmentGraph) -> dict[int, Location]:
-    """The most specific location of every thing: hand, wearer, support, container or room."""
+    """Return the most specific location of every thing: hand, wearer, support, container or room."""
     nodes = {node.id: node for node in graph.nodes}
     ranks = {"held": 0, "worn": 1, "on": 2, "inside": 3, "on building": 4, "room": 5}
     best: dict[int, tuple[int, int, Location]] = {}

@@ -39,7 +39,7 @@ class PackedShapes:
         return len(self._shapes)
 
     def add(self, thing: Thing) -> int:
-        """The number of a thing's shape, in its own frame; of parts of the building, where they stand."""
+        """Return the number of a thing's shape, in its own frame; of parts of the building, where they stand."""
         key = thing if thing.structural else (thing.model, thing.tilt)
         if key not in self._numbers:
             self._numbers[key] = self._added(placed(thing) if thing.structural else own_mesh(thing))

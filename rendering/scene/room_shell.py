@@ -22,7 +22,7 @@ Hole = tuple[float, float, float, float]
 
 
 def hung_doors(nodes: Iterable[Node]) -> frozenset[int]:
-    """The doors that hang in a doorway: the nearest to each. Others stand in the way like furniture."""
+    """Return the doors that hang in a doorway: the nearest to each. Others stand in the way like furniture."""
     doors: list[tuple[int, Box]] = []
     jambs: list[Box] = []
     for node in nodes:
@@ -50,7 +50,7 @@ def walls_of(graph: EnvironmentGraph, rooms: Sequence[Node]) -> list[Thing]:
 
 
 def around_openings(wall: Box, openings: Sequence[Box]) -> list[Box]:
-    """A wall panel minus its openings; the panel itself without any."""
+    """Return a wall panel minus its openings; the panel itself without any."""
     (x, y, z), (w, h, d) = wall
     axis = 2 if w > d else 0
     middle, length = (x, w) if axis == 2 else (z, d)
@@ -87,7 +87,7 @@ def _around(room: Node, box: Box, openings: Sequence[Box]) -> Iterator[Thing]:
 
 
 def _cut(openings: Sequence[Box], at: float, axis: int) -> list[Hole]:
-    """Openings in the wall across `axis` at `at`, as (from, to, bottom, top)."""
+    """Return openings in the wall across `axis` at `at`, as (from, to, bottom, top)."""
     along = 2 - axis
     found = []
     for center, size in openings:
@@ -98,7 +98,7 @@ def _cut(openings: Sequence[Box], at: float, axis: int) -> list[Hole]:
 
 
 def pieces(wall: Hole, holes: Sequence[Hole]) -> list[Hole]:
-    """A rectangle (from, to, bottom, top) minus the holes, as rectangles."""
+    """Return a rectangle (from, to, bottom, top) minus the holes, as rectangles."""
     left = [wall]
     for a, b, c, d in holes:
         left = [piece for rest in left for piece in _without(rest, (a, b, c, d))]

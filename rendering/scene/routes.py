@@ -65,7 +65,7 @@ class WalkableFloor:
         return raster.regions(self.narrow.floor.walkable)
 
     def region(self, spot: Spot) -> int:
-        """The number of the region from which one comes to a spot; 0 for none."""
+        """Return the number of the region from which one comes to a spot; 0 for none."""
         entry = self.entry(self.narrow, spot)
         return 0 if entry is None else int(self.regions[self.narrow.floor.index(*entry)])
 
@@ -98,8 +98,8 @@ class WalkableFloor:
         return found
 
     def entry(self, ways: Ways, spot: Spot) -> Spot | None:
-        """The walkable point from which one comes straight to a spot, which may be in a seat, but through nothing else;
-        None if there is none.
+        """Return the walkable point from which one comes straight to a spot, which may be in a seat, but through
+        nothing else; None if there is none.
         """
         far = np.hypot(*(ways.points - spot).T)
         best: tuple[float, Spot] | None = None
@@ -116,7 +116,7 @@ class WalkableFloor:
 
 
 def ways_of(rooms: Iterable[Node], nodes: Sequence[Node], leaves: Floats | None = None) -> WalkableFloor | None:
-    """The walkable floor of rooms and doorways; None for rooms without boxes.
+    """Return the walkable floor of rooms and doorways; None for rooms without boxes.
 
     Args:
         rooms: with boxes.
@@ -155,19 +155,19 @@ def blocks_walks(node: Node, floor: float) -> bool:
 
 
 def _thick(box: Box) -> Box:
-    """A box at least a cell wide and deep, so that it takes up cells."""
+    """Return a box at least a cell wide and deep, so that it takes up cells."""
     (w, h, d) = box.size
     return Box(box.center, (max(w, CELL), h, max(d, CELL)))
 
 
 def _deeper(jamb: Box) -> Box:
-    """A doorway extended into both rooms."""
+    """Return a doorway extended into both rooms."""
     (w, h, d), more = jamb.size, 2 * CELL
     return Box(jamb.center, (w + more, h, d) if w < d else (w, h, d + more))
 
 
 def path(floor: WalkableFloor | None, start: Spot, goal: Spot, others: Sequence[Spot] = ()) -> tuple[Spot, ...]:
-    """A path with few corners from start to goal.
+    """Return a path with few corners from start to goal.
 
     It keeps a body's width from things where it can, and squeezes through where it must. Where no way leads to the
     goal, it ends at the walkable point nearest to it; without a floor it is the straight line.
@@ -182,7 +182,7 @@ def path(floor: WalkableFloor | None, start: Spot, goal: Spot, others: Sequence[
 
 
 def led_on(floor: WalkableFloor | None, route: Sequence[Spot], goal: Spot) -> tuple[Spot, ...]:
-    """A route that may end before its goal, led on to it.
+    """Return a route that may end before its goal, led on to it.
 
     Where the world has a character that no drawn way leads to, such as next to an open oven, the way passes between the
     things, however near they are. Where things or walls are all around, the way is the one that leads through them for
@@ -197,7 +197,7 @@ def led_on(floor: WalkableFloor | None, route: Sequence[Spot], goal: Spot) -> tu
 
 
 def _through_least(floor: WalkableFloor, start: Spot, goal: Spot) -> tuple[Spot, ...]:
-    """The path that leads through things for the fewest metres."""
+    """Return the path that leads through things for the fewest metres."""
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import dijkstra
 
@@ -226,7 +226,10 @@ SAME = 0.01
 def _found(
     floor: WalkableFloor, ways: Ways, start: Spot, goal: Spot, others: Sequence[Spot]
 ) -> tuple[Spot, ...] | None:
-    """The path over some cells from where one comes onto the floor to where one leaves it; None if there is none."""
+    """Return the path over some cells from where one comes onto the floor to where one leaves it.
+
+    None if there is none.
+    """
     if floor.clear(start, goal, ways):
         return start, goal
     first, last = floor.entry(ways, start), floor.entry(ways, goal)
@@ -255,7 +258,7 @@ BESIDE = sorted(
 
 
 def _nearest(floor: WalkableFloor, start: Spot, goal: Spot) -> tuple[Spot, ...]:
-    """The path to the point nearest to the goal that can be reached; the start alone if it cannot be left."""
+    """Return the path to the point nearest to the goal that can be reached; the start alone if it cannot be left."""
     ways = floor.narrow
     region = floor.region(start)
     if not region:
@@ -266,7 +269,7 @@ def _nearest(floor: WalkableFloor, start: Spot, goal: Spot) -> tuple[Spot, ...]:
 
 
 def _straightened(floor: WalkableFloor, ways: Ways, points: Sequence[Spot]) -> list[Spot]:
-    """The corners of a path over neighbouring cells."""
+    """Return the corners of a path over neighbouring cells."""
     kept, k = [points[0]], 0
     while k < len(points) - 1:
         ahead = len(points) - 1

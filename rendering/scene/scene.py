@@ -48,5 +48,5 @@ class Scene:
         return found
 
     def find(self, node_id: int) -> Thing | None:
-        """The thing of a node; the first if the node is drawn as several."""
+        """Return the thing of a node; the first if the node is drawn as several."""
         return self._by_id.get(node_id)

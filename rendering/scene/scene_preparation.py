@@ -100,7 +100,7 @@ class PreparedScene:
         return tuple(node.box for node in self.graph.nodes if node.class_name in OPENINGS and node.box)
 
     def seed_of(self, node: Node) -> int:
-        """The seed of a node's colours; furniture of one class in one room has the same."""
+        """Return the seed of a node's colours; furniture of one class in one room has the same."""
         if (
             node.category in ("Furniture", "Doors", "Windows", "Walls", "Floor", "Ceiling")
             or "curtain" in node.class_name
@@ -111,7 +111,7 @@ class PreparedScene:
     def scene(
         self, nodes: Iterable[Node] | None = None, figures: Iterable[tuple[Node, Figure, Point, float]] = ()
     ) -> Scene:
-        """The scene of a keyframe.
+        """Return the scene of a keyframe.
 
         Args:
             nodes: the graph's nodes with their current boxes, yaws and states; None takes those of the graph. A node
@@ -133,7 +133,7 @@ class PreparedScene:
         return tuple(walls_of(self.graph, tuple(self.rooms.values())))
 
     def _remembered(self, node: Node) -> tuple[tuple[Thing, ...], tuple[Light, ...]]:
-        """A node's things and lights, cached: most nodes are the same in most scenes."""
+        """Return a node's things and lights, cached: most nodes are the same in most scenes."""
         key = (node.id, node.class_name, node.states, node.box, node.yaw)
         found = self._drawn.get(key)
         if found is None:
@@ -141,11 +141,11 @@ class PreparedScene:
         return found
 
     def at_origin(self, node: Node, size: Point) -> Iterator[Thing]:
-        """The things that draw a node of a size that stands at the origin, as it is held or worn."""
+        """Return the things that draw a node of a size that stands at the origin, as it is held or worn."""
         return self.things(replace(node, box=Box((0.0, size[1] / 2, 0.0), size), yaw=0.0))
 
     def things(self, node: Node, ajar: float = 1.0) -> Iterator[Thing]:
-        """The things that draw a node; `ajar` is its opening share if it is OPEN."""
+        """Yield the things that draw a node; `ajar` is its opening share if it is OPEN."""
         if node.box is None:
             return
         room = self.rooms.get(self.room_of.get(node.id, -1))
@@ -181,7 +181,7 @@ class PreparedScene:
         yield Thing(node.id, node.class_name, model, (x, y - h / 2, z), yaw, above, building, shining)
 
     def lights(self, node: Node) -> Iterator[Light]:
-        """The lights of a node."""
+        """Yield the lights of a node."""
         if node.box is None:
             return
         choice = choice_of(node.class_name, self.knowledge)
@@ -220,7 +220,7 @@ class PreparedScene:
         return Box(center, (width, leaf.size[1], thick)), round(-angle, 4)
 
     def _closed_leaf(self, leaf: Box) -> Box | None:
-        """The box of a closed door leaf, in the nearest doorway."""
+        """Return the box of a closed door leaf, in the nearest doorway."""
         if not self.jambs:
             return None
         jamb = min(self.jambs, key=lambda node: _distance(node.box, leaf) if node.box else 1e9)
@@ -235,12 +235,12 @@ class PreparedScene:
 def prepared_scene(
     graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0
 ) -> PreparedScene:
-    """A graph prepared for rendering."""
+    """Return a graph prepared for rendering."""
     return PreparedScene(graph, knowledge, seed, hour)
 
 
 def scene_of(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0) -> Scene:
-    """The scene of a graph as it is. Nodes without a box are not drawn.
+    """Return the scene of a graph as it is. Nodes without a box are not drawn.
 
     Args:
         graph: with boxes, yaws and states.
@@ -252,7 +252,7 @@ def scene_of(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, ho
 
 
 def local_size(size: Size, yaw: float) -> Size:
-    """The size of a thing in its own frame, from its axis-aligned box in the world and its yaw."""
+    """Return the size of a thing in its own frame, from its axis-aligned box in the world and its yaw."""
     w, h, d = size
     c, s = abs(cos(radians(yaw))), abs(sin(radians(yaw)))
     if s < 0.02:
@@ -269,14 +269,14 @@ def local_size(size: Size, yaw: float) -> Size:
 
 
 def liquid(node: Node, vessel: Box) -> Node:
-    """A liquid's node with the box of its surface in a vessel."""
+    """Return a liquid's node with the box of its surface in a vessel."""
     (x, y, z), (w, h, d) = vessel.center, vessel.size
     side = min(w, d) * 0.72
     return replace(node, box=Box((x, y + h * 0.24, z), (side, SURFACE, side)))
 
 
 def _hinge(closed: Box, leaf: Box) -> tuple[tuple[Spot, Spot], float, float]:
-    """The hinge (x, z) of a door, and the leaf's directions from there, degrees: closed and open."""
+    """Return the hinge (x, z) of a door, and the leaf's directions from there, degrees: closed and open."""
     ends = []
     for box in (closed, leaf):
         along = 0 if box.size[0] >= box.size[2] else 2
@@ -295,7 +295,7 @@ def _end(box: Box, along: int, sign: int) -> Spot:
 
 
 def _local_hole(basin: Box, counter: Box, yaw: float) -> tuple[float, float, float, float]:
-    """The basin's outline in the counter's frame, without its rim."""
+    """Return the basin's outline in the counter's frame, without its rim."""
     dx, dz = basin.center[0] - counter.center[0], basin.center[2] - counter.center[2]
     c, s = cos(radians(yaw)), sin(radians(yaw))
     x, z = dx * c - dz * s, dx * s + dz * c

@@ -72,7 +72,7 @@ class Solids:
 
 
 def solids_of(prepared: PreparedScene, nodes: Iterable[Node]) -> Solids:
-    """The solid things as they are drawn: furniture, walls around their openings, leaves of doors.
+    """Return the solid things as they are drawn: furniture, walls around their openings, leaves of doors.
 
     Args:
         prepared: the home.
@@ -89,7 +89,7 @@ def solids_of(prepared: PreparedScene, nodes: Iterable[Node]) -> Solids:
 
 
 def _boxes(thing: Thing, size: Size) -> list[Solid]:
-    """A thing's box; of a doorway its two posts."""
+    """Return a thing's box; of a doorway its two posts."""
     (width, height, depth), (x, y, z) = size, thing.position
     if thing.class_name != "doorjamb":
         return [Solid(thing.id, thing.class_name, (x, z), (width / 2, depth / 2), thing.yaw, y, y + height)]

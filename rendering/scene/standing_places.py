@@ -36,7 +36,7 @@ APART = 0.19
 
 
 def nothing(node: int) -> Floats:
-    """The empty swept area of a thing without doors."""
+    """Return the empty swept area of a thing without doors."""
     return np.zeros((0, 2))
 
 
@@ -71,7 +71,7 @@ class FreeFloor:
         walkable: WalkableFloor | None = None,
         leaves: Callable[[int], Floats] = nothing,
     ) -> FreeFloor:
-        """The free floor of rooms between things; both have boxes."""
+        """Return the free floor of rooms between things; both have boxes."""
         known = [(room.id, room.box) for room in rooms if room.box]
         if not known:
             return cls((0.0, 0.0), np.zeros((0, 2)), np.zeros(0, np.int64), 0.0)
@@ -91,7 +91,7 @@ class FreeFloor:
         return cls((low[0], low[2]), centers, inside[i, j], low[1], sweeps, walkable, leaves)
 
     def reachable_from(self, spot: Spot) -> FreeFloor:
-        """The part to which a way leads from a spot; all of it where that is unknown."""
+        """Return the part to which a way leads from a spot; all of it where that is unknown."""
         region = self.walkable.region(spot) if self.walkable else 0
         if self.walkable is None or not region:
             return self
@@ -99,7 +99,7 @@ class FreeFloor:
         return replace(self, centers=self.centers[same], rooms=self.rooms[same]) if same.any() else self
 
     def spot_in(self, room: int, taken: Iterable[Spot] = ()) -> Spot | None:
-        """The free spot nearest to the middle of a room's free floor."""
+        """Return the free spot nearest to the middle of a room's free floor."""
         mine = self.centers[self.rooms == room]
         if not len(mine):
             return None
@@ -108,7 +108,7 @@ class FreeFloor:
         return float(x), float(z)
 
     def any_in(self, room: int, numbers: Random, taken: Iterable[Spot] = ()) -> Spot | None:
-        """A random free spot of a room, away from other characters."""
+        """Return a random free spot of a room, away from other characters."""
         mine = self.centers[self.rooms == room]
         mine = mine[_crowding(mine, taken) == 0]
         if not len(mine):
@@ -152,7 +152,7 @@ class FreeFloor:
             cost[np.linalg.norm(mine - (x, z), axis=1) < APART] = np.inf
 
     def outlook(self, spot: Spot, yaw: float) -> float:
-        """The direction in which to look about with something in the hands: `yaw`, unless something stands close
+        """Return the direction in which to look about with something in the hands: `yaw`, unless something stands close
         there; then the nearest with the most floor ahead.
         """
         if self.walkable is None or self._ahead(spot, yaw) > CLOSE:
@@ -172,7 +172,7 @@ class FreeFloor:
         return bool(self._hit(np.array([spot]), opens)[0])
 
     def _hit(self, centers: NDArray[np.float64], opens: int, still: bool = False) -> NDArray[np.float64]:
-        """A cost for standing in the swept area of a door, or where it stands if it stays so."""
+        """Return a cost for standing in the swept area of a door, or where it stands if it stays so."""
         passed = self.leaves(opens) if still else self.sweeps(opens)
         if not len(passed):
             return np.zeros(len(centers))
@@ -181,7 +181,7 @@ class FreeFloor:
 
 
 def _distances(centers: NDArray[np.float64], box: Box, yaw: float | None, level: float) -> NDArray[np.float64]:
-    """A cost for standing far from an object, or not in front of it."""
+    """Return a cost for standing far from an object, or not in front of it."""
     near = NEAR_HIGH if box.center[1] - level > HIGH else NEAR
     middle, half = np.array((box.center[0], box.center[2])), np.array((box.size[0], box.size[2])) / 2
     offset = centers - middle
@@ -198,7 +198,7 @@ def _distances(centers: NDArray[np.float64], box: Box, yaw: float | None, level:
 
 
 def _crowding(centers: NDArray[np.float64], taken: Iterable[Spot]) -> NDArray[np.float64]:
-    """A cost for standing near other characters."""
+    """Return a cost for standing near other characters."""
     cost = np.zeros(len(centers))
     for spot in taken:
         cost += np.where(np.linalg.norm(centers - np.array(spot), axis=1) < 0.55, 5.0, 0.0)

@@ -47,7 +47,7 @@ class Part:
 
     @classmethod
     def of(cls, things: tuple[Thing, ...]) -> Part:
-        """The part of some things, in order."""
+        """Return the part of some things, in order."""
         meshes = [placed(thing) for thing in things]
         lengths = np.array([len(mesh) for mesh in meshes], np.int64)
         owner = np.repeat(np.arange(len(meshes), dtype=np.int32), lengths)
@@ -189,7 +189,7 @@ class Geometry:
         )
 
     def cast(self, rays: Floats) -> Hits:
-        """The first hit of each of (N, 6) rays."""
+        """Return the first hit of each of (N, 6) rays."""
         hits = self.static.caster.cast(rays)
         everywhere = np.arange(len(rays), dtype=np.int32)
         self.overlay(everywhere, rays, hits)

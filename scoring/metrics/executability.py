@@ -86,7 +86,7 @@ class Executability:
         empty: whether it has no lines. Such a program is not executable, and is counted separately.
         afforded: whether the grammar allows every step's objects.
         runs: whether every line is a step, and all of them run.
-        failed_line: the first failing line, from 0; None without a failure.
+        failed_line: the first failing line, from 1; None without a failure.
         error: its error class.
         code: its failure code.
         final: the world at its end; None unless it runs.
@@ -124,7 +124,7 @@ def executability(
         >>> from hearth.scoring.line_sequences import read
         >>> found = hearth.executability(read(["[Walk] <fridge> (1)", "[Close] <fridge> (1)"]), world)
         >>> found.executable, found.failed_line, str(found.code)
-        (False, 1, 'IS_CLOSED')
+        (False, 2, 'IS_CLOSED')
     """
     knowledge = world.home.knowledge
     faults = {fault.line: fault.code for fault in parsability(lines, knowledge).faults}
@@ -144,7 +144,8 @@ def executability(
     line, error, code = min(failures, key=lambda failure: failure[0]) if failures else (None, None, None)
     runs = execution.executable and not faults
     final = execution.final if runs else None
-    return Executability(program, not lines, not unfit and not faults, runs, line, error, code, final)
+    failed_line = None if line is None else line + 1
+    return Executability(program, not lines, not unfit and not faults, runs, failed_line, error, code, final)
 
 
 def _canonical(step: Step, knowledge: Knowledge) -> Step:

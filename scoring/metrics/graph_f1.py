@@ -143,7 +143,7 @@ def _compared(a: View, b: View, ours: Set[int], theirs: Set[int]) -> Matches:
 
 
 def _shared(a: View, b: View, ours: int, theirs: int) -> int:
-    """Number of common edges with an end in the first graph's nodes and one in the second's."""
+    """Return the number of common edges with an end in the first graph's nodes and one in the second's."""
     every, same = ours | theirs, ours & theirs
     found = 0
     for i in indices(every):

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EdgeColumns, Node
+from hearth.schemas.graph_faults import REMEDY
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATION_ID, ROOM_CATEGORY, STATE_ID, STATES
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
@@ -99,8 +100,7 @@ def read_nodes(given: Iterable[Mapping[str, Any]] | Iterable[Node]) -> Nodes:
 
 def bad_graph(message: str) -> HearthError:
     """The error of a graph that no world can be made of."""
-    suggestion = "nodes need id and class_name; edges need from_id, relation_type and to_id"
-    return HearthError.of(Code.BAD_GRAPH, message, suggestion=suggestion)
+    return HearthError.of(Code.BAD_GRAPH, message, suggestion=REMEDY)
 
 
 def _check_names(ids: Sequence[int], classes: Sequence[str]) -> None:

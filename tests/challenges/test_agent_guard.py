@@ -9,6 +9,7 @@ import pytest
 from hearth.challenges.agent_guard import AgentError, Guarded
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.program import Step
 
 
 class Unspeakable(Exception):
@@ -52,6 +53,53 @@ def test_an_agent_that_catches_its_interruption_is_stopped():
     began = time.monotonic()
     assert fault(stubborn) == Code.TIMED_OUT
     assert time.monotonic() - began < 1.5
+
+
+def ending(*_):
+    raise SystemExit(3)
+
+
+class Ends(Exception):
+    """Ends the process, whatever is asked of it."""
+
+    __str__ = __repr__ = __eq__ = __hash__ = __format__ = ending
+
+
+class EndsOurs(HearthError):
+    """A fault of ours by its class, that ends the process when it is read."""
+
+    def __init__(self):
+        pass
+
+    diagnostics = property(ending)
+    __str__ = ending
+
+
+class EndsByName(type):
+    __name__ = property(ending)
+
+
+class Nameless(Exception, metaclass=EndsByName):
+    __str__ = ending
+
+
+class EndsCompared(Step):
+    """A step that ends the process when it is compared, hashed or printed."""
+
+    __eq__ = __hash__ = __str__ = __repr__ = ending
+
+
+@pytest.mark.parametrize("error", [Ends(), EndsOurs(), Nameless()])
+def test_what_ends_the_process_when_it_is_read_is_the_agents_failure(error):
+    assert fault(raising(error)) == Code.AGENT_FAILED
+
+
+def test_an_answer_that_ends_the_process_when_it_is_compared_is_the_agents_failure():
+    agent = Agent(lambda: None)
+    agent.act = lambda *_: EndsCompared("Walk", ())
+    with pytest.raises(AgentError) as found:
+        Guarded(agent, 1, frozenset({"Walk"}), 0.2).act(None, (Step("Walk", ()),))
+    assert found.value.fault.code == Code.AGENT_FAILED
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """`render-program` and `render-sheet`, through typer's runner."""
 
 import json
+import re
 
 import pytest
 
@@ -9,7 +10,7 @@ pytest.importorskip("open3d")
 from typer.testing import CliRunner
 
 from hearth.cli import app
-from hearth.commands.render import _height
+from hearth.commands.render import _height, _shown
 from hearth.rendering.film import png
 
 
@@ -24,6 +25,19 @@ def test_a_program_becomes_pictures_and_a_contact_sheet(tmp_path):
     assert "002.auto.instance_ids.png" in names
     assert png.decode((tmp_path / "out/001.top.rgb.png").read_bytes()).shape == (48, 64, 3)
     assert png.decode((tmp_path / "out/sheet.png").read_bytes()).shape[1] > 3 * 64
+    assert re.search(r"shows the person in [0-3] of 3 pictures, and all objects of [0-2] of the 2 steps", result.output)
+
+
+@pytest.mark.parametrize(
+    ("shows", "line"),
+    [
+        ((6, 3, 4, 3), "the person in 3 of 6 pictures, and all objects of 3 of the 4 steps with any."),
+        ((2, 0, 0, 0), "the person in 0 of 2 pictures."),
+    ],
+)
+def test_the_line_counts_what_the_pictures_show_not_steps_without_objects(shows, line):
+    names = ("pictures", "with_person", "steps_with_objects", "with_all_objects")
+    assert _shown(dict(zip(names, shows, strict=True))) == f"The contact sheet shows {line}"
 
 
 @pytest.mark.slow

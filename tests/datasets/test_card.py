@@ -11,6 +11,7 @@ import pytest
 import yaml
 
 import hearth
+from hearth.datasets.format.splits import DESCENDED, DRAWN
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.stages import stage
 from hearth.schemas.program import MOST_OBJECTS
@@ -57,12 +58,28 @@ def test_files_of_a_split_have_the_programs_of_that_split(parted):
     assert ("programs_left_out" in found) == (None in expected)
 
 
-def test_no_table_is_called_train(parted):
+def test_tables_that_descend_from_programs_have_their_parts_and_the_others_rows(parted):
     found = configs(parted)
     assert {name for name in found if name != "programs_left_out"} == {
         table for table in TABLES if hearth.load(parted).rows(f"SELECT count(*) FROM {table}")[1] != [(0,)]
     }
-    assert {each["split"] for name in found if name != "programs" for each in found[name]["data_files"]} == {"rows"}
+    splits = {name: [each["split"] for each in found[name]["data_files"]] for name in found if name != "programs"}
+    assert splits["executions"] == splits["environments"] == ["train", "validation", "test", "rows"]
+    assert all(names[-1] == "rows" for names in splits.values())
+    assert {name for name, names in splits.items() if names != ["rows"]} <= {*DESCENDED}
+
+
+def test_rows_are_in_the_part_of_the_program_that_they_descend_from(parted):
+    part_of = dict(hearth.load(parted).rows("SELECT program_id, split FROM programs")[1])
+    seen = 0
+    for table in sorted({*DESCENDED} - {*DRAWN}):
+        for path in sorted((parted / table).glob("*.parquet")):
+            share = path.name.split(".")[1]
+            for row in read_rows(path):
+                program_id = row["program_id"] or row["parent_id"]
+                assert (part_of[program_id] or "left_out") == share, (table, program_id)
+                seen += 1
+    assert seen > 100
 
 
 def test_the_card_names_every_table_and_column(folder):
@@ -152,6 +169,18 @@ def test_load_dataset_gives_the_splits_as_splits(parted, tmp_path):
     expected = {split: ids for split, ids in by_split(parted).items() if split}
     assert {split: set(rows["program_id"]) for split, rows in loaded.items()} == expected
     assert loaded["train"][0]["steps"][0]["action"]
-    for name in configs(parted).keys() - {"programs"}:
-        (split,) = library.load_dataset(str(parted), name, cache_dir=str(tmp_path))
-        assert split == "rows"
+    for name, config in configs(parted).items():
+        found = library.load_dataset(str(parted), name, cache_dir=str(tmp_path))
+        assert [*found] == [each["split"] for each in config["data_files"]]
+        if name in TABLES and name != "programs":
+            assert [(found["rows"].num_rows,)] == hearth.load(parted).rows(f"SELECT count(*) FROM {name}")[1]
+
+
+@pytest.mark.tools
+def test_executions_have_the_splits_of_their_programs(parted, tmp_path):
+    library = pytest.importorskip("datasets.load", reason="the library `datasets` is not installed")
+    loaded = library.load_dataset(str(parted), "executions", cache_dir=str(tmp_path))
+    programs = by_split(parted)
+    for part in ("train", "validation", "test"):
+        assert {*loaded[part]["program_id"]} <= programs[part]
+    assert {*loaded["rows"]["program_id"]} == set.union(*programs.values())

@@ -326,5 +326,14 @@ def test_an_unknown_id_names_those_that_are_like_it(ds):
         _ = ds["x" * 10_000]
 
 
+@pytest.mark.parametrize("key", [0, None, slice(0, 2), ("a", "b")])
+def test_a_key_that_is_not_an_id_is_answered_with_the_keys_that_there_are(made, key):
+    ds = hearth.load(made.out / "publish")
+    first = next(iter(ds))
+    with pytest.raises(TypeError, match=r"found by its id, a text, not by") as caught:
+        ds[key]
+    assert f"dataset[{first!r}]" in str(caught.value) and "list(dataset)" in str(caught.value)
+
+
 def test_completion_has_tables_and_views(ds):
     assert {*TABLES, *VIEWS, "sql", "rows", "folder"} <= {*dir(ds)}

@@ -292,3 +292,16 @@ def test_what_nodes_alone_name_stays_apart_in_another_home(maple):
         environment, execution = sample(take, maple, 0, "apart", conditions)
         assert execution.executable
         assert len({ref.node for ref in environment.program.objects()}) == 2
+
+
+@pytest.mark.parametrize("name", ["milk", "juice", "wine", "beer"])
+def test_a_carton_or_a_bottle_stands_in_no_glass(maple, knowledge, name):
+    base = prepared(maple)
+    spots = [(maple.classes[place], relation) for _, place, relation in base.spots(name).choices]
+    assert spots
+    assert not [place for place, _ in spots if "drinkware" in knowledge.ancestors(place)]
+
+
+def test_what_is_poured_stands_in_a_cup(maple):
+    spots = {maple.classes[place] for _, place, _ in prepared(maple).spots("coffee").choices}
+    assert spots & {"cup", "mug"}

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = {
-    "schemas": 0, "storage": 1, "kb": 1, "homes": 2, "simulation": 3, "grounding": 4, "repair": 5, "rendering": 5,
+    "schemas": -1, "storage": 0, "kb": 1, "homes": 2, "simulation": 3, "grounding": 4, "repair": 5, "rendering": 5,
     "datasets": 6, "scoring": 7, "pipelines": 8, "models": 9, "agents": 10, "envs": 11, "challenges": 12,
     "interop": 13, "analysis": 14, "studies": 15, "web": 16, "commands": 17,
 }  # fmt: skip

@@ -231,7 +231,7 @@ def set_up(tree, **environment):
 def test_set_up_uses_pip_and_the_lock(bare):
     done, calls = set_up(bare)
     assert done.returncode == 0, done.stderr
-    assert "--no-deps -r requirements.lock" in calls and "--no-deps --no-build-isolation -e ." in calls
+    assert "--no-deps --require-hashes -r requirements.lock" in calls and "--no-deps --no-build-isolation -e ." in calls
     assert (bare / ".venv/.ready").exists()
     assert "apt-get" not in calls + done.stderr
 
@@ -248,6 +248,38 @@ def test_set_up_begins_anew_in_a_copy(bare):
     assert "it was set up in /home/somebody/hearth" in done.stderr
     assert not (bare / ".venv/of_the_original").exists()
     assert (bare / ".venv/.ready").read_text() == f"{bare}\n"
+
+
+@pytest.mark.parametrize("tool", ["pip", "uv and pip"])
+def test_set_up_ends_where_a_hash_does_not_fit(bare, tool):
+    """Nothing else is installed in place of the lock, and the tree does not count as set up."""
+    refusing = PYTHON.replace(
+        "#!/bin/bash\n", '#!/bin/bash\ncase "$*" in *requirements.lock*) echo "$*" >> calls; exit 1;; esac\n'
+    )
+    assert refusing != PYTHON
+    executable(bare / "fake", refusing)
+    if tool != "pip":
+        executable(bare / "bin/uv", "#!/bin/sh\necho uv $* >> calls\nexit 1\n")
+    done, calls = set_up(bare)
+    assert done.returncode == 1
+    assert "does not fit its hash" in done.stderr
+    assert not (bare / ".venv/.ready").exists()
+    assert " -e " not in calls
+
+
+def test_nothing_is_installed_without_a_hash():
+    """In `setup.sh`, the image and the workflow, every file of an index has a hash; ours is installed alone."""
+    for name in ("setup.sh", "Containerfile", ".github/workflows/ci.yml"):
+        for line in (ROOT / name).read_text().replace("\\\n", " ").splitlines():
+            for words in re.findall(r"(?:pip install|with_uv|with_pip) ([^&|]*)", line.partition("#")[0]):
+                shown = "say " in line or '"$@"' in line
+                assert shown or "--require-hashes" in words or "--no-deps" in words, (name, line)
+
+
+def test_actions_are_pinned_by_their_commit():
+    text = (ROOT / ".github/workflows/ci.yml").read_text()
+    used = re.findall(r"uses: (\S+)", text)
+    assert used and all(re.fullmatch(r"[\w/-]+@[0-9a-f]{40}", each) for each in used)
 
 
 def test_set_up_prefers_uv(bare):

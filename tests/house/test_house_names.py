@@ -15,6 +15,7 @@ OURS = {
     "storage/partitions.py": 2,  # numbers of parts
     "storage/fetching.py": 1,  # the user's number, and a digest
     "storage/stores.py": 1,  # the user's number
+    "storage/databases.py": 1,  # numbers of a process and its databases
 }
 """How many joins of a path and a made-up name a file has, where what is put in are numbers and digests of ours."""
 

@@ -46,7 +46,7 @@ def copy(tmp_path_factory):
     for title, content in TITLED.findall(text):
         (copy / title).write_text(content, "utf-8")
     for script in BASH.findall(text):
-        done(copy, "bash", "-euo", "pipefail", "-c", script)
+        done(copy, "bash", "-euo", "pipefail", "-c", f'hearth() {{ "{sys.executable}" cli.py "$@"; }}\n{script}')
     return copy
 
 

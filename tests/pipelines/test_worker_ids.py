@@ -6,6 +6,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from hearth.pipelines import ingest
+from hearth.pipelines.engine.runner import run_stage
+from hearth.pipelines.engine.salt_record import salt_changed
+from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.sources import labelled, salt, source_digests
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers.item import worker_hash
@@ -64,3 +68,35 @@ def test_a_wide_first_cell_of_a_table_is_read_whatever_was_read_before(tmp_path,
     wide.write_text(f"title,{'d' * 140_000}\nWatch TV,On the sofa\n")
     for path in sorted(tmp_path.iterdir()):
         list(items(labelled([str(path)])))
+
+
+@pytest.fixture
+def salted(tmp_path):
+    """Build `ingest` with a salt, or none; the ids of workers and the manifest as text."""
+    folder = tmp_path / "batch"
+    folder.mkdir()
+    header = "HITId,WorkerId,Platform,AssignmentStatus,Input.scene,Answer.title,Answer.description\n"
+    (folder / "descriptions.csv").write_text(f"{header}D1,W1,AMT,Approved,bedroom,Read,I sit down and read a book.\n")
+
+    def built(given):
+        settings = Settings(sources=(str(folder),), out=str(tmp_path / "out"), salt=given)
+        run_stage(ingest.STAGE, settings)
+        return (settings.folder("ingest") / "manifest.json").read_text()
+
+    return built
+
+
+def test_a_manifest_has_no_digest_of_a_salt(salted):
+    """A salt that somebody guesses could be tried on any digest of it, the stage's key included."""
+    made = json.loads(salted("guessable"))
+    assert "salt" not in json.dumps(made["plan"]) and "salt" not in made["settings"]
+    assert json.loads(salted("another"))["key"] == made["key"]
+
+
+def test_another_salt_begins_anew(tmp_path):
+    assert not salt_changed(tmp_path, None)
+    assert salt_changed(tmp_path, "one") and not salt_changed(tmp_path, "one")
+    assert salt_changed(tmp_path, "two") and salt_changed(tmp_path, None) and not salt_changed(tmp_path, None)
+    salt_changed(tmp_path, "three")
+    (file,) = tmp_path.iterdir()
+    assert file.stat().st_mode & 0o077 == 0 and b"three" not in file.read_bytes()

@@ -6,6 +6,7 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
+from hearth.rendering.cameras.recognition import PERSON
 from hearth.rendering.film.contact_sheet import caption, contact_sheet
 from hearth.rendering.film.snapshots import _put_down_at, keyframes, snapshots
 from hearth.rendering.people.action_poses import moved
@@ -158,6 +159,11 @@ def test_pictures_by_two_cameras_show_person_and_cup():
     for shot in taken:
         assert shot.pictures["rgb"].shape == (60, 80, 3)
         assert (shot.pictures["instance_ids"] == ME).any()
+    assert {shot.person for shot in taken[::2]} == {False}, "from above the person is too small to be recognised"
+    for shot in taken[1::2]:
+        share = (shot.pictures["instance_ids"] == ME).mean()
+        assert shot.person or share < PERSON or shot.steps, "where it stands alone, its size decides"
+    assert any(shot.person for shot in taken[1::2])
     grabbed = taken[5]
     assert (grabbed.pictures["instance_ids"] == CUP).any()
     assert grabbed.seen == 1.0 and taken[0].seen is None and taken[1].seen is None, "the start names nothing"

@@ -50,7 +50,7 @@ def test_the_tables_name_codes_once():
         (failed(Code.NO_PATH, expected="1 m of free floor ahead", actual="0.20 m"), "floor ahead, and there is 0.20 m"),
         (
             failed(Code.CONFLICT, "cup", actual="HELD_BY_OTHER after what the other did in this tick"),
-            "another character holds the cup, after what the other character did in the same step",
+            "another character holds the cup, after the other character's act in the same step",
         ),
         (failed(Code.NO_PLACE, "cup", expected="a thing", actual="another"), "no place for the cup: it takes a thing"),
     ],

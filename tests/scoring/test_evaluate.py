@@ -69,7 +69,7 @@ def test_summary(scored):
     summary = summarise(scored)
     assert (summary.count, summary.missing, summary.empty, summary.incomparable, summary.inexact) == (6, 1, 1, 1, 0)
     assert summary.errors == {ErrorClass.SYNTAX: 1, ErrorClass.WRONG_ORDER: 1}
-    assert summary.failed_at == {0: 2}
+    assert summary.failed_at == {1: 2}
     assert summary.means["lcs_step"].mean == 0.25
     assert summary.codes == {Code.SYNTAX: 1, Code.NOT_CLOSE: 1}
     assert (summary.unreferenced, summary.reached_before) == (0, 0)

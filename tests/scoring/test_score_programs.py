@@ -95,11 +95,12 @@ def test_a_bad_row_never_stops_the_file(score, tmp_path):
     done = score("program", "r.jsonl", "--json")
     found = json.loads(done.stdout)
     assert done.exit_code == 1
-    assert [each["id"] for each in found["scores"]] == ["1", "7"]
+    assert [each["id"] for each in found["scores"]] == ["1", "4", "7"]  # of 4, the goal alone is refused
     assert found["rejected"] + found["count"] == 9
     assert {fault["line"] for fault in found["rejects"]} >= {2, 3, 6, 7}
     assert "(and 1 more row: line 8)" in done.stderr and done.stderr.count("mapel") <= 2
-    assert "7 rows refused" in score("program", "r.jsonl").stdout
+    text = score("program", "r.jsonl").stdout
+    assert "6 rows refused" in text and "1 goal that can't be read" in text
 
 
 @pytest.mark.parametrize("command", ["lcs", "program"])
@@ -128,12 +129,32 @@ def test_an_empty_answer_is_neither_executable_nor_parsable(score, tmp_path):
         assert found["mean"][name]["mean"] == 0, name
 
 
+@pytest.mark.parametrize(
+    ("goal", "code"),
+    [("ON(unicorn, table)", "UNKNOWN_OBJECT"), ("OPEN(fridge", "SYNTAX"), ({"goals": 1}, "BAD_JSON"), ("", "SYNTAX")],
+)
+def test_a_goal_that_cannot_be_read_is_a_fault_of_the_goal_alone(score, tmp_path, goal, code):
+    whole = {"predicted": TV, "home": "maple"}
+    rows(tmp_path / "r.jsonl", {"id": "a", **whole, "goal": goal}, {"id": "b", **whole, "goal": "ON(tv)"})
+    result = score("program", "r.jsonl", "--json")
+    assert result.exit_code == 1
+    found = json.loads(result.stdout)
+    first, second = found["scores"]
+    assert (first["goal_fault"], second["goal_fault"]) == (code, None)
+    assert first["executable"] == second["executable"] == 1 and "goal" not in first
+    assert (found["count"], found["unread_goals"], found["rejected"]) == (2, 1, 0)
+    assert [each["code"] for each in found["rejects"]] == [code]
+    text = score("program", "r.jsonl")
+    assert "1 goal that can't be read, left out of `goal`" in text.stdout and "refused" not in text.stdout
+    assert "goal of `a`, row 1" in text.stderr
+
+
 def test_a_failed_program_reaches_no_goal(score, tmp_path):
     put = ["[Walk] <remote_control> (1)", "[Grab] <remote_control> (1)", "[Walk] <bedroom> (1)",
            "[PutBack] <remote_control> (1) <bedroom> (1)"]  # fmt: skip
     rows(tmp_path / "r.jsonl", {"id": "a", "predicted": [*put, *TV], "home": "maple", "reference": TV})
     (found,) = json.loads(score("program", "r.jsonl", "--rules", "replay", "--json").stdout)["scores"]
-    assert (found["executable"], found["goal"], found["goal_whole"], found["failed_line"]) == (0, 0, 0, 3)
+    assert (found["executable"], found["goal"], found["goal_whole"], found["failed_line"]) == (0, 0, 0, 4)
 
 
 def test_a_subset_of_a_dataset(score, tmp_path, made):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -56,11 +57,19 @@ def person(server):
 
 
 class Serving:
-    """`python cli.py serve` in a process of its own; `address` and `desk` are what it printed."""
+    """`python cli.py serve` in a process of its own; `address` and `desk` are what it printed.
 
-    def __init__(self, out: Path, *options: str) -> None:
-        self.out = out
+    Args:
+        out: its folder.
+        options: of the command.
+        limits: what a shell does first, such as `ulimit -n 64`; what the server logs is in `log` then.
+    """
+
+    def __init__(self, out: Path, *options: str, limits: str = "") -> None:
+        self.out, self.log = out, out.with_name("log.txt")
         command = [sys.executable, str(ROOT / "cli.py"), "serve", "--port", "0", "--json", "--out", str(out), *options]
+        if limits:
+            command = ["sh", "-c", f'{limits}; exec "$@" 2>>{shlex.quote(str(self.log))}', "sh", *command]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT, env=dict(os.environ))
         text, line = "", None
         while line != "}\n":
@@ -80,13 +89,21 @@ def serving(tmp_path):
     """Starts servers in processes of their own; all are killed at the end."""
     started: list[Serving] = []
 
-    def start(*options: str, out: Path | None = None) -> Serving:
-        started.append(Serving(out or tmp_path / "served", *options))
+    def start(*options: str, out: Path | None = None, limits: str = "") -> Serving:
+        started.append(Serving(out or tmp_path / "served", *options, limits=limits))
         return started[-1]
 
     yield start
     for each in started:
         each.kill()
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    """One server in a process of its own for the tests of a file."""
+    started = Serving(tmp_path_factory.mktemp("one") / "served")
+    yield started
+    started.kill()
 
 
 @pytest.fixture

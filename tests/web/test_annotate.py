@@ -12,7 +12,6 @@ import sqlalchemy as sql
 from web.people import DESK, Server
 
 import hearth
-from hearth.web.annotate.collected_files import collected
 from hearth.web.annotate.descriptions import SCENES, lacks
 from hearth.web.web_tables import SESSIONS
 
@@ -71,8 +70,15 @@ def submitted(client, text, steps=STEPS) -> None:
     assert answer.status_code == 200, answer.text
 
 
+def invited(server: Server, client):
+    """A person, invited by the desk to review."""
+    link = server.researcher().post("/desk/annotate/invite").text.split('value="')[1].split('"')[0]
+    assert client.post(f"/annotate/reviewer/{link.rpartition('/')[2]}").status_code == 303
+    return client
+
+
 def reviewer(server: Server):
-    client = server.person()
+    client = invited(server, server.person())
     assert "You have passed" in client.get(client.post("/annotate/test", data=RIGHT).headers["location"]).text
     return client
 
@@ -274,7 +280,7 @@ def test_a_second_person_reviews_and_only_what_was_accepted_goes_out(server, per
 
 def reviewer_of_own(server, person):
     person.post("/annotate/test", data=RIGHT)
-    return person
+    return invited(server, person)
 
 
 def test_a_mended_program_is_accepted_with_the_new_steps(server, person, text):
@@ -355,14 +361,18 @@ def test_the_desk_counts_the_texts_of_special_blocks(server, person, text):
     assert server.client().get(f"/desk/enter/{DESK}").status_code == 303
 
 
-def test_a_person_who_leaves_takes_everything_along(server, person, text):
+def test_a_person_who_leaves_takes_everything_along_but_what_was_accepted(server, person, text):
     submitted(person, text)
-    accept(reviewer(server))
-    assert collected(server.store)["programs.csv"]
-    assert (server.out / "programs.csv").exists()
+    other = described(person, title="Go to sleep")
+    submitted(person, other)
+    second, who = reviewer(server), person.get("/mine").text.split("<strong>")[1].split("<")[0]
+    program = waiting(second)[0]
+    assert second.post(f"/annotate/review/{program}", data={"verdict": "accept"}).status_code == 303
+    assert who in (server.out / "programs.csv").read_text()
     assert person.post("/mine/delete").status_code == 303
-    assert not any(collected(server.store).values())
-    assert not [*server.out.glob("*.csv"), *server.out.glob("*.json")]  # what `build` reads has nothing of theirs
+    assert [*ids(second)] == [text] and waiting(second) == []
+    for file in server.out.glob("*.csv"):  # what `build` reads names them no more
+        assert who not in file.read_text() and "Go to sleep" not in file.read_text()
 
 
 def test_a_task_that_is_opened_twice_at_once_is_begun_once(server, person, text, monkeypatch):

@@ -334,10 +334,17 @@ def test_blocks_stay_readable_when_the_colours_of_the_page_change(opened):
 
 
 def reviewed_and_built(opened, tmp_path) -> None:
-    """A second person passes the test, accepts the program, marks it and grades it."""
-    page = opened()
+    """The desk invites a second person, who passes the test, accepts the program, marks it and grades it."""
+    desk, page = opened(), opened()
+    desk.goto(opened.server.desk)
+    desk.goto(f"{opened.server.address}/desk/annotate/")
+    desk.click("text=Invite a reviewer")
+    link = desk.input_value("#link")
     page.click("text=Begin with Annotate")
     page.click("text=Review programs")
+    page.wait_for_selector("text=Reviewers are invited")
+    page.goto(link)
+    page.click("text=Become a reviewer")
     page.click("text=Take the test")
     for number in range(6):
         page.check(f"#{'yes' if number % 2 == 0 else 'no'}-{number}")

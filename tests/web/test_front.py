@@ -26,6 +26,14 @@ def test_every_answer_has_the_policy(server, method, path):
         assert "unsafe" not in HEADERS["Content-Security-Policy"]
 
 
+def test_by_its_public_name_browsers_are_told_to_come_by_https(tmp_path, knowledge):
+    server = Server(tmp_path / "served", knowledge, hosts=("homes.example",))
+    name = "Strict-Transport-Security"
+    assert "max-age" in server.client(headers={"host": "homes.example"}).get("/static/style.css").headers[name]
+    assert name not in server.client().get("/static/style.css").headers
+    server.store.close()
+
+
 def test_a_fault_of_ours_has_the_policy_and_says_nothing_of_the_inside(server, monkeypatch):
     monkeypatch.setattr("hearth.web.front.missing", lambda: 1 / 0)
     answer = server.client(raise_server_exceptions=False).get("/")
@@ -66,7 +74,8 @@ def test_a_session_begins_returns_by_its_link_and_is_deleted(server):
     link = f"/come/{person.cookies['hearth']}"
     assert link in person.get("/mine").text
     other = server.client()
-    assert other.get(link).status_code == 303 and other.get("/mine").status_code == 200
+    assert other.get(link).headers["location"] == "/come" and other.get("/mine").status_code == 401
+    assert other.post("/come").status_code == 303 and other.get("/mine").status_code == 200
     assert other.post("/mine/delete").status_code == 303
     assert person.get("/mine").status_code == 401 and server.client().get(link).status_code == 401
 

@@ -231,10 +231,11 @@ def test_two_people_in_two_browsers(serving, browser, page):
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
 def test_a_program_in_another_language_helps(serving, page):
     begin(page, serving(), "wah", 0, helper="program")
-    port = page.locator("#banner").text_content().split("port ")[1].split(" ")[0]
-    program = subprocess.Popen(["node", ROOT / "docs/examples/helper.js", port])
+    said = page.locator("#banner").text_content()
+    port, token = said.split("port ")[1].split(" ")[0], said.split("token ")[1].rstrip(".")
+    program = subprocess.Popen(["node", ROOT / "docs/examples/helper.js", port, token])
     try:
-        time.sleep(1.5)
+        time.sleep(3)
         for tick in range(8):
             page.keyboard.press("ArrowLeft")
             page.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)

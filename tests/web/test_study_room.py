@@ -381,7 +381,7 @@ def test_tables_and_report_are_downloaded(judging):
         ("UPDATE study_events SET kind = 'won'", "does not happen there"),
         ("UPDATE study_places SET place = 99", "there are"),
         ("UPDATE study_studies SET text = replace(text, 'name: judging', 'name: other')", "as the study `judging`"),
-        ("ALTER TABLE study_events RENAME COLUMN data TO other", "not as `serve` keeps it"),
+        ("ALTER TABLE study_events RENAME COLUMN data TO other", "`study_events` lacks `data`"),
         ("CREATE TRIGGER t AFTER DELETE ON sessions BEGIN DELETE FROM study_studies; END", "has a trigger"),
         ("DROP TABLE study_events; CREATE VIEW study_events AS SELECT 1 AS study", "has a view"),
     ],

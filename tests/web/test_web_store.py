@@ -180,8 +180,11 @@ def test_two_servers_share_a_postgres(postgres, tmp_path, knowledge):
     assert "[Watch] <television> (1)" in (second.out / "programs.csv").read_text()
     third = Server(tmp_path / "third", knowledge, postgres)
     assert (third.out / "programs.csv").read_bytes() == (second.out / "programs.csv").read_bytes()
+    who = person.get("/mine").text.split("<strong>")[1].split("<")[0]
+    unused = described(person)
     assert person.post("/mine/delete").status_code == 303
-    assert second.store.rows(sql.select(TEXTS)) == []
+    kept = second.store.rows(sql.select(TEXTS))
+    assert unused != text and [row["id"] for row in kept] == [text] and kept[0]["session"] != who
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from hearth.pipelines.checks import special_blocks
 from hearth.schemas.failures import Code
-from hearth.web.annotate import collected_files
+from hearth.web.annotate import collected_files, withdrawal
 from hearth.web.annotate.annotate_tables import DRAFT, MARKS, PROGRAMS, REVIEWS, TEXTS
 from hearth.web.annotate.draft import SPECIAL, stored
 from hearth.web.store import Store
@@ -39,8 +39,21 @@ def download(visit: Visit) -> Response:
     return Response(data, media_type="application/json" if name.endswith(".json") else "text/csv", headers=headers)
 
 
+def erase(visit: Visit) -> Response:
+    """Delete a description or a program, as somebody asked who is in it; the files follow.
+
+    Raises:
+        WebError: UNKNOWN_ID.
+    """
+    name = visit.field("id", 100).strip()
+    if not withdrawal.erase(visit.web.store, name):
+        raise WebError(Code.UNKNOWN_ID, "id", "the id of a description or a program", name[:40])
+    visit.web.written()
+    return visit.go("/desk/annotate/")
+
+
 def counts(store: Store) -> dict[str, int]:
-    """The number of rows of each kind."""
+    """Return the number of rows of each kind."""
 
     def read(connection: sql.Connection) -> dict[str, int]:
         groups = ((PROGRAMS, PROGRAMS.c.state, "programs: {}"), (REVIEWS, REVIEWS.c.verdict, "reviews: {}"),
@@ -55,7 +68,7 @@ def counts(store: Store) -> dict[str, int]:
 
 
 def special_texts(store: Store) -> list[tuple[str, int, bool]]:
-    """The texts of special blocks in programs that were handed in, most frequent first (thesis 3.3).
+    """Return the texts of special blocks in programs that were handed in, most frequent first (thesis 3.3).
 
     Returns:
         The text in lower case, its number, and whether the special-blocks file has steps for it.

@@ -6,7 +6,16 @@ import sqlalchemy as sql
 from starlette.responses import Response
 
 from hearth.schemas.yaml_extent import packaged
-from hearth.web.annotate import annotate_desk, annotated_programs, composing, descriptions, marking, reviewing
+from hearth.web.annotate import (
+    annotate_desk,
+    annotated_programs,
+    composing,
+    descriptions,
+    marking,
+    reviewers,
+    reviewing,
+    withdrawal,
+)
 from hearth.web.annotate.annotate_tables import TEXTS
 from hearth.web.annotate.collected_files import write_collected
 from hearth.web.annotate.qualification import is_qualified, take_test, test_page
@@ -64,6 +73,8 @@ ROOM = Room(
         post("/review/{program}/run", reviewing.try_out),
         post("/review/{program}/replay", reviewing.replay),
         post("/review/{program}/submit", reviewing.mend),
+        get("/reviewer/{code}", reviewers.invited_page),
+        post("/reviewer/{code}", reviewers.accept_invitation),
         get("/sketch", marking.sketch_page),
         post("/sketch/{program}", marking.keep_sketch),
         get("/rate", marking.rating_page),
@@ -72,7 +83,13 @@ ROOM = Room(
         post("/film/{film:path}", marking.keep_film),
         get("/film-of/{film:path}", marking.film_file),
     ),
-    desk=(get("/", annotate_desk.overview), get("/{file}", annotate_desk.download)),
+    desk=(
+        get("/", annotate_desk.overview),
+        post("/invite", reviewers.invite),
+        post("/erase", annotate_desk.erase),
+        get("/{file}", annotate_desk.download),
+    ),
     needs=("blockly",),
     opens=write_collected,
+    keeps=withdrawal.keep,
 )

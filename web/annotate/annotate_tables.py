@@ -69,6 +69,17 @@ QUALIFIED = sql.Table(
 )
 """Qualification tests that were taken."""
 
+REVIEWERS = sql.Table(
+    "annotate_reviewers",
+    METADATA,
+    sql.Column("id", sql.Text, primary_key=True, comment="SHA-256 of the invitation's code, which is not stored"),
+    sql.Column(
+        "session", sql.Text, sql.ForeignKey("sessions.id", ondelete="CASCADE"), index=True, comment="null until taken"
+    ),
+    _when(),
+)
+"""Invitations to review, each for one session."""
+
 MARKS = sql.Table(
     "annotate_marks",
     METADATA,

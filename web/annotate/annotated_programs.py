@@ -109,7 +109,7 @@ def submitted(store: Store, person: str, most: int = 100) -> list[Row]:
 
 
 def accepted(store: Store, person: str = "") -> list[Row]:
-    """Accepted programs with their descriptions, oldest first; of all but one person."""
+    """Return accepted programs with their descriptions, oldest first; of all but one person."""
     joined = PROGRAMS.join(TEXTS, PROGRAMS.c.text == TEXTS.c.id)
     columns = (TEXTS.c.title, TEXTS.c.description, TEXTS.c.scene, TEXTS.c.session.label("writer"))
     query = (

@@ -5,7 +5,6 @@ The files follow from the store: they are written after each acceptance and when
 
 from __future__ import annotations
 
-import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -18,6 +17,7 @@ from hearth.analysis.completeness_ratings import COLUMNS, HELP
 from hearth.analysis.spreadsheet_cells import sheet_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.csv_files import rows_writer
 from hearth.storage.files import write_bytes
 from hearth.web.annotate import annotated_programs
 from hearth.web.annotate.annotate_tables import MARKS
@@ -65,7 +65,7 @@ def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> bytes:
     """CSV; empty without rows."""
     listed = list(rows)
     out = io.StringIO(newline="")
-    csv.writer(out, lineterminator="\n").writerows([header, *listed])
+    rows_writer(out)([header, *listed])
     return out.getvalue().encode() if listed else b""
 
 

@@ -15,6 +15,7 @@ from hearth.web.annotate.annotate_tables import ACCEPTED, PROGRAMS, RETURNED, RE
 from hearth.web.annotate.collected_files import write_collected
 from hearth.web.annotate.draft import Draft, stored
 from hearth.web.annotate.qualification import is_qualified
+from hearth.web.annotate.reviewers import is_invited
 from hearth.web.messages import int_field
 from hearth.web.store import Row
 from hearth.web.visit import Visit
@@ -22,10 +23,11 @@ from hearth.web.web_errors import WebError
 
 
 def review_list(visit: Visit) -> Response:
-    """Return the programs that wait for a second person; people without the test get the way to the test."""
-    qualified = is_qualified(visit.web.store, visit.person)
-    waiting = annotated_programs.submitted(visit.web.store, visit.person) if qualified else []
-    return visit.page("annotate/reviews.html", qualified=qualified, waiting=waiting)
+    """Return the programs that wait for a second person; others get the way to an invitation and the test."""
+    store, person = visit.web.store, visit.person
+    invited, qualified = is_invited(store, person), is_qualified(store, person)
+    waiting = annotated_programs.submitted(store, person) if invited and qualified else []
+    return visit.page("annotate/reviews.html", invited=invited, qualified=qualified, waiting=waiting)
 
 
 def review_page(visit: Visit) -> Response:
@@ -98,12 +100,14 @@ def _mended(visit: Visit) -> tuple[Row, Row, Draft, dict[str, Any]]:
 
 
 def _waiting(visit: Visit) -> tuple[Row, Row]:
-    """Return another person's submitted program, and its description, for a person who passed the test.
+    """Return another person's submitted program, and its description, for a person with invitation and test.
 
     Raises:
         WebError: NOT_ALLOWED or UNKNOWN_ID.
     """
     store = visit.web.store
+    if not is_invited(store, visit.person):
+        raise WebError(Code.NOT_ALLOWED, "review", "somebody whom the desk invited", "somebody whom it did not")
     if not is_qualified(store, visit.person):
         raise WebError(Code.NOT_ALLOWED, "review", "somebody who passed the test", "somebody who did not")
     query = sql.select(PROGRAMS).where(

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import contextlib
 import math
-import threading
 import time
 from collections import OrderedDict
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from hearth.challenges.agent_channels import Listener
+from hearth.challenges.agent_channels import SocketChannel
 from hearth.challenges.agent_guard import AgentError
 from hearth.challenges.wire_protocol import WireAgent
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.web.deadlines import BoundedLock
 from hearth.web.play import game_store
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
 from hearth.web.play.presence import AWAITED, HERE, presence, signs
+from hearth.web.play.program_door import ProgramDoor, program_door
 from hearth.web.play.trials import PROGRAM
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
@@ -48,23 +49,25 @@ class LiveGame:
         game: as far as this process knows it.
         lock: held by the thread that works with `game`.
         port: where the helper's program is waited for; 0 if it is not.
+        seen: when a page of it was open last, by `time.monotonic`.
     """
 
     def __init__(self, store: Store, stored: Stored, knowledge: Knowledge) -> None:
         self.store, self.stored = store, stored
         self.game = Game(stored.trial, knowledge)
-        self.lock = threading.RLock()
+        self.lock = BoundedLock("this game")
         self.waiting_since = 0.0
         self.decided: tuple[int, ...] = ()
         self.signs: dict[int, float] = {}
         self._drawn: dict[int, DrawnGame] = {}
-        self._listener: Listener | None = None
+        self.seen = time.monotonic()
+        self._door: ProgramDoor | None = None
         self._program: WireAgent | None = None
 
     @property
     def port(self) -> int:
         """Return where the helper's program is waited for; 0 if it is not."""
-        return self._listener.port if self._listener is not None else 0
+        return self._door.port if self._door is not None and not self._door.closed else 0
 
     @property
     def characters(self) -> int:
@@ -77,7 +80,7 @@ class LiveGame:
         return presence(self.signs.get(1 - number)) if len(people) > 1 else ""
 
     def drawn(self, knowledge: Knowledge, number: int) -> DrawnGame:
-        """The game's scene for the eyes of a character. Hold the lock."""
+        """Return the game's scene for the eyes of a character. Hold the lock."""
         if number not in self._drawn:
             from hearth.web.play.drawn_games import DrawnGame
 
@@ -85,7 +88,7 @@ class LiveGame:
         return self._drawn[number]
 
     def sync(self) -> Game:
-        """The game with every tick that the store has. Hold the lock."""
+        """Return the game with every tick that the store has. Hold the lock."""
         game = self.game
         found, row, self.signs = self.store.read(
             lambda connection: (
@@ -104,7 +107,7 @@ class LiveGame:
         return game
 
     def seconds_left(self) -> float | None:
-        """The seconds until the game's time is over; None where it has no limit."""
+        """Return the seconds until the game's time is over; None where it has no limit."""
         left = self.stored.deadline - time.time()
         return None if left == math.inf else max(0.0, left)
 
@@ -180,32 +183,41 @@ class LiveGame:
                 self.store.write(lambda connection: game_store.decide(connection, turn, late))
             self._after()
 
-    def listen(self) -> int:
-        """Wait for the helper's program on a port of this machine (docs/examples/agents.md); the port."""
+    def listen(self) -> tuple[int, str]:
+        """Wait for the helper's program on a port of this machine (docs/examples/agents.md); the port, and its token.
+
+        Port 0 where the game has no program, is over, or too many games of this process have ports.
+        """
         with self.lock:
             if self.game.trial.helper != PROGRAM or self.game.over:
-                return 0
-            if self._listener is None:
-                self._listener = Listener()
-                threading.Thread(target=self._accept, args=(self._listener,), daemon=True).start()
-            return self._listener.port
+                return 0, ""
+            if self._door is None or self._door.closed:
+                self._door = program_door(self)
+            return (self._door.port, self._door.token) if self._door else (0, "")
 
-    def _accept(self, listener: Listener) -> None:
-        """Take the programs that connect, one after the other; the last that came is the helper."""
-        while self._listener is listener:
-            with contextlib.suppress(HearthError, OSError):
-                channel = listener.accept(1.0)
-                with self.lock:
-                    self._let_go()
-                    self._program = WireAgent(channel, PROGRAM_WITHIN, limit=self.game.playing.limit)
-                    self.sync().use(self._program)
+    def wants_program(self) -> bool:
+        """Return whether the game goes on, so that its port stays open."""
+        try:
+            with self.lock:
+                return not self.sync().over
+        except WebError:  # it was deleted
+            return False
+        except HearthError:  # the store is busy
+            return True
+
+    def take_program(self, channel: SocketChannel) -> None:
+        """Let a program that has shown the token be the helper; the last that came is."""
+        with self.lock:
+            self._let_go()
+            self._program = WireAgent(channel, PROGRAM_WITHIN, limit=self.game.playing.limit)
+            self.sync().use(self._program)
 
     def close(self) -> None:
-        """Let go of the helper's program."""
+        """Let go of the helper's program, and close its port."""
         with self.lock:
-            listener, self._listener = self._listener, None
-            if listener is not None:
-                listener.close()
+            door, self._door = self._door, None
+            if door is not None:
+                door.close()
             self._let_go()
 
     def _let_go(self) -> None:
@@ -221,10 +233,10 @@ class Games:
     def __init__(self, store: Store, knowledge: Knowledge) -> None:
         self._store, self._knowledge = store, knowledge
         self._kept: OrderedDict[str, LiveGame] = OrderedDict()
-        self._lock = threading.Lock()
+        self._lock = BoundedLock("the room")
 
     def find(self, game: str, session: str) -> tuple[LiveGame, int]:
-        """A game of a session, and the character that it plays.
+        """Return a game of a session, and the character that it plays.
 
         Raises:
             WebError: UNKNOWN_ID: it has none of that id.
@@ -235,9 +247,12 @@ class Games:
     def open(self, game: str) -> LiveGame:
         """Return a game, for a person who may see it."""
         with self._lock:
-            if game not in self._kept:
-                stored = self._store.read(lambda connection: game_store.stored(connection, game))
-                self._kept[game] = LiveGame(self._store, stored, self._knowledge)
+            made = self._kept.get(game)
+        if made is None:  # outside the lock: others do not wait for the store and for this home
+            stored = self._store.read(lambda connection: game_store.stored(connection, game))
+            made = LiveGame(self._store, stored, self._knowledge)
+        with self._lock:
+            self._kept.setdefault(game, made)
             self._kept.move_to_end(game)
             forgotten = [self._kept.popitem(last=False)[1] for _ in range(len(self._kept) - MOST_GAMES)]
             found = self._kept[game]
@@ -250,5 +265,5 @@ _GAMES: WeakKeyDictionary[Store, Games] = WeakKeyDictionary()
 
 
 def games(store: Store, knowledge: Knowledge) -> Games:
-    """The games of a store that this process keeps."""
+    """Return the games of a store that this process keeps."""
     return _GAMES.setdefault(store, Games(store, knowledge))

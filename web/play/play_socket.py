@@ -8,11 +8,10 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from starlette.concurrency import run_in_threadpool as in_thread
-
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.web import sessions
+from hearth.web import deadlines, sessions
+from hearth.web.handler_threads import in_thread
 from hearth.web.link import Link
 from hearth.web.messages import int_field, text_field
 from hearth.web.play.game_messages import Telling
@@ -85,12 +84,13 @@ class Page:
         with self.live.lock:
             self._signed()
             self.telling.game = self.live.sync()
-            port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
+            port, token = self.live.listen() if self.live.game.trial.helper == PROGRAM else (0, "")
             self._told = self._state()
             begun = {**self.telling.begin(), **self._unnamed()}
             return {
                 **begun,
                 "port": port,
+                "token": token,
                 "code": self._code(),
                 "left": self.live.seconds_left(),
                 **self._waiting(),
@@ -98,7 +98,7 @@ class Page:
             }
 
     def _unnamed(self) -> dict[str, str]:
-        """The helper of a study's trial, without its name."""
+        """Return the helper of a study's trial, without its name."""
         helped = "somebody" if self.live.stored.trial.helped else "none"
         return {"helper": helped} if self.live.stored.blind else {}
 
@@ -150,6 +150,7 @@ class Page:
 
     def _news(self) -> dict[str, Any] | None:
         """Return others' actions since the last message, if there are any."""
+        self.live.seen = time.monotonic()
         with self.live.lock:
             if self._told:
                 self._signed()
@@ -176,8 +177,11 @@ class Page:
         """Send others' decisions, until cancelled."""
         while True:
             await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
+            deadlines.begin()
             try:
                 await self.tell(self._news)
+            except HearthError:  # the store is busy: the next look finds it
+                continue
             except WebError as fault:  # the game was deleted, as its other person asked
                 await self.link.refuse(fault)
                 with contextlib.suppress(RuntimeError):
@@ -192,6 +196,7 @@ def _act_of(message: dict[str, Any]) -> str | None:
 async def live(link: Link) -> None:
     """Serve a page until it goes."""
     web = link.web
+    deadlines.begin(deadlines.OPENS)
     try:
         found = games(web.store, web.known).find
         game, number = await in_thread(found, str(link.socket.path_params["game"]), link.session.id)
@@ -199,10 +204,15 @@ async def live(link: Link) -> None:
         await link.refuse(fault)
         await link.socket.close(4404)
         return
+    except HearthError as error:
+        await link.refuse(refusal(error))
+        await link.socket.close(1013)
+        return
     page = Page(link, game, number)
     watching = asyncio.create_task(page.watch())
     try:
         while (message := await link.receive()) is not None:
+            deadlines.begin(deadlines.OPENS if message["type"] == "hello" else deadlines.ACTS)
             try:
                 await page.take(message)
             except WebError as fault:

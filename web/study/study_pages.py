@@ -30,6 +30,7 @@ from hearth.studies.study import FILM, JUDGE, MOST_TEXT, REPLAY, Question, Study
 from hearth.studies.study_file import named
 from hearth.studies.study_folder import FILMS
 from hearth.web import play
+from hearth.web.study.places_held import HELD, is_stranger
 from hearth.web.study.study_store import FOLDER, conducted
 from hearth.web.study.study_trial_games import begun, gone_on
 from hearth.web.study.study_turns import UNASKED, check_answers, in_turn, unasked_line
@@ -51,7 +52,7 @@ MEDIA = {FILM: "video/webm", REPLAY: "application/json"}
 
 
 def study_here(web: Web) -> Study | None:
-    """The study that this server is for; None where it is for none."""
+    """Return the study that this server is for; None where it is for none."""
     if web.study is None:
         return None
     return _read(str(web.study), web.study.stat().st_mtime_ns if web.study.is_file() else 0)
@@ -59,7 +60,7 @@ def study_here(web: Web) -> Study | None:
 
 @lru_cache(maxsize=4)
 def _read(study: str, changed: int) -> Study:
-    """A study's file, read again when it has changed."""
+    """Return a study's file, read again when it has changed."""
     return named(study)
 
 
@@ -76,7 +77,7 @@ def conduct_here(web: Web) -> Conduct:
 
 
 def way(visit: Visit) -> Response:
-    """The page of where a person is."""
+    """Return the page of where a person is."""
     if study_here(visit.web) is None:
         return visit.page("study/none.html")
     conduct = conduct_here(visit.web)
@@ -137,19 +138,39 @@ def _here(visit: Visit, conduct: Conduct) -> Standing | None:
 
 
 def agree(visit: Visit) -> Response:
-    """A person agrees to take part, and gets a place."""
+    """Return a person agrees to take part, and gets a place."""
     conduct = conduct_here(visit.web)
     if visit.field("agree", 10) != "yes":
         raise WebError(Code.BAD_ARGUMENT, "agree", "that you agree, or nothing is begun", "no answer")
     if _standing(conduct, visit.person) is None and not conduct.has_room():
         raise WebError(Code.BAD_ARGUMENT, "place", "a free place in the study", "every place is taken", "/study/")
-    in_turn(conduct.study, conduct.join(visit.person), "agree")
+    in_turn(conduct.study, _joined(visit, conduct), "agree")
     conduct.consent(visit.person)
     return visit.go("/study/")
 
 
+def _joined(visit: Visit, conduct: Conduct) -> Standing:
+    """Return where a person is who has a place, or gets one.
+
+    Raises:
+        WebError: TOO_FAST: others of the same address hold as many places as it may.
+    """
+    address = visit.request.client.host if visit.request.client else ""
+    if _standing(conduct, visit.person) is not None or not is_stranger(address, visit.web.secure):
+        return conduct.join(visit.person)
+
+    def under_way(person: str) -> bool:
+        standing = _standing(conduct, person)
+        return standing is not None and standing.stage not in (DONE, LEFT) and not conduct.is_silent(standing)
+
+    HELD.check(conduct.study.name, address, len(conduct.slots), under_way)
+    joined = conduct.join(visit.person)
+    HELD.add(conduct.study.name, address, visit.person)
+    return joined
+
+
 def understood(visit: Visit) -> Response:
-    """A person has read the tutorial."""
+    """Return a person has read the tutorial."""
     conduct = conduct_here(visit.web)
     in_turn(conduct.study, _here(visit, conduct), "understood")
     conduct.read(visit.person)
@@ -190,7 +211,7 @@ def answer(visit: Visit) -> Response:
 
 
 def _given(visit: Visit, question: Question) -> Any:
-    """The answer to a question that came with the form; None if there is none."""
+    """Return the answer to a question that came with the form; None if there is none."""
     text = visit.field(ANSWER + question.name, MOST_TEXT + 1).strip()
     if question.kind == "scale" and text.isascii() and text.isdigit() and len(text) < 4:
         return int(text)
@@ -206,7 +227,7 @@ def leave(visit: Visit) -> Response:
 
 
 def film(visit: Visit) -> Response:
-    """The film that is judged now, or its replay in 3D. Its address does not say whose it is."""
+    """Return the film that is judged now, or its replay in 3D. Its address does not say whose it is."""
     conduct = conduct_here(visit.web)
     standing = conduct.standing(visit.person)
     if standing.stage not in (TRIAL, QUESTIONS) or visit.part("number") != str(standing.number):

@@ -82,7 +82,7 @@ class StoreLedger:
             forget_session(self.store, stream)
 
     def secret(self, name: str) -> str:
-        """Derived from the study's salt."""
+        """Return derived from the study's salt."""
         query = sql.select(STUDIES.c.salt).where(STUDIES.c.name == self.study)
         return salted(str(self.store.read(lambda connection: connection.execute(query).scalar_one())), name)
 

@@ -7,7 +7,8 @@ from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commands import COMMANDS
 from hearth.kb.language.forms.commented import COMMENTED
 from hearth.kb.language.forms.form import Form
-from hearth.kb.language.forms.markdown_tables import MARKDOWN_TABLE
+from hearth.kb.language.forms.operator_lines import OPERATORS
+from hearth.kb.language.forms.orders import ORDERS
 from hearth.kb.language.forms.org_mode import ORG_MODE
 from hearth.kb.language.forms.outlines import OUTLINES
 from hearth.kb.language.forms.pairs import PAIRS
@@ -17,6 +18,7 @@ from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
 from hearth.kb.language.forms.speakers import SPEAKERS
+from hearth.kb.language.forms.tables import TABLES
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.tuples import TUPLES
 from hearth.kb.language.forms.yaml_lists import YAML
@@ -34,19 +36,21 @@ FORMS: dict[str, Form] = {
     "PDDL": PDDL,
     "code": CODE,
     "Org mode": ORG_MODE,
+    "orders": ORDERS,
     "speakers": SPEAKERS,
     "outlines": OUTLINES,
     "comments": COMMENTED,
     "titled lines": TITLED_LINES,
-    "Markdown table": MARKDOWN_TABLE,
+    "tables": TABLES,
     "pairs": PAIRS,
+    "operators": OPERATORS,
 }
 """Forms by name, in the order in which they are tried."""
 
 _HINT = re.compile(
     r".*(?:->|→|@)|\s*[A-Z][a-z]+[A-Z]|\s*(?:- )?(?:steps|plan|actions|program):|\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s"
-    r"|\s*[\[(]?\d\d?\d?\d?[-/:].{8,40}:"
-    r"|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>"
+    r"|\s*[\[(]?\d\d?\d?\d?[-./:].{8,40}:|\s*\[?(?:INFO|DEBUG|\d{9})|[a-z]{3}\s+\d+ \d+:\d\d"
+    r"|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|.*[│┃║&\t]|.*\S {3,}\S|[\w ]*\[|\s*<[A-Za-z]|[\w.]+\s*[{<]"
     r"|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|\s{2,}[a-z]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
     re.IGNORECASE,

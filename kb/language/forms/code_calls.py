@@ -4,7 +4,7 @@ import ast
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.composed import composed_step
+from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, note, step, title
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")

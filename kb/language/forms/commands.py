@@ -3,7 +3,8 @@
 import re
 from collections.abc import Callable, Sequence
 
-from hearth.kb.language.forms.form import Form, Placed, step, title, written
+from hearth.kb.language.composed_steps import written
+from hearth.kb.language.forms.form import Form, Placed, step, title
 
 _THING = r"([a-z]+(?: [a-z]+){0,2} \d{1,3})"
 _COMMANDS: dict[str, tuple[str, ...]] = {
@@ -70,7 +71,7 @@ def _named(thing: str) -> str:
 
 
 def _words(raw: str) -> str:
-    return _OTHERS.sub("", raw, count=1).strip()[:300]
+    return _OTHERS.sub("", raw.strip()[:300], count=1).strip()
 
 
 def _fits(lines: Sequence[str]) -> bool:

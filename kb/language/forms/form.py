@@ -49,13 +49,3 @@ def remark(row: int, text: str) -> Placed:
 def title(row: int, text: str) -> Placed:
     """Return a title."""
     return Placed(row, PlanLine(f"Task: {text}", None, 0, heading=True))
-
-
-def written(action: str, objects: Sequence[str]) -> str:
-    """Return a step in the syntax of programs; an object is a name, and its instance behind a blank if it has one."""
-    return " ".join([f"[{action}]", *(f"<{name}> ({number or 1})" for name, number in map(_numbered, objects))])
-
-
-def _numbered(name: str) -> tuple[str, str]:
-    words, _, last = name.strip().rpartition(" ")
-    return (words, last) if words and last.isdecimal() and int(last) else (name.strip(), "")

@@ -3,7 +3,8 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.form import Form, Placed, step, written
+from hearth.kb.language.composed_steps import written
+from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
 
 _STEP = re.compile(

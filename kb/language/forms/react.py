@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.commands import command
 from hearth.kb.language.forms.form import Form, Placed, step
+from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import plan_line
 
 _ACT = re.compile(r"\s*(?:>\s*)?\**(?:act|action)\s*\d*\s*:\**\s*(.*)", re.IGNORECASE)
@@ -31,7 +32,7 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
         act = _ACT.match(raw)
         begun = begun or act is not None or _OTHER.match(raw) is not None
         if act and act[1].strip() and not _NO_ACT.fullmatch(act[1].strip()):
-            found.append(step(row, command(act[1][:300]) or act[1]))
+            found.append(step(row, command(act[1][:300]) or operator_step(raw.strip()) or act[1]))
         elif not begun:
             found.append(Placed(row, plan_line(raw)._replace(number=None, numbered=False)))
     return found

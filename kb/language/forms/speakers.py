@@ -5,22 +5,23 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step, title
+from hearth.kb.language.forms.log_heads import STAMP, head_of
+from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import PlanLine, is_said_around, plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
 
-_CLOCK = r"\d{1,2}:\d\d(?::\d\d(?:[.,]\d{1,9})?)?(?:\s?[ap]m)?"
-_STAMP = rf"(?:\d{{9,13}}(?:\.\d{{1,9}})?|[\[(]?(?:\d{{4}}[-/]\d\d[-/]\d\d[ T])?{_CLOCK}Z?[\])]?)"
-_LEVEL = r"\[?(?:INFO|DEBUG|WARN(?:ING)?|ERROR|TRACE|FATAL)\]?"
 _LINE = re.compile(
-    rf"\s*(?P<time>{_STAMP}\s+)?(?:[-–]\s+)?(?P<level>{_LEVEL}:?\s+)?\**(?P<who>[A-Za-z][\w.-]{{0,20}})\**\s*:\**\s+(?P<said>\S.*)",
+    r"(?:[-–]\s+)?(?:<(?P<nick>[\w.@+-]{1,20})>\s*:?"
+    r"|\**(?P<who>[A-Za-z][\w.-]{0,20}(?: [A-Z][\w.-]{0,20})?)\**\s*:\**)\s+"
+    r"(?P<said>[^\s\[<].*|\[\d.*|<(?!\w+>\s*\().*)"
 )
-_TIMED = re.compile(
-    rf"\s*(?:{_STAMP}\s+(?:[-–]\s+)?(?P<level>{_LEVEL}|ACTION|EXEC|STEP)|(?P<only>\[(?:{_LEVEL}|ACTION|EXEC)\])):?\s+(?P<said>\S.*)"
-)
-_ACTS = re.compile(r"\W*(?:INFO|DEBUG|ACTION|EXEC|STEP)\W*")
+_ACTS = frozenset(("", "INFO", "DEBUG", "ACTION", "EXEC", "STEP"))
+"""Levels of what is done."""
+
 _QUESTION = re.compile(r"\s*\**\s*Q(?:uestion)?\s*\d*\s*:\s*(?P<said>[^*]*)\**\s*")
-_ROBOTS = re.compile(
-    r"(?:robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}", re.IGNORECASE
+ROBOTS = re.compile(
+    r"(?:step|action|do|doing|execut(?:e|ing|ed)|perform(?:ing|ed)?|running|sending|calling|robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}",
+    re.IGNORECASE,
 )
 """Names of those that do what they say; `A` answers where a question stands above."""
 
@@ -33,32 +34,39 @@ _SHARE = 0.6
 _MOST = 1_000
 
 
-class _Said(NamedTuple):
+class Said(NamedTuple):
+    """What a line says: who speaks, the words, and whether a robot does them."""
+
     who: str
     text: str
     is_step: bool
 
 
-def _said(raw: str) -> _Said | None:
+def said_of(raw: str) -> Said | None:
     """Return a line's speaker and words; None where it has neither a speaker nor a level."""
     if len(raw) > _MOST:
         return None
     asked = _QUESTION.fullmatch(raw)
     if asked:
-        return _Said("q", asked["said"], False)
-    found = _LINE.fullmatch(raw)
+        return Said("q", asked["said"], False)
+    head = head_of(raw)
+    is_done = head.level in _ACTS
+    found = _LINE.fullmatch(raw, head.end)
     if not found:
-        timed = _TIMED.fullmatch(raw)
-        level = (timed["level"] or timed["only"]) if timed else ""
-        is_step = timed is not None and _ACTS.fullmatch(level) is not None and is_like_step(timed["said"])
-        return _Said("", timed["said"], is_step) if timed else None
-    return _Said(found["who"].lower(), found["said"], _ROBOTS.fullmatch(found["who"]) is not None)
+        said = raw[head.end :]
+        return Said("", said, is_done and _reads(said)) if head.is_timed and said.strip() else None
+    who = found["who"] or found["nick"]
+    return Said(who.lower(), found["said"], is_done and ROBOTS.fullmatch(who) is not None)
+
+
+def _reads(text: str) -> bool:
+    return is_like_step(text) or bool(operator_step(text))
 
 
 def _fits(lines: Sequence[str]) -> bool:
     """Return whether most lines have a speaker, and a robot says steps, or answers a question."""
     texts = [line for line in lines if line.strip()]
-    said = [each for each in map(_said, texts) if each]
+    said = [each for each in map(said_of, texts) if each]
     if len(said) < _SHARE * len(texts) or not any(each.is_step for each in said):
         return False
     who = {each.who for each in said}
@@ -72,7 +80,7 @@ def _fits(lines: Sequence[str]) -> bool:
 
 def _is_step(text: str) -> bool:
     read = plan_line(text)
-    return read.number is not None or is_like_step(read.text)
+    return read.number is not None or _reads(read.text)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
@@ -80,7 +88,7 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
 
 
 def _of_line(row: int, raw: str) -> Iterator[Placed]:
-    said = _said(raw)
+    said = said_of(raw)
     if said is None:
         yield Placed(row, plan_line(raw)._replace(number=None, numbered=False))
     elif said.is_step:
@@ -106,9 +114,9 @@ def _parts(read: PlanLine, text: str) -> list[str]:
 SPEAKERS = Form(
     _fits,
     _lines,
-    lambda raw: (said := _said(raw)) is not None and said.is_step,
+    lambda raw: (said := said_of(raw)) is not None and said.is_step,
     re.compile(
-        rf"\s*(?:(?:human|person|operator|owner)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{_STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
+        rf"\s*(?:(?:human|person|operator|owner)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
         re.IGNORECASE,
     ),
 )

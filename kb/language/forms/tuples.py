@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.composed import composed_step
+from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step, title
 from hearth.kb.language.plan_lines import plan_line
 

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 
-from hearth.kb.language.forms.composed import composed_step
+from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, remark, step, title
 
 _LISTS = r"(?:steps|plan|actions|program|instructions|sequence|script)"

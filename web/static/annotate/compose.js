@@ -62,6 +62,9 @@ function changed(steps, from) {
   timer = setTimeout(save, SAVE_AFTER);
 }
 
+// What the server refuses now and not later.
+const LATER = ["TOO_FAST", "TIMED_OUT"];
+
 function save() {
   clearTimeout(timer);
   timer = 0;
@@ -74,7 +77,7 @@ function save() {
       if (steps === model.steps) checked(found);
     } catch (error) {
       if (error.code === "LOCKED") await otherTab().catch(() => later());
-      else if (error.code && error.code !== "TOO_FAST") say(`Not saved. ${error.message}.`, true);
+      else if (error.code && !LATER.includes(error.code)) say(`Not saved. ${error.message}.`, true);
       else later();
     }
   });

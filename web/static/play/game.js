@@ -130,7 +130,7 @@ function show() {
   document.getElementById("finish").disabled = state.over;
   said.textContent = lastActions();
   if (state.over) showEnd();
-  else if (state.port) tell("note", `Connect your program to port ${state.port} of this machine.`);
+  else if (state.port) tell("note", `Connect your program to port ${state.port} of this machine; it shows the token ${state.token}.`);
   else if (state.other) showOther();
 }
 

@@ -12,7 +12,7 @@ export class State {
   take(message) {
     if (message.type === "begin") {
       Object.assign(this, { me: message.me, plan: message.plan, limit: message.limit, helper: message.helper });
-      Object.assign(this, { partial: message.partial, code: message.code, port: message.port, characters: message.characters });
+      Object.assign(this, { partial: message.partial, code: message.code, port: message.port, token: message.token, characters: message.characters });
       this.until = message.left === null ? null : performance.now() + 1000 * message.left;
       this.things.clear();
       this.trails = new Map(Object.entries(message.trails).map(([who, way]) => [Number(who), way]));

@@ -32,6 +32,7 @@ export function retold(instruction) {
 // What a refusal means to who plays; what the engine says of an act comes in words.
 const REFUSED = {
   OUT_OF_ORDER: "That came too late: the game has gone on. Decide again.",
+  TIMED_OUT: "The server is busy, and nothing has changed. Try again in a moment.",
   TOO_FAST: "That was too fast. Wait a moment, then go on.",
   DISCONNECTED: "The connection is lost. Trying again …",
   NO_SESSION: "Your session is not known here any more. Open the link of your session again.",

@@ -1,0 +1,33 @@
+"""Withdrawal of a person: the works on which others built stay, without the person; the desk can erase the rest."""
+
+from __future__ import annotations
+
+import sqlalchemy as sql
+
+from hearth.web.annotate.annotate_tables import ACCEPTED, PROGRAMS, REVIEWS, TEXTS
+from hearth.web.store import Store
+
+
+def keep(connection: sql.Connection, person: str, nobody: str) -> int:
+    """Give accepted programs, and descriptions for which there are programs of others, to nobody; how many.
+
+    What the person wrote to authors as a reviewer goes; the verdicts stay with the programs.
+    """
+    reviewed = sql.select(REVIEWS.c.program).where(REVIEWS.c.session == person)
+    connection.execute(sql.update(PROGRAMS).where(PROGRAMS.c.id.in_(reviewed)).values(note=""))
+    accepted = sql.update(PROGRAMS).where(PROGRAMS.c.session == person, PROGRAMS.c.state == ACCEPTED)
+    programs = connection.execute(accepted.values(session=nobody)).rowcount
+    used = sql.select(PROGRAMS.c.text).where(PROGRAMS.c.session != person)
+    built_on = sql.update(TEXTS).where(TEXTS.c.session == person, TEXTS.c.id.in_(used))
+    return programs + connection.execute(built_on.values(session=nobody)).rowcount
+
+
+def erase(store: Store, name: str) -> int:
+    """Delete a description or a program by its id, with all that belongs to it; how many there were."""
+
+    def work(connection: sql.Connection) -> int:
+        return sum(connection.execute(sql.delete(each).where(each.c.id == name)).rowcount for each in (TEXTS, PROGRAMS))
+
+    found = store.write(work)
+    store.erase_traces()
+    return found
