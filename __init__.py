@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from functools import lru_cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from hearth.old_names import install
@@ -26,9 +27,7 @@ if TYPE_CHECKING:
 __version__ = VERSION
 install()
 if "gymnasium" in sys.modules:  # its `make` then knows `hearth/Home-v0`; nobody else pays for it
-    from hearth.challenges.named_task_envs import register as _register
-
-    _register()
+    import_module("hearth.challenges.named_task_envs")
 
 
 @lru_cache(maxsize=1)
@@ -47,8 +46,6 @@ def _stub() -> str:
 
 def __getattr__(name: str) -> Any:
     """Return an entry point, imported when it is first used."""
-    from importlib import import_module
-
     if name == "__all__":
         return _public()
     if name == "Env":

@@ -59,7 +59,7 @@ def test_many_at_once(mode):
     try:
         first, _ = envs.reset(seed=3)
         again, _ = envs.reset(seed=3)
-        assert data_equivalence(first, again) and first["seen"].shape == (2, 16)
+        assert data_equivalence(first, again) and first["seen"].shape == (2, 16) and set(first) == set(THIN["arrays"])
         _, rewards, *_ = envs.step(np.array([0, 0]))
         assert rewards.tolist() == pytest.approx([-0.004, -0.004])
     finally:

@@ -78,7 +78,7 @@ def test_words_of_other_games_and_sentences_are_read(home, answer, said):
     ("answer", "code"),
     [
         ("", "EMPTY"), ("\n \n", "EMPTY"), (None, "NOT_TEXT"), (b"wait", "NOT_TEXT"),
-        ("x" * 10_000_000, "LINE_TOO_LONG"),
+        ("x" * 10_000_000, "LINE_TOO_LONG"), ("wait\n" * 2_000_000, "LINE_TOO_LONG"),
         ("\x07\x1b[2J", "NOT_UNDERSTOOD"), ("Grab milk 142", "NOT_SEEN"), ("Grab milk", "NOT_SEEN"),
         ("17", "NOT_UNDERSTOOD"),
         ("fly to the moon", "UNKNOWN_ACTION"), ("Walk zebra", "UNKNOWN_OBJECT"), ("Open couch 51", "NOT_AFFORDED"),
