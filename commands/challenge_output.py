@@ -65,7 +65,8 @@ def _by_set(results: Results) -> list[dict[str, Any]]:
     """Return success, length and reward by the goal sets of the tasks; of an agent that acts alone."""
     from hearth.challenges.metrics import summary
 
-    outcomes, found = results.finished(False), {}
+    outcomes = results.finished(False)
+    found: dict[str, list[str]] = {}
     for task in results.header.suite.tasks:
         found.setdefault(", ".join(task.sets), []).append(task.id)
     rows = []

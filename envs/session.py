@@ -61,8 +61,8 @@ def opening(
     Raises:
         HearthError: UNKNOWN_HOME; BAD_ARGUMENT: no home or goal; every fault of a goal's text.
     """
-    several = isinstance(home, Sequence) and not isinstance(home, str)
-    homes = tuple(_empty(each) for each in (home if several else [home]))
+    several: Any = home if isinstance(home, Sequence) and not isinstance(home, str) else [home]
+    homes = tuple(_empty(each) for each in several)
     given = [goal] if isinstance(goal, (Goal, str)) else goal
     if not homes or not given:
         message = f"{len(homes)} homes and {len(given)} goals"

@@ -153,10 +153,12 @@ def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Leg
         message = f"the world of {now.task.id} is over"
         fault = Diagnostic(Code.OUT_OF_ORDER, message, suggestion="call `reset`")
         return replace(now, fault=fault, faults=now.faults + 1), 0.0
+    step: Step | None = None
+    fault: Diagnostic | None = None
     try:
-        step, fault = read_answer(answer, *shown, play.words), None
+        step = read_answer(answer, *shown, play.words)
     except HearthError as error:
-        step, fault = None, error.diagnostics[0]
+        fault = error.diagnostics[0]
     after, reward = _ticked(
         replace(now, fault=fault, faults=now.faults + (fault is not None), stopped=False), step, play
     )
