@@ -151,8 +151,8 @@ def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Leg
     """
     if now.over:
         message = f"the world of {now.task.id} is over"
-        fault = Diagnostic(Code.OUT_OF_ORDER, message, suggestion="call `reset`")
-        return replace(now, fault=fault, faults=now.faults + 1), 0.0
+        late = Diagnostic(Code.OUT_OF_ORDER, message, suggestion="call `reset`")
+        return replace(now, fault=late, faults=now.faults + 1), 0.0
     step: Step | None = None
     fault: Diagnostic | None = None
     try:
