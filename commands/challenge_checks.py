@@ -95,7 +95,7 @@ def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> No
     for path in results:
         found = read_whole(path)
         header = found.header
-        figures = summary(found.outcomes(False), found.outcomes(True))
+        figures = summary(found.finished(False), found.finished(True))
         rows.append(
             {
                 "file": path.name,
@@ -105,6 +105,7 @@ def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> No
                 "helper": header.lineup.helper,
                 "goal": header.lineup.goal,
                 "episodes": figures["episodes"],
+                "unfinished": len(found.unfinished),
                 "success": figures["success"],
                 "speedup": figures["speedup"],
                 "speedup_se": figures["speedup_se"],
