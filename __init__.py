@@ -6,7 +6,9 @@ Their modules are those of `__init__.pyi`, which type checkers read too.
 
 from __future__ import annotations
 
+import sys
 from functools import lru_cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from hearth.old_names import install
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 
 __version__ = VERSION
 install()
+if "gymnasium" in sys.modules:  # its `make` then knows `hearth/Home-v0`; nobody else pays for it
+    import_module("hearth.challenges.named_task_envs")
 
 
 @lru_cache(maxsize=1)
@@ -42,8 +46,6 @@ def _stub() -> str:
 
 def __getattr__(name: str) -> Any:
     """Return an entry point, imported when it is first used."""
-    from importlib import import_module
-
     if name == "__all__":
         return _public()
     if name == "Env":
@@ -74,8 +76,6 @@ def _public() -> list[str]:
 
 def _rooms() -> set[str]:
     """Return the subpackages that are imported, which are attributes, too."""
-    import sys
-
     return {name.split(".")[1] for name in sys.modules if name.startswith(f"{__name__}.")}
 
 

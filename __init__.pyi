@@ -4,6 +4,8 @@ from hearth.datasets.dataset import Dataset as Dataset
 from hearth.datasets.execution_graphs import ExecutionGraphs as ExecutionGraphs
 from hearth.datasets.export.formats import export as export
 from hearth.datasets.verify import verify as verify
+from hearth.envs.text_homes import TextHome as TextHome
+from hearth.envs.text_homes import TextHomes as TextHomes
 from hearth.grounding.binding import bind as bind
 from hearth.grounding.environments.sampling import sample as sample
 from hearth.grounding.preconditions.precondition_inference import infer as infer

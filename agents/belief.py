@@ -12,11 +12,12 @@ from random import Random
 from typing import Literal, NamedTuple
 
 from hearth.schemas.literals import HOLDS
+from hearth.schemas.vocabulary import OPPOSITE, STATE_ID
 from hearth.simulation.observation.views import View
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.states import CLEAN, CLOSED, OFF, OPEN, PLUGGED_IN
+from hearth.simulation.world.states import CLEAN, CLOSED, OFF, OPEN, PLUGGED_IN, with_state
 from hearth.simulation.world.world import World
 
 USUAL = {CLOSED: "CAN_OPEN", OFF: "HAS_SWITCH", PLUGGED_IN: "HAS_PLUG", CLEAN: "GRABBABLE"}
@@ -114,6 +115,11 @@ class Belief:
         self._possible = dict(self._usual)
         self._rest = dict.fromkeys(self._usual, self._everywhere)
         self._chooser = chooser
+
+    def doubt(self, state: str, things: int, negated: bool) -> None:
+        """Believe of things that were not seen that a wanted state does not hold, so that the agent goes and looks."""
+        number = STATE_ID[state] if negated else STATE_ID[OPPOSITE[state]]
+        self.states = with_state(self.states, number, things & ~self.seen)
 
     def observe(self, view: View) -> None:
         """Update the beliefs by an observation."""

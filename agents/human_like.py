@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from random import Random
 
 from hearth.agents.belief import Belief, Extent
+from hearth.agents.forbidden_actions import allowed, forbidden
 from hearth.agents.mcts import PUBLISHED, Search, Tree
 from hearth.agents.regression_planning import Regression
 from hearth.agents.subgoals import HELD, Aims, Missing, Subgoal
@@ -65,6 +66,10 @@ class HumanLike:
         self.me = home.index[observation.me.node]
         self.aims = Aims(self.goal, home, self.me, gives=self.habits.gives)
         self.belief = Belief(home, self.aims.things, self.chooser, looks_in=self.habits.looks_in)
+        for wanted in self.aims.wanted:
+            if len(wanted.literal.terms) == 1:
+                self.belief.doubt(wanted.literal.name, wanted.candidates.subjects, wanted.literal.negated)
+        self.never = forbidden(self.goal, home)
         self.distances = Distances(home, observation.me.stride)
         self.subgoal = None
         self.opened = 0
@@ -72,6 +77,7 @@ class HumanLike:
 
     def act(self, observation: View, legal: Legal) -> Step | None:
         """Return the first instruction of its plan."""
+        legal = allowed(legal, self.never) if self.never else legal
         everything = observation.world.home.everything
         self.belief.observe(replace(observation, mask=everything) if self.habits.sees_all else observation)
         self._note_opened(observation)

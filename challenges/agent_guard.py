@@ -6,7 +6,7 @@ import signal
 import threading
 from asyncio import CancelledError
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 
 from hearth.agents.protocol import Agent, Choice
@@ -86,6 +86,13 @@ class Guarded:
                 return self._plain(step, observation)
             self.refused += 1
             return None
+
+    def close(self) -> None:
+        """End what the agent has started, if it has a `close`; its failures do not matter any more."""
+        end = getattr(self.agent, "close", None)
+        if callable(end):
+            with suppress(AgentError), self._watched():
+                end()
 
     def _plain(self, step: Step, view: View) -> Step:
         """Return the instruction as records have it: an action and nodes. Agents could write one in many ways."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from hearth.agents.online_helper_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
 from hearth.challenges.agent_guard import SECONDS, Guarded
 from hearth.challenges.challenge_definition import Challenge, challenge
+from hearth.challenges.command_agents import CommandAgent, is_command
 from hearth.challenges.episode_loop import Player
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
@@ -36,7 +38,7 @@ class Lineup:
     """The agents that take part.
 
     Attributes:
-        main: the agent that is helped, by name.
+        main: the agent that acts, and is helped: a name, `FILE.py:CLASS`, or the command of a program.
         helper: the helper's name; `none`, or `FILE.py:CLASS` for the user's own agent.
         goal: the helper's goal; as its row in the registry says where empty.
         seconds: an agent may think about a tick as long as this.
@@ -49,8 +51,9 @@ class Lineup:
 
     @property
     def code(self) -> str:
-        """Return a digest of the file of a user's own helper; "" for ours."""
-        return file_digest(Path(self.helper.rpartition(":")[0]))[:32] if ":" in self.helper else ""
+        """Return digests of the files of a user's own agents; "" for ours."""
+        files = [each.rpartition(":")[0] for each in (self.main, self.helper) if is_own(each)]
+        return "".join(file_digest(Path(file))[:32] for file in files)
 
     def checked(self) -> Lineup:
         """Return the same lineup, with the goal of the helper filled in.
@@ -59,8 +62,10 @@ class Lineup:
             HearthError: BAD_ARGUMENT: there is no such agent or goal; MISSING_FILE.
         """
         known = HELPERS.get(self._helper)
-        if self.main not in MAIN:
-            raise _unknown("main agent", self.main, MAIN)
+        if is_own(self.main):
+            load(self.main)
+        elif self.main not in MAIN and not is_command(self.main):
+            raise _unknown("main agent", self.main, (*MAIN, "FILE.py:CLASS", "a command"))
         if self.goal and self.goal not in GOALS:
             raise _unknown("goal", self.goal, GOALS)
         if self._helper not in (NOBODY, *HELPERS, *ONLINE) and ":" not in self.helper:
@@ -121,30 +126,48 @@ class Lineup:
         allowed = which.allowed(knowledge)
         known = HELPERS.get(self.helper)
         name = known.main if helped and known and known.main else self.main
-        main = make() if make else MAIN[name](which.goals_in)
+        main: Any = make() if make else self._main(name, which)
         found = [Player(Guarded(main, 0, allowed, self.seconds, which.messages), goal, partial_of(main))]
         if helped and self.helper != NOBODY:
-            agent: Agent = known.make(main) if known else self._own(which)
+            agent: Agent = known.make(main) if known else self._own(self.helper, which)
             found.append(
                 Player(Guarded(agent, 1, allowed, self.seconds, which.messages), helper_goal, partial_of(agent))
             )
         return found
 
-    def _own(self, which: Challenge) -> Agent:
-        """Return a helper that is made without its partner: one that does not know the goal, or the user's own."""
-        if self.helper in ONLINE:
-            return ONLINE[self.helper].make(which.goals_in)
-        made = load(self.helper)
+    def _main(self, name: str, which: Challenge) -> Agent:
+        """Return the agent that acts: one of ours, the user's own, or a program."""
+        if name in MAIN:
+            return MAIN[name](which.goals_in)
+        if not is_own(name):
+            return CommandAgent(name, self.seconds, which.messages)
+        own = self._own(name, which)
+        if not hasattr(own, "subgoal"):
+            with suppress(AttributeError):  # a class with slots: helpers that ask for its subgoal then say so
+                own.subgoal = None  # type: ignore[attr-defined]
+        return own
+
+    def _own(self, place: str, which: Challenge) -> Agent:
+        """Return an agent that is made without its partner: one that does not know the goal, or the user's own."""
+        if place in ONLINE:
+            return ONLINE[place].make(which.goals_in)
+        made = load(place)
         try:
             own: Agent = made()
         except (Exception, SystemExit) as error:
-            raise HearthError.of(Code.BAD_ARGUMENT, f"{self.helper}: {type(error).__name__}: {error}") from error
+            raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {type(error).__name__}: {error}") from error
         lacking = [f"`{name}`" for name in ("reset", "act") if not callable(getattr(own, name, None))]
         if lacking:
-            message = f"{self.helper} has no {' and '.join(lacking)}"
+            message = f"{place} has no {' and '.join(lacking)}"
             suggestion = "write reset(self, observation, goal, seed) and act(self, observation, legal)"
             raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=suggestion)
         return own
+
+
+def is_own(place: str) -> bool:
+    """Return whether a text names a class in a file: `FILE.py:CLASS`."""
+    file, _, name = place.rpartition(":")
+    return file.endswith(".py") and name.isidentifier()
 
 
 def partial_of(agent: Any) -> bool | None:

@@ -81,12 +81,27 @@ class Record:
     end: Mapping[str, Any] | None = None
 
 
+TRIES = 2
+"""Times that an episode is played whose agent can't go on: a server that fails once may not fail again."""
+
+PASSING = frozenset({Code.AGENT_FAILED, Code.DISCONNECTED})
+"""The failures of agents after which their episode is played again."""
+
+
 def played(job: Job) -> Record:
-    """Play an episode."""
+    """Play an episode; once more where an agent could not go on."""
+    for _ in range(TRIES):
+        record = _played(job)
+        if record.end is None or record.end["code"] not in PASSING:
+            break
+    return record
+
+
+def _played(job: Job) -> Record:
     which, knowledge = challenge(job.task.challenge), job.known()
     start = start_of(job.task, knowledge, None if job.helped else 1)
     goals = _goals(which, job.task, job.helper_goal, start.home, job.helped)
-    players = job.lineup.players(which, goals[0], goals[-1], knowledge, job.helped, job.make)
+    players: Sequence[Any] = job.lineup.players(which, goals[0], goals[-1], knowledge, job.helped, job.make)
     seed = derive(job.task.seed, "episode", job.seed)
     allowed = which.allowed(knowledge)
     done = play(
@@ -100,6 +115,8 @@ def played(job: Job) -> Record:
         rules=which.rules,
         messages=which.messages,
     )
+    for player in players:
+        player.agent.close()
     found = measured(which, start, done.env.ticks, goals, done.progress)
     actions = tuple(
         tuple(written(said.get(n) or tick.instructions.get(n)) for n in range(len(players)))

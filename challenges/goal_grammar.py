@@ -188,6 +188,12 @@ class Grammar:
         return frozenset(name for one in self.sets.values() for name in one.furniture)
 
     @cached_property
+    def names(self) -> frozenset[str]:
+        """Return every name of a class in its predicates."""
+        terms = (term for literal in self.predicates for term in literal.terms)
+        return frozenset(term for term in terms if isinstance(term, str) and not _is_agent(term))
+
+    @cached_property
     def _free(self) -> frozenset[Literal[Name]]:
         return frozenset(literal for one in self.sets.values() for literal in one.free)
 

@@ -118,6 +118,15 @@ class Results:
         """Return the metrics of the episodes of one kind, by task."""
         return by_task((each.task, each.metrics) for each in self.records if each.helped == helped)
 
+    def finished(self, helped: bool) -> Outcomes:
+        """Return the same, without the episodes in which an agent could not go on: these are no scores."""
+        return by_task((each.task, each.metrics) for each in self.records if each.helped == helped and each.end is None)
+
+    @property
+    def unfinished(self) -> list[Record]:
+        """Return the episodes in which an agent could not go on."""
+        return [each for each in self.records if each.end is not None]
+
 
 def line(header: Header, record: Record) -> bytes:
     """Return an episode as a line, with a digest of itself and of its run's description."""

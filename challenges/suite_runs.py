@@ -37,8 +37,9 @@ def run(
 ) -> Results:
     """Play every task several times, without the helper and with it, and write all that was done.
 
-    The episodes that a stopped run had written are kept; the same call continues from there. A user's own helper whose
-    file has changed is another helper: all is played anew.
+    The episodes that a stopped run had written are kept; the same call continues from there. Episodes in which an agent
+    could not go on are played again by the same call. A user's own agent whose file has changed is another agent: all
+    is played anew.
 
     Args:
         suite: the tasks.
@@ -55,18 +56,24 @@ def run(
         HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
     """
     header = Header(suite, lineup.checked(), seeds, code=lineup.code)
+    before: dict[tuple[str, int, bool], Record] = {}
     if out.exists() and next(read_lines(out), b"") == first_line(header):
-        return read(out)
+        found = read(out)
+        if not any(each.end for each in found.records):
+            return found
+        before = {(each.task, each.seed, each.helped): each for each in found.records if each.end is None}
     partial = out.with_name(f".{out.name}.run{TEMPORARY}")
     kept = _kept(header, partial)
     jobs = _jobs(header, known, workers)[kept:]
+    finished = dict(before)
     same = alone is not None and (alone.header.suite, alone.header.lineup.main) == (suite, lineup.main)
-    taken = {(each.task, each.seed): each for each in alone.records if not each.helped} if same and alone else {}
+    if same and alone:
+        finished |= {(each.task, each.seed, False): each for each in alone.records if not each.helped}
     with partial.open("ab") as file:
         if not kept:
             file.truncate(0)
             file.write(first_line(header))
-        for done, record in enumerate(_with(taken, jobs, over or here(workers)), kept + 1):
+        for done, record in enumerate(_with(finished, jobs, over or here(workers)), kept + 1):
             file.write(line(header, record))
             file.flush()
             seen(done, kept + len(jobs))
@@ -124,8 +131,8 @@ def helper_goal(kind: str, task: Task, seed: int, tasks: Sequence[Task]) -> Goal
     return rng(task.seed, "random goal", seed).choice(others)
 
 
-def _with(taken: Mapping[tuple[str, int], Record], jobs: Sequence[Job], over: Spread) -> Iterator[Record]:
-    """Yield the episodes in the order of the jobs; those alone that are there already are not played again."""
-    found = [None if job.helped else taken.get((job.task.id, job.seed)) for job in jobs]
+def _with(taken: Mapping[tuple[str, int, bool], Record], jobs: Sequence[Job], over: Spread) -> Iterator[Record]:
+    """Yield the episodes in the order of the jobs; those that are there already are not played again."""
+    found = [taken.get((job.task.id, job.seed, job.helped)) for job in jobs]
     rest = over([job for job, record in zip(jobs, found, strict=True) if record is None])
     return (record or next(rest) for record in found)

@@ -6,14 +6,21 @@ from dataclasses import dataclass
 from random import Random
 
 from hearth.challenges.challenge_definition import Challenge, challenge
+from hearth.challenges.instruction_reader import read_instruction
+from hearth.challenges.instruction_writer import TEST, TRAIN, instruction
 from hearth.challenges.start_worlds import start
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.literals import AGENT
 from hearth.schemas.rng import derive, rng
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
+
+MAIN = f"{AGENT}:0"
+"""The agent of goals that is asked to do them."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +47,35 @@ class Task:
     goal: Goal
     seed: int
 
+    @property
+    def family(self) -> str:
+        """Return the names of its goal sets, joined."""
+        return "+".join(self.sets)
+
+    @property
+    def instruction(self) -> str:
+        """Return the goal in English, by our knowledge; equal every time."""
+        return self.worded(default())
+
+    def worded(self, knowledge: Knowledge, number: int = 0, terse: bool | None = None) -> str:
+        """Return the goal in English, in the task's own wording or another; tests have wordings of their own.
+
+        Args:
+            knowledge: has the nouns of classes.
+            number: which wording.
+            terse: whether the wording is terse; drawn where None.
+        """
+        pool = TRAIN if self.split.startswith(TRAIN) else TEST
+        seed = derive(self.seed, "instruction", number)
+        return instruction(self.goal, knowledge, seed, pool=pool, doer=MAIN, terse=terse)
+
     def start(self, knowledge: Knowledge, agents: int | None = None) -> World:
         """Return the world in which it starts, with the first of its characters or all; equal every time."""
         return start(challenge(self.challenge), self.goal, self.home, self.seed, knowledge, agents)
+
+    def read(self, text: str, knowledge: Knowledge) -> Goal:
+        """Return the goal of an instruction in the words of the grammar; errors as of `read_instruction`."""
+        return read_instruction(text, knowledge, MAIN, challenge(self.challenge).grammar.names)
 
     def demonstration_start(self, knowledge: Knowledge) -> World:
         """Return the world in which its demonstration starts: one character is there."""

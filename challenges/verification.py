@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
 
+from hearth.agents.agent_registry import MAIN
 from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, Known, Record, again, played
 from hearth.challenges.result_files import Results, read
 from hearth.challenges.tasks import Task
@@ -84,9 +86,8 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
     header = results.header
     tasks = {task.id: task for task in header.suite.tasks}
     grammar = challenge(header.suite.challenge).grammar
-    if agents and ":" in header.lineup.helper:  # a file of results, perhaps a stranger's, names no code that is run
-        message = f"the helper `{header.lineup.helper[:60]}` is not one of ours, and results name no code to run"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="verify without --agents")
+    if agents:  # a file of results, perhaps a stranger's, names no code that is run
+        _need_ours(header.lineup)
     lineup = header.lineup.checked() if agents else header.lineup
     for name, group in groupby(results.records, lambda each: each.task):
         while records := tuple(islice(group, MOST_AT_ONCE)):
@@ -95,6 +96,21 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
                 goal = None if each.helper_goal is None else grammar.read(each.helper_goal)
                 jobs.append(Job(tasks[name], each.seed, lineup, each.helped, goal, known))
             yield Check(tasks[name], records, known, tuple(jobs))
+
+
+def _need_ours(lineup: Lineup) -> None:
+    """Refuse a lineup with an agent that is not one of ours.
+
+    Raises:
+        HearthError: BAD_ARGUMENT.
+    """
+    foreign = {"helper": lineup.helper if ":" in lineup.helper else "", "main agent": lineup.main}
+    if lineup.main in MAIN:
+        foreign["main agent"] = ""
+    for role, name in foreign.items():
+        if name:
+            message = f"the {role} `{name[:60]}` is not one of ours, and results name no code to run"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="verify without --agents")
 
 
 def differences(check: Check) -> tuple[int, list[str]]:

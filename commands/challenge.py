@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import typer
 
 from hearth.commands import (
     challenge_checks,
     challenge_export,
+    challenge_household,
     challenge_learning,
     challenge_online,
+    challenge_output,
     challenge_pictures,
     output,
 )
 from hearth.commands.challenge_film import film
-
-if TYPE_CHECKING:
-    from hearth.challenges.result_files import Results
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -36,15 +34,23 @@ def tasks(
     out: Path | None = None,
     seed: int | None = None,
     limit: int | None = None,
+    workers: int = 0,
     as_json: bool = False,
 ) -> None:
     """Write the tasks of a challenge: the published ones, or, with a seed, others of the same kind.
+
+    Of `household`, also print instructions and goals; its splits are train, valid_seen, valid_unseen, valid_words,
+    test_seen and test_unseen, and a few hundred tasks take a minute.
 
     \b
     Examples:
       hearth challenge tasks wah --split test-1 --out test-1.json
       hearth challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
+      hearth challenge tasks household --split train --limit 5
     """
+    if name == challenge_household.HOUSEHOLD:
+        challenge_household.print_tasks(split, out, seed or 0, limit, workers, as_json)
+        return
     from hearth.challenges.published_tasks import PUBLISHED
     from hearth.challenges.task_files import suite, write
 
@@ -85,11 +91,15 @@ def run_tasks(
 ) -> None:
     """Let an agent do tasks alone and with a helper, and write all that they did.
 
-    A run that was stopped goes on where it was. Helpers: none, random, hp, hp_true, hp_timed, hp_random, oracle_b,
-    oracle_ab, ..., or an agent of your own, as FILE.py:CLASS.
+    The agent that acts (--main) is one of ours, your own as FILE.py:CLASS, or the command of a program that reads and
+    writes lines (docs/examples/agents.md). A run that was stopped goes on where it was; episodes in which an agent
+    could not go on are no scores: they are played once more, counted apart, and the status is 1. Helpers: none, random,
+    hp, hp_true, hp_timed, hp_random, oracle_b, oracle_ab, ..., or an agent of your own, as FILE.py:CLASS.
 
     \b
     Examples:
+      hearth challenge run test-1.json --main mine.py:Agent --out mine.jsonl
+      hearth challenge run test-1.json --main "node agent.js" --out node.jsonl
       hearth challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
       hearth challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
       hearth challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
@@ -108,7 +118,8 @@ def run_tasks(
     lineup = Lineup(main, helper, goal, seconds)
     with bar("episodes") as seen, spread_over(engine, workers, scheduler) as over:
         found = run(suite, lineup, seeds, out, default, workers, seen, over=over)
-    _print(found, as_json)
+    challenge_output.print_results(found, as_json)
+    output.status(len(found.unfinished), strict=True)
 
 
 @app.command()
@@ -121,7 +132,9 @@ def score(results: Path, *, as_json: bool = False) -> None:
     """
     from hearth.challenges.verification import read_whole
 
-    _print(read_whole(results), as_json)
+    found = read_whole(results)
+    challenge_output.print_results(found, as_json)
+    output.status(len(found.unfinished), strict=True)
 
 
 @app.command()
@@ -232,39 +245,3 @@ for _command in (
     challenge_online.people,
 ):
     app.command()(_command)
-
-
-def _print(results: Results, as_json: bool) -> None:
-    """Print the summary of a run; one object for machines."""
-    from hearth.challenges.metrics import summary
-
-    header = results.header
-    helped = header.helped[-1]
-    ends: dict[str, int] = {}
-    for record in results.records:
-        if record.end:
-            ends[record.end["code"]] = ends.get(record.end["code"], 0) + 1
-    figures: dict[str, Any] = {
-        "challenge": header.suite.challenge,
-        "split": header.suite.split,
-        "suite": header.suite.digest,
-        "published": header.suite.published,
-        "main": header.lineup.main,
-        "helper": header.lineup.helper,
-        "goal": header.lineup.goal,
-        "seeds": header.seeds,
-        **summary(results.outcomes(False), results.outcomes(True) if helped else {}),
-        "ended_by_agents": ends,
-    }
-    if as_json:
-        output.emit(figures)
-        return
-    output.figures(
-        {name: figures[name] for name in ("challenge", "split", "main", "helper", "goal", "seeds", "episodes")}
-    )
-    measured = [name for name in figures if f"{name}_se" in figures]
-    output.line()
-    rows = [(name.replace("_", " "), figures[name], figures[f"{name}_se"]) for name in measured]
-    output.table(("metric", "mean over tasks", "standard error"), rows)
-    for code, number in ends.items():
-        output.line(f"{output.counted(number, 'episode')} ended with {code}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from hearth.commands import output
+from hearth.commands import challenge_household, output
 
 
 def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bool = False) -> None:
@@ -39,13 +39,18 @@ def solvable(
 ) -> None:
     """Let an agent that sees everything do each published task alone.
 
-    The status is 1 if a task can't be done, or is done already.
+    The status is 1 if a task can't be done, or is done already. Tasks of `household` are drawn so that such an agent
+    does each; for them the share is printed that the human-like agent does, which sees only the room it is in.
 
     \b
     Examples:
       hearth challenge solvable wah
       hearth challenge solvable owah --split test
+      hearth challenge solvable household --limit 10
     """
+    if name == challenge_household.HOUSEHOLD:
+        challenge_household.print_solved(split, limit, workers, as_json)
+        return
     from hearth.challenges.challenge_definition import challenge
     from hearth.challenges.published_tasks import tasks
     from hearth.challenges.solvability import solved
@@ -90,7 +95,7 @@ def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> No
     for path in results:
         found = read_whole(path)
         header = found.header
-        figures = summary(found.outcomes(False), found.outcomes(True))
+        figures = summary(found.finished(False), found.finished(True))
         rows.append(
             {
                 "file": path.name,
@@ -100,6 +105,7 @@ def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> No
                 "helper": header.lineup.helper,
                 "goal": header.lineup.goal,
                 "episodes": figures["episodes"],
+                "unfinished": len(found.unfinished),
                 "success": figures["success"],
                 "speedup": figures["speedup"],
                 "speedup_se": figures["speedup_se"],

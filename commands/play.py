@@ -17,14 +17,18 @@ if TYPE_CHECKING:
     from hearth.agents.protocol import Agent
     from hearth.challenges.agent_channels import Channel
     from hearth.challenges.episode_loop import Played
+    from hearth.schemas.goals import Goal
+    from hearth.simulation.rules import Rules
+    from hearth.simulation.world.world import World
 
 TEXT, WAIT, LISTEN, STDIO = "text", "wait", "listen", "stdio"
 """Agents that are not commands: the terminal, none, a program that connects to a port, and this command's parent."""
 
 
 def play(
-    home: str,
-    goal: list[str],
+    home: str = "",
+    goal: list[str] | None = None,
+    task: str = "",
     agent: list[str] | None = None,
     text: bool = False,
     actions: str = "",
@@ -52,6 +56,7 @@ def play(
     Examples:
       hearth play maple --goal "HOLDS(agent, milk)" --text
       hearth play maple --goal "HOLDS(agent, milk)" --agent 0="node docs/examples/agent.js" --out episode.jsonl
+      hearth play --task household-train-00001 --text
       hearth replay episode.jsonl
     """
     seats = _seats([*([f"0={TEXT}"] if text else []), *(agent or ())])
@@ -61,19 +66,22 @@ def play(
     if form not in FORMS:
         raise typer.BadParameter(f"`{form[:60]}` is not a form: {', '.join(FORMS)}")
     known = read_knowledge(kb)
-    place = read_home(home, graph, homes, known)
-    wanted = read_goals(goal, place)
+    scene = (
+        _task_scene(task, home, goal, known) if task else _home_scene(home, goal, graph, homes, known, len(seats), seed)
+    )
+    if scene.instruction and not quiet:
+        output.note(f"{task}: {scene.instruction}")
     with ExitStack() as stack:
         how = _How(ticks, within, form, messages, as_json, _transcript(transcript, stack))
         playing = [_agent(seat, how, stack) for seat in seats]
-        played = _play(place, wanted, playing, seed, how, _actions(actions, known), not full)
+        played = _play(scene, playing, seed, how, _actions(actions or scene.actions, known), not full)
         for each in playing:
             if (end := getattr(each, "end", None)) is not None:
                 end(played.success, played.ticks)
     if out is not None:
         _write(out, played)
     if not quiet:
-        _print(_result(home, played, seats, playing, out), as_json)
+        _print(_result(scene.home, played, seats, playing, out), as_json)
     output.status(not played.success, strict=True)
 
 
@@ -206,17 +214,68 @@ def _actions(given: str, known: Any) -> list[str] | None:
     return found
 
 
-def _play(
-    place: Any, goal: Any, agents: list[Agent], seed: int, how: _How, actions: list[str] | None, partial: bool
-) -> Played:
+def _play(scene: _Scene, agents: list[Agent], seed: int, how: _How, actions: list[str] | None, partial: bool) -> Played:
     from hearth.challenges.episode_loop import Player
     from hearth.challenges.episode_loop import play as run
-    from hearth.simulation.env import Env
 
+    return run(
+        scene.world,
+        scene.goal,
+        [Player(agent, scene.goal) for agent in agents],
+        seed,
+        actions=actions,
+        partial=partial,
+        limit=how.ticks,
+        rules=scene.rules,
+        messages=how.messages,
+    )
+
+
+class _Scene(NamedTuple):
+    """The start of an episode.
+
+    Attributes:
+        home: its name.
+        world: in which it starts.
+        goal: that ends it.
+        rules: of actions.
+        actions: the allowed ones, as `--actions` names them; "" for all.
+        instruction: of a task.
+    """
+
+    home: str
+    world: World
+    goal: Goal
+    rules: Rules
+    actions: str = ""
+    instruction: str = ""
+
+
+def _home_scene(
+    home: str, goal: list[str] | None, graph: Path | None, homes: Path | None, known: Any, agents: int, seed: int
+) -> _Scene:
+    """Return a home as it is, and the goals of the command line."""
+    from hearth.simulation.env import Env
+    from hearth.simulation.rules import DEFAULT
+
+    if not (home or graph) or not goal:
+        raise typer.BadParameter("name a home and a --goal, or a --task")
+    place = read_home(home, graph, homes, known)
+    wanted = read_goals(goal, place)
     env = Env()
-    env.reset(place, len(agents), seed)
-    players = [Player(agent, goal) for agent in agents]
-    return run(env.world, goal, players, seed, actions=actions, partial=partial, limit=how.ticks, messages=how.messages)
+    env.reset(place, agents, seed)
+    return _Scene(home, env.world, wanted, DEFAULT)
+
+
+def _task_scene(task_id: str, home: str, goal: list[str] | None, known: Any) -> _Scene:
+    """Return the start of a task of `household`."""
+    from hearth.challenges.household import household_task
+    from hearth.challenges.household_definition import RULES
+
+    if home or goal:
+        raise typer.BadParameter("a task has its home and its goal: leave out HOME and --goal")
+    task = household_task(task_id, knowledge=known)
+    return _Scene(task.home, task.start(known), task.goal, RULES, PLAYED, task.instruction)
 
 
 def _write(out: Path, played: Played) -> None:

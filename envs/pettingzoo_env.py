@@ -67,6 +67,7 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
         self._observation_spaces = {name: self.session.observation_space() for name in self.possible_agents}
         self._action_spaces = {name: self.session.action_space() for name in self.possible_agents}
         self._np_random = np.random.default_rng()
+        self._begun = False
 
     def observation_space(self, agent: str) -> Dict:
         """Return the space of an agent's arrays; always the same object."""
@@ -88,7 +89,7 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
         if seed is not None:
             self._np_random = np.random.default_rng(seed)
         self.session.begin(int(self._np_random.integers(MOST_SEED)))
-        self.agents = list(self.possible_agents)
+        self.agents, self._begun = list(self.possible_agents), True
         return self._observed(), self._infos()
 
     def step(
@@ -99,8 +100,11 @@ class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
         """One tick.
 
         Raises:
-            HearthError: UNKNOWN_AGENT; BAD_ARGUMENT, where an action is not in its space. The episode is as before.
+            HearthError: OUT_OF_ORDER before the first `reset`; UNKNOWN_AGENT; BAD_ARGUMENT, where an action is not in
+                its space. The episode is as before.
         """
+        if not self._begun:
+            raise HearthError.of(Code.OUT_OF_ORDER, "`step` came before the first `reset`", suggestion="call `reset()`")
         if not self.agents:
             return {}, {}, {}, {}, {}
         if unknown := sorted(str(name) for name in actions if name not in self._numbers):

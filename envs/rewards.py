@@ -5,8 +5,11 @@ Source: thesis 6.5.1 (1 for the goal, -0.004 a tick); B.3.3 (2 for a predicate, 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.simulation.goals import Progress, Watch
 from hearth.simulation.motion import positions
 from hearth.simulation.motion.ground import ground_of
@@ -15,6 +18,13 @@ from hearth.simulation.world.world import World
 
 IN_HAND = 10.0
 """Metres by which a thing in a hand is nearer to its place than one that is still to be fetched."""
+
+
+Moment = tuple[Progress, World]
+"""The progress of the goal and the world, before or after a tick."""
+
+Reward = Callable[[Moment, Moment, int], float]
+"""Gives the reward of an agent for a tick, from the moments before and after it: `Rewards`, or any function."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +44,11 @@ class Rewards:
     predicate: float = 0.0
     approach: float = 0.0
 
-    def of(self, before: tuple[Progress, World], after: tuple[Progress, World], number: int) -> float:
+    def __call__(self, before: Moment, after: Moment, number: int) -> float:
+        """Return the reward of an agent for a tick; the same as `of`."""
+        return self.of(before, after, number)
+
+    def of(self, before: Moment, after: Moment, number: int) -> float:
         """Return the reward of an agent for a tick, from the states before and after it."""
         (old, was), (new, now) = before, after
         found = self.tick + (self.success if new.satisfied and not old.satisfied else 0.0)
@@ -45,8 +59,24 @@ class Rewards:
         return found
 
 
+USUAL_REWARDS = Rewards()
+"""1 for the goal, and -0.004 a tick (thesis 6.5.1)."""
+
 HIERARCHICAL = Rewards(success=0.0, tick=-0.1, predicate=2.0)
 """Rewards of a policy over subgoals (B.3.3)."""
+
+
+def checked_reward(given: object) -> Reward:
+    """Return a reward that can be called.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is neither `Rewards` nor a function.
+    """
+    if callable(given):
+        return given
+    message = f"a reward is {type(given).__name__}, which can't be called"
+    remedy = "Rewards(...), or a function(before, after, agent) of (progress, world) before and after a tick"
+    raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
 
 
 def counted(progress: Progress) -> int:

@@ -5,14 +5,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from hearth.envs.action_codes import ActionCode, Listed, Number, Triples, played, str_step
+from hearth.envs.action_codes import ActionCode, Listed, Number, Triples, fixed_list, played, str_step
 from hearth.envs.goal_arrays import check
+from hearth.envs.node_slots import Slots
 from hearth.envs.observation_arrays import Arrays, Encoder, Rows, Sizes
-from hearth.envs.rewards import Rewards
+from hearth.envs.rewards import Reward, Rewards, checked_reward
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal
@@ -39,35 +40,82 @@ Opening = Callable[[int], tuple[World, Goal]]
 MOST_TICKS = 250
 """Ticks after which an episode ends (thesis 6.5)."""
 
-CODES = ("triples", "listed")
+CODES = ("triples", "listed", "fixed")
 """Codes of actions by name; any other is given as an `ActionCode`."""
 
 
-def opening(home: Home, goal: Goal | str, agents: int = 2, strides: tuple[float, ...] = ()) -> Opening:
+def opening(
+    home: Home | str | Sequence[Home | str],
+    goal: Goal | str | Sequence[Goal | str],
+    agents: int = 2,
+    strides: tuple[float, ...] = (),
+) -> HomeOpening:
     """Episodes in a home as it is, without its own characters, with agents in random rooms.
 
     Args:
-        home: the home.
-        goal: for all of them; as text, too (see `read_goal`).
+        home: the home, its name, or several, of which the seed draws one.
+        goal: for all of them; as text, too (see `read_goal`); of several the seed draws one.
         agents: how many.
         strides: metres that each walks in a tick; 1 where not given.
 
     Raises:
-        HearthError: every fault of the goal's text.
+        HearthError: UNKNOWN_HOME; BAD_ARGUMENT: no home or goal; every fault of a goal's text.
     """
-    wanted = read_goal(goal, home) if isinstance(goal, str) else goal
+    several: Any = home if isinstance(home, Sequence) and not isinstance(home, str) else [home]
+    homes = tuple(_empty(each) for each in several)
+    given = [goal] if isinstance(goal, (Goal, str)) else goal
+    if not homes or not given:
+        message = f"{len(homes)} homes and {len(given)} goals"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion='opening("maple", "HOLDS(agent, milk)")')
+    goals = tuple(read_goal(each, homes[0].home) if isinstance(each, str) else each for each in given)
+    return HomeOpening(homes, goals, agents, strides)
 
+
+@dataclass(frozen=True)
+class HomeOpening:
+    """The start of an episode in a home, by its seed; a value that can be pickled.
+
+    Attributes:
+        homes: worlds without characters, of which the seed draws one.
+        goals: of which the seed draws one.
+        agents: how many.
+        strides: metres that each walks in a tick; 1 where not given.
+    """
+
+    homes: tuple[World, ...]
+    goals: tuple[Goal, ...]
+    agents: int
+    strides: tuple[float, ...] = ()
+
+    def __call__(self, seed: int) -> tuple[World, Goal]:
+        """Return the world in which an episode begins, and its goal."""
+        empty = self.homes[0] if len(self.homes) == 1 else rng(seed, "home").choice(self.homes)
+        goal = self.goals[0] if len(self.goals) == 1 else rng(seed, "goal").choice(self.goals)
+        world = placed(with_agents(empty, self.agents, seed), rng(seed, "poses", empty.home.name))
+        every = (*self.strides, *[STRIDE] * self.agents)
+        walkers = (agent._replace(stride=stride) for agent, stride in zip(world.agents, every, strict=False))
+        return World(world.home, world.states, tuple(walkers), world.moved), goal
+
+
+def _empty(home: Home | str) -> World:
+    """Return a home without its own characters.
+
+    Raises:
+        HearthError: UNKNOWN_HOME; BAD_ARGUMENT: neither a home nor a name.
+    """
+    if isinstance(home, str):
+        from hearth.homes.library import named_graph
+        from hearth.kb.loading.load import default
+
+        title, graph = named_graph(home, default())
+        home = Home.from_graph(graph, title, default())
+    if not isinstance(home, Home):
+        message = f"`home` is {type(home).__name__}, not a home or its name"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion='opening("maple", "HOLDS(agent, milk)")')
     own = [home.ids[i] for i in home.agents]
     empty = edit(World.start(home), remove=own, check=False) if own else World.start(home)
     assert isinstance(empty, World)
-
-    def begin(seed: int) -> tuple[World, Goal]:
-        world = placed(with_agents(empty, agents, seed), rng(seed, "poses", home.name))
-        every = (*strides, *[STRIDE] * agents)
-        walkers = (agent._replace(stride=stride) for agent, stride in zip(world.agents, every, strict=False))
-        return World(world.home, world.states, tuple(walkers), world.moved), wanted
-
-    return begin
+    return empty
 
 
 MOST_SEED = 2**63 - 1
@@ -81,14 +129,16 @@ class Setting:
     Attributes:
         opening: the start of an episode, and its goal.
         actions: names of the actions that may be tried; None: those of challenges (see `action_codes.played`).
-        code: how instructions are numbered (see `action_codes`): `triples`, `listed`, or an `ActionCode`.
+        code: how instructions are numbered (see `action_codes`): `triples`, `listed`, `fixed` (of `actions` and
+            `things`), or an `ActionCode`.
         partial: whether agents see only the area around them.
         told: numbers of the agents that know the goal; all of them where None.
         limit: ticks after which an episode is cut off.
-        rewards: of a tick.
+        rewards: of a tick; `Rewards`, or a function (see `rewards.Reward`).
         rules: of actions.
         sizes: of the arrays.
         things: the nodes of arrays and instructions (see `Slots.of`); all nodes where None.
+        arrays: names of the arrays that an observation has; all of them where None.
     """
 
     opening: Opening
@@ -97,10 +147,25 @@ class Setting:
     partial: bool = True
     told: frozenset[int] | None = None
     limit: int = MOST_TICKS
-    rewards: Rewards = field(default_factory=Rewards)
+    rewards: Reward = field(default_factory=Rewards)
     rules: Rules = DEFAULT
     sizes: Sizes = field(default_factory=Sizes)
     things: tuple[str | int, ...] | None = None
+    arrays: tuple[str, ...] | None = None
+
+
+def checked_setting(given: object) -> Setting:
+    """Return the settings of episodes; an opening alone has the usual ones.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is neither.
+    """
+    if isinstance(given, Setting):
+        return given
+    if callable(given):
+        return Setting(given)
+    message = f"episodes are set by {type(given).__name__}, not by a Setting"
+    raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion='Setting(opening("maple", "HOLDS(agent, milk)"))')
 
 
 class Session:
@@ -116,7 +181,9 @@ class Session:
         failures: of the last tick, by agent.
     """
 
-    def __init__(self, setting: Setting) -> None:
+    def __init__(self, setting: Setting | Opening) -> None:
+        setting = checked_setting(setting)
+        checked_reward(setting.rewards)
         world, goal = setting.opening(0)
         known = world.home.knowledge
         self.setting = setting
@@ -125,18 +192,20 @@ class Session:
         if unknown := [name for name in self.names if name not in known.actions]:
             raise HearthError.of(Code.UNKNOWN_ACTION, f"`{unknown[0]}` is not a known action")
         check(goal, setting.sizes.literals)
-        self.code = self._code(setting.code)
+        self.code = self._code(setting.code, world.home)
         self.encoder = Encoder(replace(setting.sizes, agents=max(setting.sizes.agents, self.agents)), self.names, known)
         self.env = Env(setting.rules, setting.partial, known)
         self._rows: Rows | None = None
         self._begin(world, goal)
 
-    def _code(self, code: str | ActionCode) -> ActionCode:
+    def _code(self, code: str | ActionCode, home: Home) -> ActionCode:
         sizes = self.setting.sizes
         if code == "triples":
             return Triples(self.names, sizes.nodes)
         if code == "listed":
             return Listed(self.names, sizes.legal)
+        if code == "fixed":
+            return fixed_list(self.names, Slots.of(home, sizes.nodes, self.setting.things))
         if isinstance(code, str):
             raise HearthError.of(Code.BAD_ARGUMENT, f"no code of actions is called `{code}`",
                                  suggestion=" or ".join(CODES))  # fmt: skip
@@ -146,7 +215,7 @@ class Session:
         """Return the space of every agent's arrays."""
         from gymnasium.spaces import Dict
 
-        return Dict({**self.encoder.spaces(), **self.code.spaces()})
+        return Dict(self._kept({**self.encoder.spaces(), **self.code.spaces()}))
 
     def action_space(self) -> Space[Any]:
         """Return the space of every agent's numbers."""
@@ -201,7 +270,21 @@ class Session:
         told = self.setting.told is None or agent in self.setting.told
         time = len(self.env.ticks) / self.setting.limit
         arrays = self.encoder.arrays(view, self.rows, self.progress if told else None, time)
-        return {**arrays, **self.code.masks(legal, self.rows.slots)}
+        return self._kept({**arrays, **self.code.masks(legal, self.rows.slots)})
+
+    def _kept(self, arrays: dict[str, Any]) -> dict[str, Any]:
+        """Return the arrays, or spaces, that an observation has.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: there is no array of a name.
+        """
+        names = self.setting.arrays
+        if names is None:
+            return arrays
+        if unknown := [name for name in names if name not in arrays]:
+            message = f"no array is called `{unknown[0][:40]}`"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=", ".join(arrays))
+        return {name: arrays[name] for name in names}
 
     def info(self, agent: int) -> dict[str, Any]:
         """Return facts about an episode that the agent must not observe.
@@ -267,7 +350,7 @@ class Session:
         self.failures = {**refused, **tick.failures}
         self._seen = {}
         after = self.progress, self.env.world
-        return {agent: self.setting.rewards.of(before, after, agent) for agent in range(self.agents)}
+        return {agent: self.setting.rewards(before, after, agent) for agent in range(self.agents)}
 
 
 def done(tick: Tick) -> list[Step]:

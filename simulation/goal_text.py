@@ -88,7 +88,7 @@ def _fact(each: Mapping[str, Any]) -> str:
 
 
 class _Parser(Tokens):
-    PATTERN = re.compile(r"[()\[\]|&:,]|[0-9]+|agent:[0-9]+|[^\W\d]\w*(?:\.[0-9]+)?|\.")
+    PATTERN = re.compile(r"[()\[\]|&:,]|[0-9]+|agent:[0-9]+|[^\W\d]\w*(?:-\w+)*(?:\.[0-9]+)?|\.")
 
     def __init__(self, text: str, file: str, home: Home) -> None:
         super().__init__(text, file)

@@ -31,6 +31,7 @@ ENTRY_POINTS = {
     "Programs in a home": ("hearth:parse_program", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit"),
     "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
     "Environments of learning libraries": (
+        "hearth:TextHome", "hearth:TextHomes",
         "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
     "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth:read_goal", "hearth.simulation.explain:checks"),

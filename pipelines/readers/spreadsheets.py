@@ -146,7 +146,7 @@ def _is_action(layout: Layout, found: FieldColumns) -> bool:
     return "program" not in found and is_action(dict.fromkeys(layout.columns, "x"))
 
 
-def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
+def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: Found) -> bool:
     """Return whether most rows hold one step and are next to another row of their title, which is nowhere else."""
     if "title" not in found and "program" in found and (_row_is_step(layout, found) or found.note == _ROWS_ARE_STEPS):
         program = layout.columns.index(found["program"])

@@ -13,8 +13,11 @@ from hypothesis import strategies as st
 from scrambled_worlds import scrambled
 
 from hearth.envs.agent_answers import by_text
+from hearth.envs.answer_forms import read_answer
+from hearth.envs.compact_text import compact, wanted_nodes
 from hearth.envs.json_observations import observation
 from hearth.envs.text_protocol import description, menu, plain
+from hearth.envs.text_protocols import protocol
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -40,6 +43,7 @@ FORMS = {
     "poses": lambda seen, may: (seen.me, seen.others, seen.tick),
     "legal": lambda seen, may: (list(may), len(may), {name: may.objects(name) for name in sorted(may.masks)}),
     "json": lambda seen, may: orjson.dumps(observation(seen, GOAL)),
+    "hearth-text/1": lambda seen, may: compact(seen, may, GOAL, protocol()),
     "text": lambda seen, may: description(seen, GOAL) + menu(list(may), seen),
 }
 """(view, legal) -> the form, as a value or as bytes. A new form of observations is a row here."""
@@ -99,9 +103,9 @@ def test_what_is_unseen_does_not_show(form, seed, ticks, number, mix):
     assert FORMS[form](seen, may) == FORMS[form](again, may_again)
 
 
-def asked(text, seen, may):
+def asked(text, seen, may, read=by_text):
     try:
-        return by_text(text, seen, may)
+        return read(text, seen, may)
     except HearthError as error:
         return [replace(each, source="") for each in error.diagnostics]
 
@@ -124,6 +128,26 @@ def test_answers_ask_nothing_about_what_is_unseen(seed, mix):
     for i in indices(there.by_class.get("apple", 0) & ~seen.mask):
         hidden = asked(f"Grab apple {there.ids[i]}", seen, may)
         assert [each.code for each in hidden] == [each.code for each in nothing] == ["NOT_SEEN"]
+
+
+@given(seed=st.integers(0, 10_000), number=st.integers(0, 1), mix=st.integers(0, 10_000))
+@settings(max_examples=10)
+def test_other_forms_of_answers_ask_nothing_about_what_is_unseen(seed, number, mix):
+    (seen, may), (again, may_again) = pair(seed, 10, number, mix)
+    assert not wanted_nodes(GOAL, seen) & ~seen.mask and wanted_nodes(GOAL, seen) == wanted_nodes(GOAL, again)
+
+    def read(text, seen, may):
+        return read_answer(text, seen, may, protocol())
+
+    for text in (
+        "go to fridge 1",
+        "Grab apple",
+        "open the cupboard",
+        "take milk 5 from fridge 3",
+        "Walk bedroom",
+        "fly",
+    ):
+        assert asked(text, seen, may, read) == asked(text, again, may_again, read), text
 
 
 @given(seed=st.integers(0, 10_000))

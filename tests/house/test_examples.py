@@ -9,6 +9,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.md"))
+TEXT = ROOT / "docs/text-environment.md"
 TUTORIAL = sorted((ROOT / "docs/tutorial").glob("*.md"))
 OF_A_CHECKOUT = ("agents", "new-action")
 """Pages whose commands are given in Hearth's folder, of which they get a copy."""
@@ -22,7 +23,7 @@ def followed(module):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", [*EXAMPLES, *TUTORIAL], ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [*EXAMPLES, *TUTORIAL, TEXT], ids=lambda page: page.stem)
 def test_a_page_does_what_it_says(followed, page, tmp_path):
     text, folder, checkout = page.read_text("utf-8"), tmp_path / "here", ROOT
     if "stable_baselines3" in text:

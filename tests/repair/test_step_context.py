@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from repair_worlds import ROOMS, small_world, steps_of
-from test_variants import home, programs
+from test_augmentation import home, programs
 
 from hearth.grounding.preconditions.postconditions import achieved
 from hearth.repair.augmentation import Augmented, Options, augment

@@ -13,6 +13,12 @@ _OTHER = re.compile(r"\s*(?:>\s*)?\**(?:thought|think|obs|observation|reason(?:i
 _NO_ACT = re.compile(r"(?:(?:finish|think|stop)\b.*|look(?: around)?|(?:check )?inventory|done)\W*", re.IGNORECASE)
 
 
+def act_of(line: str) -> str | None:
+    """Return the words of an act, `Action: open fridge 1`; None where a line is none."""
+    act = _ACT.match(line)
+    return act[1].strip() if act else None
+
+
 def _fits(lines: Sequence[str]) -> bool:
     acts = sum(_ACT.match(line) is not None for line in lines)
     return acts > 1 or (acts == 1 and any(map(_OTHER.match, lines)))

@@ -1,0 +1,101 @@
+"""`challenge tasks household` and `challenge solvable household`: tasks in people's words, and how many are solved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.challenges.household_drawing import Drawing
+
+HOUSEHOLD = "household"
+"""The challenge whose tasks are made one by one (`challenges/household.py`)."""
+
+SHOWN = 20
+"""Tasks that are printed, at most."""
+
+
+def print_tasks(split: str, out: Path | None, seed: int, limit: int | None, workers: int, as_json: bool) -> None:
+    """Draw tasks, write them into a file, and print instructions with their goals."""
+    from hearth.challenges.household import digest_of
+    from hearth.challenges.household_definition import NAME
+    from hearth.challenges.household_files import task_data, write_tasks
+
+    found = _drawn(split, seed, limit, workers)
+    if out is not None:
+        write_tasks(out, found.tasks)
+    document: dict[str, Any] = {
+        "challenge": NAME,
+        "split": split,
+        "tasks": len(found.tasks),
+        "goals": len({task.goal for task in found.tasks}),
+        "homes": len({task.home for task in found.tasks}),
+        "rejected": sum(found.rejected.values()),
+        "digest": digest_of(found.tasks),
+        "out": out,
+    }
+    if as_json:
+        shown = {} if out is not None else {"drawn": [task_data(task) for task in found.tasks]}
+        output.emit({**document, "reasons": dict(found.rejected.most_common()), **shown})
+        return
+    for task in found.tasks[:SHOWN]:
+        print(f"{task.id}  {task.family}, {task.home}, {output.counted(task.min_ticks, 'tick')}")
+        print(f"  {output.shown(task.instruction)}\n  {output.shown(str(task.goal))}\n")
+    if found.tasks[SHOWN:]:
+        print(f"... and {len(found.tasks) - SHOWN:,} more; --out has all\n")
+    output.figures(document)
+    for reason, number in found.rejected.most_common():
+        print(f"rejected: {number:,} draws: {reason}")
+
+
+def print_solved(splits: list[str] | None, limit: int | None, workers: int, as_json: bool) -> None:
+    """Print how many tasks the human-like agent solves that sees only the room it is in.
+
+    Every task that is drawn was solved by an agent that sees everything.
+    """
+    from collections import Counter
+
+    from hearth.challenges.household_definition import NAME, settings
+    from hearth.challenges.household_drawing import attempts
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    names = splits or list(settings()["splits"])
+    drawings = [_drawn(name, 0, limit, workers) for name in names]
+    tasks = [task for each in drawings for task in each.tasks]
+    with bar("episodes") as seen:
+        found = list(attempts(tasks, default, workers, seen))
+    solved = Counter(each.task.family for each in found if each.success)
+    of_family = Counter(task.family for task in tasks)
+    unsolved = [each.task.id for each in found if not each.success]
+    figures = {
+        "challenge": NAME,
+        "splits": ", ".join(names),
+        "tasks": len(tasks),
+        "rejected": sum(sum(each.rejected.values()) for each in drawings),
+        "oracle": len(tasks),
+        "human_like": len(found) - len(unsolved),
+        "share": round(1 - len(unsolved) / len(tasks), 4),
+        "oracle_ticks": round(sum(task.min_ticks for task in tasks) / len(tasks), 1),
+        "human_like_ticks": round(sum(each.ticks for each in found) / len(tasks), 1),
+    }
+    families = {name: f"{solved[name]} of {number}" for name, number in of_family.items()}
+    if as_json:
+        output.emit({**figures, "families": families, "unsolved": unsolved})
+        return
+    output.figures(figures)
+    print()
+    output.table(("family", "solved by the human-like agent"), list(families.items()))
+    for task_id in unsolved:
+        print(f"not solved within {settings()['ticks']} ticks: {task_id}")
+
+
+def _drawn(split: str, seed: int, limit: int | None, workers: int) -> Drawing:
+    from hearth.challenges.household_drawing import drawn_tasks
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    with bar("tasks") as seen:
+        return drawn_tasks(split, limit, seed, default, workers, seen)

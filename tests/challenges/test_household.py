@@ -1,0 +1,247 @@
+"""Tasks of `household`: made from ids, solved, without leaks between splits."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+import typer
+
+from hearth.agents.forbidden_actions import forbidden
+from hearth.challenges import household
+from hearth.challenges.episodes import read_instruction as read_step
+from hearth.challenges.household import digest_of, household_ids, household_task, household_tasks, solve
+from hearth.challenges.household_definition import (
+    RULES,
+    home_named,
+    settings,
+    share_of,
+    share_of_goal,
+    split_named,
+)
+from hearth.challenges.household_drawing import attempts, drawn_tasks
+from hearth.challenges.household_files import read_tasks, write_tasks
+from hearth.challenges.instruction_reader import IN_SHORT, read_instruction
+from hearth.commands import challenge_household, play
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.simulation.env import Env
+from hearth.simulation.goals import Progress
+from hearth.simulation.holds import candidates
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.digest import digest
+
+SPLITS = tuple(settings()["splits"])
+TRAIN = 20
+OTHERS = 10
+
+
+@pytest.fixture(scope="module")
+def drawn(knowledge):
+    """The first tasks of each split."""
+    limits = {split: TRAIN if split == "train" else OTHERS for split in SPLITS}
+    return {split: [*household_tasks(split, limit, knowledge=knowledge)] for split, limit in limits.items()}
+
+
+@pytest.fixture(scope="module")
+def every(drawn):
+    return [task for tasks in drawn.values() for task in tasks]
+
+
+def test_there_are_twelve_thousand_ids_or_more():
+    ids = [task_id for split in SPLITS for task_id in household_ids(split)]
+    assert len(set(ids)) == len(ids) >= 12_000
+
+
+def test_every_family_is_there(drawn):
+    for tasks in drawn.values():
+        assert {task.family for task in tasks} == set(settings()["families"])
+
+
+def test_nothing_of_a_goal_holds_at_the_start(every, knowledge):
+    for task in every:
+        progress = Progress.start(task.goal, task.start(knowledge))
+        assert not any(progress.counts) and not progress.satisfied, task.id
+
+
+def test_nothing_that_is_wanted_is_shut_in_a_box_or_basket(every, knowledge):
+    for task in every:
+        world = task.start(knowledge)
+        movable = world.home.properties["GRABBABLE"]
+        for literal, _ in () if task.activity else task.goal:
+            some = candidates(literal, world.home)
+            for i in indices((some.targets if some.by_target else some.subjects) & movable):
+                assert not rows.inside(world, i) & movable, task.id
+
+
+def test_a_start_is_the_same_every_time(every, knowledge):
+    for task in every[::7]:
+        assert digest(task.start(knowledge)) == digest(task.start(knowledge))
+
+
+def test_the_expert_reaches_the_goal_in_the_ticks_that_are_said(every, knowledge):
+    allowed = knowledge.group(settings()["actions"])
+    for task in every:
+        env = Env(RULES, True)
+        env.restore(task.start(knowledge))
+        progress = Progress.start(task.goal, env.world)
+        for text in task.expert:
+            done = env.step({0: read_step(text, 0, env.world.home, allowed)} if text else {})
+            progress = progress.then(done.before, done.world, [*done.instructions.values()])
+        assert progress.satisfied and task.min_ticks == len(task.expert) > 0, task.id
+
+
+def test_the_human_like_agent_solves_most_tasks(every):
+    found = list(attempts(every, default))
+    assert sum(each.success for each in found) >= 0.94 * len(found)
+
+
+def test_an_instruction_is_read_back(every, knowledge):
+    for task in every:
+        assert read_instruction(task.instruction, knowledge) == task.goal, task.id
+
+
+def test_an_activity_has_a_persons_words_and_their_short_form(every):
+    for task in every:
+        assert (IN_SHORT in task.instruction) == bool(task.activity) == (task.family == "activity")
+
+
+def test_no_instruction_goal_or_program_of_another_split_is_in_train(drawn):
+    def parts(task):
+        goal = frozenset((str(literal), number) for literal, number in task.goal), task.goal.parts
+        return {("words", task.instruction), ("goal", goal), ("program", (task.home, *task.expert))}
+
+    train = {part for task in drawn["train"] for part in parts(task)}
+    for split in SPLITS[1:]:
+        for task in drawn[split]:
+            assert not parts(task) & train, task.id
+
+
+def test_a_goal_belongs_to_one_share_whatever_its_order(every):
+    for task in every:
+        assert share_of_goal(task.goal) == split_named(task.split).goals
+        assert share_of_goal(Goal(task.goal.counts[::-1], task.goal.parts)) == share_of_goal(task.goal)
+
+
+def test_activities_of_tests_are_in_no_training_task(every):
+    titles = {task.split: set() for task in every}
+    for task in every:
+        if task.activity:
+            title = household.activities()[task.activity].title.lower()
+            titles[task.split].add(title)
+            assert share_of(title) == split_named(task.split).goals
+
+
+def test_homes_that_are_not_seen_are_in_no_other_split():
+    seen = {home for name in ("train", "valid_seen", "test_seen", "valid_words") for home in split_named(name).homes}
+    valid, test = set(split_named("valid_unseen").homes), set(split_named("test_unseen").homes)
+    assert not seen & valid and not seen & test and not valid & test
+
+
+def test_words_of_tests_are_in_no_training_split():
+    pools = {name: split_named(name).words for name in SPLITS}
+    assert {pools["test_seen"], pools["test_unseen"]} == {"test"} and pools["valid_words"] == "valid"
+    assert pools["train"] == "train"
+
+
+def test_shares_are_those_of_the_file():
+    found = Counter(share_of(str(number)) for number in range(10_000))
+    for name, share in settings()["shares"].items():
+        assert abs(found[name] / 100 - share) < 2
+
+
+def test_the_same_id_gives_the_same_task_whoever_draws_it(drawn, knowledge):
+    tasks = drawn["train"][:4]
+    assert [household_task(task.id, knowledge=knowledge) for task in reversed(tasks)] == tasks[::-1]
+    assert drawn_tasks("train", 4, 0, default, workers=2).tasks == tuple(tasks)
+
+
+def test_another_seed_gives_other_tasks(drawn, knowledge):
+    (other,) = household_tasks("train", 1, seed=9, knowledge=knowledge)
+    assert other.id == "household-train-9-00000" and other.goal != drawn["train"][0].goal
+    assert household_task(other.id, knowledge=knowledge) == other
+
+
+def test_what_is_rejected_is_counted(knowledge):
+    rejected = Counter()
+    assert len([*household_tasks("test_seen", 3, rejected=rejected, knowledge=knowledge)]) == 3
+    assert rejected["goal of another split"] > 0
+
+
+def test_a_task_that_is_not_solved_is_replaced(monkeypatch, knowledge, drawn):
+    """The first solution is refused, so that the same id gives another task."""
+    calls = []
+
+    def refuse_first(*arguments, **named):
+        calls.append(named)
+        done = solve(*arguments, **named)
+        object.__setattr__(done, "progress", done.progress[: 1 if len(calls) == 1 else None])
+        return done
+
+    monkeypatch.setattr(household, "solve", refuse_first)
+    rejected = Counter()
+    found = household_task("household-train-00001", rejected, knowledge)
+    assert rejected["not solved by an agent that sees everything"] >= 1
+    assert found != drawn["train"][1]
+
+
+def test_files_of_tasks_are_read_back(tmp_path, drawn, knowledge):
+    path = tmp_path / "tasks.json"
+    write_tasks(path, drawn["train"])
+    assert list(read_tasks(path, knowledge)) == drawn["train"]
+    assert digest_of(drawn["train"]) in path.read_text()
+    path.write_text(path.read_text().replace('"min_ticks"', '"minimum"', 1))
+    with pytest.raises(HearthError) as caught:
+        read_tasks(path, knowledge)
+    assert caught.value.diagnostics[0].code is Code.BAD_JSON
+    write_tasks(path, drawn["train"])
+    path.write_text(path.read_text().replace("-00000", "-99999", 1))
+    with pytest.raises(HearthError) as caught:
+        read_tasks(path, knowledge)
+    assert caught.value.diagnostics[0].code is Code.DAMAGED_FILE
+
+
+@pytest.mark.parametrize(
+    "task_id", ["", "household-train-99999", "household-moon-00000", "../train", "household-train-1"]
+)
+def test_there_is_no_other_task(task_id):
+    with pytest.raises(HearthError) as caught:
+        household_task(task_id)
+    assert caught.value.diagnostics[0].code is Code.BAD_ARGUMENT
+
+
+def test_the_command_prints_instructions_with_their_goals(capsys, drawn):
+    challenge_household.print_tasks("train", None, 0, 2, 1, as_json=False)
+    printed = capsys.readouterr().out
+    for task in drawn["train"][:2]:
+        assert task.instruction in printed and str(task.goal) in printed and task.id in printed
+
+
+def test_a_task_is_played_where_it_starts(drawn, knowledge):
+    task = drawn["train"][1]
+    scene = play._task_scene(task.id, "", None, knowledge)
+    assert (scene.goal, scene.instruction, scene.actions) == (task.goal, task.instruction, settings()["actions"])
+    assert digest(scene.world) == digest(task.start(knowledge))
+    with pytest.raises(typer.BadParameter, match="leave out"):
+        play._task_scene(task.id, "maple", None, knowledge)
+
+
+def test_what_is_never_to_be_done_is_not_done(drawn, knowledge):
+    tasks = [task for tasks in drawn.values() for task in tasks if task.family == "without"]
+    for task in tasks:
+        never = forbidden(task.goal, home_named(task.home, knowledge))
+        assert never
+        done = solve(task.start(knowledge), task.goal, task.seed, knowledge)
+        for tick in done.env.ticks:
+            for step in tick.instructions.values():
+                index = done.env.world.home.index
+                assert not any(never.get(step.action, 0) >> index[ref.node] & 1 for ref in step.objects[:1])
+
+
+def test_an_agent_looks_before_it_believes_that_a_lamp_is_off(knowledge):
+    task = next(task for task in household_tasks("train", 10, knowledge=knowledge) if task.family == "turn_off")
+    assert all(literal.negated for literal, _ in task.goal)
+    assert solve(task.start(knowledge), task.goal, task.seed, knowledge).success
