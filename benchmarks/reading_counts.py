@@ -3,11 +3,17 @@
     python benchmarks/reading_counts.py data_raw/crowd tests/messy/plans.jsonl --unpack
 
 The counts of two versions of Hearth on the same sources show what a change of the reader accepts or refuses.
+
+    python benchmarks/reading_counts.py --readings data_raw/written/readings.csv
+
+counts the verdicts of readers of our corpus. A note of 2026 said "195 of 200 read faithful": an author of the corpus
+had reread 200 of its programs, and repaired five. It is not a figure of this reader.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import tempfile
 from collections import Counter
@@ -49,20 +55,43 @@ def unpacked(file: Path, folder: Path) -> Iterator[Path]:
         yield place / row["file"]
 
 
+def verdicts(file: Path) -> Iterator[str]:
+    """Yield a line for each reader of a corpus: how many programs it found faithful, repaired and refused."""
+    with file.open(encoding="utf-8", newline="") as rows:
+        found = Counter((row["reader"], row["verdict"]) for row in csv.DictReader(rows))
+    for reader in sorted({reader for reader, _ in found}):
+        counted = [(verdict, count) for (name, verdict), count in sorted(found.items()) if name == reader]
+        said = ", ".join(f"{count:,} {verdict}" for verdict, count in counted)
+        yield f"{reader}: {said} of {sum(count for _, count in counted):,}"
+
+
+def printed(name: str, total: Counter[str]) -> None:
+    """Print the counts of a source."""
+    print(name.ljust(34), *(f"{total[column]:,}".rjust(9) for column in COLUMNS))
+
+
 def main() -> None:
-    """Print one line for each source."""
+    """Print one line for each source, and one for all of them."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sources", nargs="+", type=Path)
+    parser.add_argument("sources", nargs="*", type=Path)
     parser.add_argument("--unpack", action="store_true", help="*.jsonl sources are sets of messy plans")
+    parser.add_argument("--readings", type=Path, help="verdicts of readers of a corpus, to be counted instead")
     given = parser.parse_args()
+    if given.readings:
+        print(*verdicts(given.readings), sep="\n")
+        return
     known = default()
     print("source".ljust(34), *(name.rjust(9) for name in COLUMNS))
+    whole: Counter[str] = Counter()
     for source in given.sources:
         with tempfile.TemporaryDirectory() as folder:
             is_set = given.unpack and source.suffix == ".jsonl"
             files = unpacked(source, Path(folder)) if is_set else iter([source])
             total = sum((counts(file, known) for file in files), Counter())
-        print(source.name.ljust(34), *(f"{total[name]:,}".rjust(9) for name in COLUMNS))
+        printed(source.name, total)
+        whole += total
+    if len(given.sources) > 1:
+        printed("all", whole)
 
 
 if __name__ == "__main__":

@@ -86,6 +86,11 @@ class Knowledge:
         return self._action_names.get(text) or self._action_names.get(key_of(text))
 
     @cached_property
+    def called(self) -> Mapping[str, tuple[str, ...]]:
+        """The actions that a name in a program, as `key_of` gives it, may call."""
+        return grouped((key_of(name), action.name) for action in self.actions.values() for name in action.calls)
+
+    @cached_property
     def arity(self) -> Mapping[str, int]:
         """Return how many objects each action takes; asked by every step."""
         return {name: action.arity for name, action in self.actions.items()}

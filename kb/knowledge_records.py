@@ -131,6 +131,7 @@ class Action:
         template: the step in words, `Put {0} on {1}`.
         words: other ways to begin the step.
         aliases: other spellings of the name.
+        calls: names by which programs, planners and robots call it.
         groups: those of `groups.DECLARED` that it belongs to; others follow from its literals.
         source: release, thesis or ours.
         later: what action set 3 adds; None where it adds nothing.
@@ -149,6 +150,7 @@ class Action:
     aliases: tuple[str, ...] = ()
     groups: frozenset[str] = frozenset()
     source: str = ""
+    calls: tuple[str, ...] = ()
     later: Consequence | None = None
 
     __repr__ = brief

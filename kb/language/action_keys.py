@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from hearth.kb.language.program_names import NAMES, action_of
+from hearth.kb.language.program_names import action_of
 from hearth.kb.loading.load import default
+from hearth.kb.spelling import key_of
 
 ACTIONS = (
     "action", "verb", "act", "function", "skill", "primitive", "operator", "command", "cmd", "name", "op", "operation",
@@ -13,10 +14,10 @@ ACTIONS = (
 """Keys of the action of a step, the likeliest first."""
 
 _WITH_OBJECTS = frozenset({"skill", "primitive", "operator", "command", "name"})
-"""Keys that name an action only where objects stand beside them."""
+"""Keys that name an action only where the mapping has objects too."""
 
 _WITH_KNOWN = frozenset({"cmd", "op", "operation", "service", "tool", "type", "method", "id", "do"})
-"""Keys that name an action only where objects stand beside them and the action is known: they may say much else."""
+"""Keys that name an action only where the mapping has objects too and the action is known: they may say much else."""
 
 OBJECTS = frozenset({
     "object", "objects", "obj", "noun", "object_name", "where", "container", "surface", "target", "targets", "thing",
@@ -29,7 +30,7 @@ OBJECTS = frozenset({
 
 def names_action(name: str, things: Sequence[str] = ()) -> bool:
     """Return whether a name is that of an action, or one that programs use for it with these things."""
-    return default().action(name) is not None or bool(action_of(name, things))
+    return default().action(name) is not None or bool(action_of(default(), name, things))
 
 
 def action_key(value: Mapping[str, Any]) -> str:
@@ -39,7 +40,7 @@ def action_key(value: Mapping[str, Any]) -> str:
     if found in _WITH_OBJECTS | _WITH_KNOWN and not any(map(holds_object, value)):
         return ""
     if found in _WITH_KNOWN and default().action(verb := last_name(value[texts[found]])) is None:
-        return texts[found] if verb.lower().replace("_", "") in NAMES else ""
+        return texts[found] if key_of(verb) in default().called else ""
     return texts[found] if found else ""
 
 

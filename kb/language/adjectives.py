@@ -14,7 +14,8 @@ AGES = "old older oldest new newer newest fresh ancient antique modern used"
 PLACES = "near nearest nearby closest close left right upper lower top bottom front back main"
 STATES = (
     "clean dirty empty full open closed hot cold warm cool wet dry soft hard sharp broken loose folded unfolded dusty"
-    " ready ripe raw cooked frozen whole sliced leftover spare"
+    " ready ripe raw cooked frozen whole sliced leftover spare washed"
+    " rinsed dried filled remaining chopped boiled heated"
 )
 LOOKS = (
     "nice pretty beautiful lovely good favorite favourite comfortable comfy cozy cosy shiny round square plain simple"
@@ -29,7 +30,7 @@ _ADJECTIVES = "|".join(
 _ROOMS = r"(?:kitchen|bathroom|bedroom|dining room|living room|home office|office|hall)"
 """A room before a thing says where it is, as in `the kitchen sink`."""
 
-_FOUND = re.compile(rf"(?<= )(?:very |really |quite )?({_ADJECTIVES}|{_ROOMS}),? (?=([a-z-]+))")
+_FOUND = re.compile(rf"(?<= )(?:very |really |quite )?({_ADJECTIVES}|{_ROOMS}),? (?=((?!of\b)[a-z-]+))")
 
 
 def without_adjective(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:

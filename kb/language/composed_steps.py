@@ -18,7 +18,7 @@ def composed_step(name: str, objects: Sequence[str], relation: str = "") -> str:
     words = words_of(name)
     if not objects and " " in words:
         return words.lower()
-    return written(action_of(name, objects, relation) or name, list(map(class_of, objects)))
+    return written(action_of(default(), name, objects, relation) or name, list(map(class_of, objects)))
 
 
 def class_of(name: str) -> str:

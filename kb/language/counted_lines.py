@@ -70,7 +70,7 @@ class _Counted(NamedTuple):
 def counting_of(lines: Sequence[str]) -> Callable[[str], str] | None:
     """Return what turns counted lines into numbered ones; None where the lines count nothing, or are numbered as usual.
 
-    Lines count if their counts go up by equal steps, and what stands behind most reads as steps do.
+    Lines count if their counts go up by equal steps, and the words behind most counts read as steps do.
     """
     texts = [line for line in lines if line.strip() and len(line) <= _LONGEST]
     read = list(map(plan_line, texts))

@@ -21,6 +21,18 @@ _IDIOM = re.compile(
 )
 
 
+_EXCHANGED = re.compile(
+    r"replac(?:e|es|ed|ing) (?:the|a|an|your|my|his|her|their)? ?(?:old |empty |dead |burnt out |broken )?"
+    r"(?:light ?bulbs?|bulbs?|batter(?:y|ies)|bin bags?|garbage bags?|trash bags?|toilet (?:paper|rolls?)|paper towels?"
+    r"|(?:coffee )?filters?)(?: .*)?"
+)
+
+
+def is_exchange(text: str) -> bool:
+    """Return whether a clause in small letters asks for another thing of a kind, not for the same one put back."""
+    return _EXCHANGED.fullmatch(text) is not None
+
+
 def is_idiom(text: str) -> bool:
     """Return whether a clause in small letters is an act that its verb alone does not say."""
     return _IDIOM.fullmatch(text) is not None

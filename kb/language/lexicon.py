@@ -45,6 +45,15 @@ def verb_lemmas(word: str) -> tuple[str, ...]:
     return _lemmas(word).get("VERB", ())
 
 
+def inflections(lemma: str) -> tuple[str, ...]:
+    """Return the forms of a word as a verb and as a noun: `grabs`, `grabbing`, `grabbed` of `grab`."""
+    import lemminflect
+
+    kinds = [kind for kind in ("VERB", "NOUN") if kind in _lemmas(lemma)]
+    found = (lemminflect.getAllInflections(lemma, upos=kind) for kind in kinds)
+    return tuple(dict.fromkeys(form for forms in found for spelt in forms.values() for form in spelt))
+
+
 def noun_lemmas(word: str) -> tuple[str, ...]:
     """Return the nouns of which a word may be a form: `knives` is one of `knife`."""
     return _lemmas(word).get("NOUN", ())

@@ -10,18 +10,20 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.phrases import say
-from hearth.kb.language.plan_lines import LOOSE, META, PlanLine, header_of, is_said_around, plan_line, unexplained
-from hearth.kb.language.program_lines import Kind, lines_of_program
-from hearth.kb.language.sentences import (
-    REMEMBERED,
-    Asked,
-    Mentioned,
-    asked_in_part,
-    asked_steps,
-    nearest_steps,
-    said_by,
+from hearth.kb.language.plan_lines import (
+    BRACKETED,
+    LOOSE,
+    META,
+    PlanLine,
+    header_of,
+    is_said_around,
+    plan_line,
+    unexplained,
 )
-from hearth.kb.language.understanding import Candidate
+from hearth.kb.language.program_lines import Kind, lines_of_program
+from hearth.kb.language.pronouns import REMEMBERED, Mentioned
+from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
+from hearth.kb.language.understanding import Candidate, Understood
 from hearth.kb.language.unmarked_lines import is_like_step, is_order
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -94,7 +96,7 @@ _TOLD = re.compile(
 
 
 def _asks(sentence: str) -> bool:
-    """Return whether a sentence asks for something, and tells of nobody."""
+    """Return whether a sentence asks for something, and is not about somebody."""
     return is_like_step(sentence) and not _TOLD.match(sentence)
 
 
@@ -105,13 +107,16 @@ class _StepParser:
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
-        self._said: tuple[Mentioned, ...] = ()
+        self._mentioned: list[Mentioned] = []
         self._notes: list[tuple[str, str, int]] = []
         self._is_open = self._is_heading = False
 
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
-        if kind == Kind.STEP:
+        if kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
+            self._is_open = self._is_heading = False
+            self._append(*sure, number)
+        elif kind is Kind.STEP:
             before = len(self.steps)
             found = self._read(line, raw, number)
             is_unread = bool(found) and len(self.steps) == before
@@ -224,7 +229,7 @@ class _StepParser:
         """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
         whole = nearest_steps(self.known, words, said, self.fuzzy)
         if not whole.meant or words.endswith(":"):
-            return [self._fault(whole.candidates, whole.ambiguous, raw, words, number)]
+            return [self._fault(whole, raw, words, number)]
         self._add(Asked(whole.meant), number)
         self.warnings.append(self._fuzzy(Asked(whole.meant), raw, words, number))
         return []
@@ -239,7 +244,7 @@ class _StepParser:
             program, faults = grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
-                self._said = said_by(self.steps)
+                self._mentioned += [_mentioned(step)._replace(line=number) for step in program.steps]
                 self.lines += [number] * len(found)
         return [self._placed(fault, text, raw, number) for fault in faults]
 
@@ -256,11 +261,21 @@ class _StepParser:
 
     def _add(self, asked: Asked, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        self.steps.append(_step(action, names, asked.instance))
+        self._append(_step(action, names, asked.instance, asked.second), asked.mentioned, number)
+        if asked.left_out.startswith("with it"):
+            # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
+            self._mentioned[-2:] = reversed(self._mentioned[-2:])
+
+    def _append(self, step: Step, mentioned: Mentioned, number: int) -> None:
+        self.steps.append(step)
         self.lines.append(number)
-        # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
-        last = self._said[:1] if asked.left_out.startswith("with it") else ()
-        self._said = (*last, (action, names), *self._said[len(last) :])[:REMEMBERED]
+        self._mentioned.append(mentioned)
+
+    @property
+    def _said(self) -> tuple[Mentioned, ...]:
+        """The steps of which a pronoun may speak, the last first."""
+        last = zip(self._mentioned[: -REMEMBERED - 1 : -1], reversed(self.lines), strict=False)
+        return tuple(each if each.line else each._replace(line=line) for each, line in last)
 
     def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
         message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"
@@ -268,13 +283,10 @@ class _StepParser:
             message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
-    def _fault(self, near: tuple[Candidate, ...], ambiguous: bool, line: str, words: str, number: int) -> Diagnostic:
-        code = Code.AMBIGUOUS if ambiguous else Code.NOT_UNDERSTOOD
-        message = "words that may mean several things" if ambiguous else "could not read this line as a step"
-        near_phrases = " or ".join(f"`{phrase(each)}` ({each.score:.2f})" for each in near)
-        otherwise = "write one step a line, as in `Walk to kitchen`"
-        remedy = f"did you mean {near_phrases}?" if near_phrases else otherwise
-        return self._diagnostic(code, message, line, words, number, remedy)
+    def _fault(self, whole: Understood, line: str, words: str, number: int) -> Diagnostic:
+        code = Code.AMBIGUOUS if whole.ambiguous else Code.NOT_UNDERSTOOD
+        message = "words that may mean several things" if whole.ambiguous else "could not read this line as a step"
+        return self._diagnostic(code, message, line, words, number, _remedy(whole))
 
     def _diagnostic(self, code: Code, message: str, line: str, words: str, number: int, remedy: str = "") -> Diagnostic:
         at = line.find(words)
@@ -283,9 +295,35 @@ class _StepParser:
 
 
 @lru_cache(maxsize=65_536)
-def _step(action: str, names: tuple[str, ...], instance: int) -> Step:
-    """A step whose first thing is counted."""
-    return Step(action, tuple(ObjectRef(name, 1 if place else instance) for place, name in enumerate(names)))
+def _sure_step(known: Knowledge, text: str) -> tuple[Step, Mentioned] | None:
+    """Return the step of a line that reads exactly as one, whatever was said before, as most lines do."""
+    asked = () if BRACKETED.match(text) else plain_step(known, _ORDINAL.sub("", text, count=1).removesuffix(":"))
+    if len(asked) != 1 or asked[0].fuzzy:
+        return None
+    meant = asked[0].meant
+    return _step(meant.action.name, meant.names, 1, 1), asked[0].mentioned
+
+
+def _mentioned(step: Step) -> Mentioned:
+    names = tuple(ref.name for ref in step.objects)
+    return Mentioned(step.action, names, step.objects[0].instance if names else 1)
+
+
+@lru_cache(maxsize=65_536)
+def _step(action: str, names: tuple[str, ...], instance: int, second: int) -> Step:
+    """A step whose things are counted."""
+    return Step(action, tuple(map(ObjectRef, names, (instance, second))))
+
+
+def _remedy(whole: Understood) -> str:
+    """Return a remedy for a line that is not understood: the steps that may be meant, or where the known words are."""
+    if whole.candidates:
+        return f"did you mean {' or '.join(f'`{phrase(each)}`' for each in whole.candidates)}?"
+    if whole.unknown and whole.is_action:
+        return f"`{whole.unknown}` is not an action that Hearth knows; `hearth kb export table` lists them"
+    if whole.unknown:
+        return f"`{whole.unknown}` is not an object that Hearth knows; `hearth kb find` lists them"
+    return "write one step a line, as in `Walk to kitchen`"
 
 
 def phrase(candidate: Candidate) -> str:

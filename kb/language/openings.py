@@ -11,21 +11,28 @@ _TENSE = r"(?:am|is|are|was|were)(?= [a-z]+ing\b)|(?:has|have|had)(?! (?:a|an|th
 _ORDER = "(?: (?:then|now|also|next|first))?"
 _OPENINGS = (
     r"(?:(?:i|we) would|(?:i|we)['’]d) like (?:you )?to|(?:i |we )?want you to",
+    r"(?:yesterday|last|this) (?:evening|morning|afternoon|night)|after a (?:while|bit|moment|minute)",
     r"(?:yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening))(?=,? )",
-    r"(?:could|can|would|will) you(?: mind)?",
+    r"(?:could|can|would|will) you(?: mind| be so kind as to)?|if you (?:don['’]t|do not|wouldn['’]t) mind(?=,)",
     r"(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)\s*,|(?:um+|uh+|oh|you know)(?= |,)",
     rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?{_ORDER}(?: (?:{_DUTY}|{_TENSE})){{0,2}}{_ORDER}",
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
-    r"go ahead and|make sure to|be sure to|remember to|(?:start|begin) (?:off )?by|your (?:next )?(?:job|task) is to",
+    r"go ahead and|make (?:sure|certain) to|be sure to|remember to|(?:don['’]t|do not|never) forget to|proceed to"
+    r"|(?:try|start|begin|continue|attempt) to|(?:i |we )need you to"
+    r"|(?:start|begin|continue|keep|finish)(?= [a-z]+ing\b)|go (?:and )?(?=(?:get|grab|fetch|take|find|pick|bring)\b)"
+    r"|(?:it is|it['’]s) time to|(?:the|your) next step is to"
+    r"|(?:er+m?|yeah|yep|yes|well|alright|right)(?= then\b|,)|(?:er+m?|yeah)(?= )"
+    r"|(?:start|begin|continue) (?:off )?by|your (?:next )?(?:job|task) is to",
     r"(?:first|second|third|fourth|fifth|sixth|last|final)(?:ly)?(?: of all)?\s*[,:]",
     r"(?:firstly|secondly|thirdly|fourthly|fifthly|lastly|finally)",
     r"after (?:that|this|which)|once (?:that is )?done|from there|at last|in the end",
     r"as a (?:first|next|last|final) step",
-    r"then|next|first|now|please|kindly|just|simply|and|afterwards|also|ok|okay|so",
+    r"then|next|first|now|please|kindly|just|simply|maybe|perhaps|and|afterwards|also|ok|okay|so",
 )
 _OPENING = re.compile(rf"(?:{'|'.join(_OPENINGS)})(?:\b|(?<=[,:]))[\s,]*", re.IGNORECASE)
 _CLOSING = re.compile(
-    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|if you (?:can|please|would|like)|if possible|for me))+$",
+    r"(?:[\s,]+(?:please|thanks|thank you|too|as well|already|right away|at once|would you|will you"
+    r"|love|dear|mate|darling|honey|if you (?:can|please|would|like)|if possible|for me))+$",
     re.IGNORECASE,
 )
 _FILLED = re.compile(r",\s+(?:you know|i mean|um+|uh+|like),\s+", re.IGNORECASE)
@@ -33,11 +40,30 @@ _MARKS = re.compile(r"[^\w\s)\]>'’\"”%?]+$")
 _FIRST = frozenset(
     [
         *("i", "you", "he", "she", "we", "they", "one", "the", "a", "our", "my", "your"),
-        *("yesterday", "today", "tonight", "this"),
+        *("yesterday", "today", "tonight", "this", "if", "maybe", "perhaps"),
         *("hey", "hi", "hello", "robot", "bot", "alexa", "siri", "jarvis", "um", "umm", "uh", "uhh", "oh"),
         *("could", "can", "would", "will", "want", "let", "go", "make", "be", "remember", "start", "begin"),
         *("first", "second", "third", "fourth", "fifth", "sixth", "last", "final"),
         *("firstly", "secondly", "thirdly", "fourthly", "fifthly", "lastly", "finally"),
+        *(
+            "do",
+            "don",
+            "never",
+            "proceed",
+            "try",
+            "continue",
+            "attempt",
+            "it",
+            "er",
+            "err",
+            "erm",
+            "yeah",
+            "yep",
+            "yes",
+            "well",
+        ),
+        *("alright", "right"),
+        *("keep", "finish"),
         *("after", "once", "from", "at", "in", "as", "then", "next", "now", "please", "kindly", "just", "simply"),
         *("and", "afterwards", "also", "ok", "okay", "so"),
     ]

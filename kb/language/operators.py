@@ -64,6 +64,8 @@ def _of_words(text: str) -> str:
     if not things:
         action = default().action(name) if is_name else None
         return written(action.name, []) if action and not action.arity else ""
+    if not _SMALL.isdisjoint(things):
+        return ""
     is_short = name.lower() in _GOING or (name.islower() and not is_verb(name))
     is_known = (is_name or is_short) and names_action(name, things) and all(map(names_thing, things))
     return composed_step(name, things) if is_known else ""
@@ -71,6 +73,9 @@ def _of_words(text: str) -> str:
 
 _GOING = frozenset(("walk", "run", "go", "sit", "lie"))
 """Verbs that have a preposition in sentences, and none in programs."""
+
+_SMALL = frozenset(("a", "an", "the", "to", "on", "in", "into", "at", "from", "with", "of", "up", "down", "my", "your"))
+"""Words that sentences have, and no thing is called so."""
 
 
 _ENDS = (")", "]", "}", ">", ";", ",", ".", "?")

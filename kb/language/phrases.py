@@ -32,6 +32,11 @@ def parses(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     return tuple(dict.fromkeys(parse for _, _, parse in sorted(found, key=lambda each: each[:2])))
 
 
+def first_words(knowledge: Knowledge) -> frozenset[str]:
+    """The words with which phrases of actions begin."""
+    return frozenset(_templates(knowledge))
+
+
 def _named(knowledge: Knowledge, words: str) -> str:
     """The class the words mean, or the words joined by underscores when they mean none."""
     thing = knowledge.object_class(words)

@@ -69,12 +69,14 @@ _ASIDE = re.compile(
 
 _SYMBOLS = re.compile(r"(?:[^\w\s\[\]<>(){}|*+•'\"’“‘…–-])+\s*")
 _KEYCAP = str.maketrans({"\ufe0f": "", "\u20e3": "."})
-_BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
+BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
+"""The beginning of a step in the syntax of programs."""
+
 LOOSE = re.compile(r"\s*\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s+([A-Za-z][\w .'-]*?)\s*")
 """A step that lacks the marks of its object, `[grab] milk`."""
 
 _DIGITS = re.compile(r"\d+")
-_CHECKBOX = re.compile(r"\[[ xX]\]\s+(?:@[\w-]+:?\s+)?")
+_CHECKBOX = re.compile(r"\[[ xX]\]\s+(?:\d{4}-\d\d-\d\d\s+){0,2}(?:@[\w-]+:?\s+)?")
 
 _LAYOUT = re.compile(
     r"\s*(?:`{3}|~{3}|(?:[-*_=]\s*){3,}$|//|<!--.*-->\s*$|@(?:start|end)uml\b|<\|im_start\|>\w*\s*$|(?:BEGIN|START)\s*$)"
@@ -97,15 +99,18 @@ _INLINE = re.compile(r"(?:^|(?<=\s))(?:0[.)]\s+\S.*?\s1|1[.)]\s+\S.*?\s2)[.)]\s+
 CHAIN = re.compile(r"\s*(?:-{1,3}>|={1,2}>|[→⟶➔➡⇒⟹➜➝])\s*")
 """Separators of the steps of a line: `walk to kitchen -> open fridge`."""
 
-_TAGGED = re.compile(r"(?:\s+[+@#][a-z][\w-]*)+$", re.IGNORECASE)
-"""Projects, people and topics behind an item of a list, `+home`."""
+TAGS = re.compile(r"(?:\s+(?:[+@#][a-z][\w-]*|[a-z]{1,10}:\d[\w-]*|pri:[a-z]))+$", re.IGNORECASE)
+"""Projects, people, topics and days behind an item of a list, `+home due:2026-11-05`."""
 
 _LABELLED = re.compile(
     r"^(?!task|title|goal|plan|step)[A-Za-z]{1,12}(?: [A-Za-z]{1,12})?:\s+(?=[01][.)]\s+\S)", re.IGNORECASE
 )
-"""Who answers, or what, before the first step of a list: `Robot: 1. walk to desk`."""
+"""The name of the speaker before the first step of a list: `Robot: 1. walk to desk`."""
 
 _QUOTE = re.compile(r"\s*(?:>\s?)+")
+COMMENT = re.compile(r"\s+(?://|#)\s+\S.*$")
+"""A remark behind a step, after `//` or `#`."""
+
 _HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
 _EMPHASIS = re.compile(r"<br\s*/?>|\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
 _ANSWER = re.compile(
@@ -178,7 +183,7 @@ class PlanLine(NamedTuple):
     @property
     def bracketed(self) -> bool:
         """Return whether it is a step in the syntax of programs, `[Walk] <kitchen> (1)`."""
-        return self.number is not None and _BRACKETED.match(self.text) is not None
+        return self.number is not None and BRACKETED.match(self.text) is not None
 
 
 def plan_line(raw: str) -> PlanLine:
@@ -222,7 +227,7 @@ def _line(raw: str) -> PlanLine:
     if marker and not step:
         return PlanLine(_CHECKBOX.sub("", text, count=1), 0, indent)
     if step:
-        words = _unquoted(_TAGGED.sub("", _CHECKBOX.sub("", text[step.end() :], count=1)))
+        words = _unquoted(TAGS.sub("", COMMENT.sub("", _CHECKBOX.sub("", text[step.end() :], count=1))))
         digits = _DIGITS.search(step["number"] or "")
         number = (
             int(digits[0])
@@ -240,11 +245,11 @@ def _line(raw: str) -> PlanLine:
     if inline:
         first = text[inline.start() :]
         return PlanLine(first[2:].lstrip(), int(first[0]), indent, numbered=True)
-    if not marked and not _BRACKETED.match(text) and CHAIN.search(text):
+    if not marked and not BRACKETED.match(text) and CHAIN.search(text):
         return PlanLine(TITLE.sub("", text, count=1), 0, indent)
     is_bold = _BOLD.fullmatch(line) is not None and _ASIDE.fullmatch(text) is None and not is_sentence(text)
     heading = marked is not None or TITLE.match(text) is not None or is_bold
-    return PlanLine(text, 0 if _BRACKETED.match(text) else None, indent, heading)
+    return PlanLine(text, 0 if BRACKETED.match(text) else None, indent, heading)
 
 
 def _unquoted(words: str) -> str:
@@ -299,7 +304,12 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     """
     is_ordered = ordered(lines)
     first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
-    found = [line for line in lines[:first] if line.text]
+    found = tuple(line for line in lines[:first] if line.text)
+    return _short_header(found) if sum(len(line.text) for line in found) <= _SHORT else _header(found)
+
+
+def _header(found: tuple[PlanLine, ...]) -> Header:
+    """Return title and description in the lines above the steps."""
     ranks = [
         (TITLE.match(line.text) is None, not line.heading, bool(META.match(line.text)), is_sentence(line.text), number)
         for number, line in enumerate(found)
@@ -315,8 +325,11 @@ def header_of(lines: Sequence[PlanLine]) -> Header:
     if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
         title = asked[1].rstrip(" :.!") if asked else ""
     above = [line.text for line in found[:at] if not is_said_around(line.text) and not META.match(line.text)]
-    title = title if named else asked_title(_ROLE.sub("", title, count=1))
+    title = title if named else asked_title(ROLE.sub("", title, count=1))
     return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
+
+
+_short_header = lru_cache(maxsize=16_384)(_header)
 
 
 def asked_title(line: str) -> str:
@@ -325,8 +338,8 @@ def asked_title(line: str) -> str:
     return asked[1] if asked else line
 
 
-_ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)
-"""Who asks for a plan, or what a letter names it by."""
+ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)
+"""The word for the person with a request, or for the subject of a letter, before a title."""
 
 
 def is_aside(text: str) -> bool:
@@ -379,7 +392,7 @@ def is_plan(lines: Sequence[str]) -> bool:
     """Return whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
     found = list(map(plan_line, lines))
     pairs = zip(found, lines, strict=True)
-    written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and _BRACKETED.match(raw.strip())]
+    written = [raw for line, raw in pairs if line.number == 0 and line.bracketed and BRACKETED.match(raw.strip())]
     if written:
         return all(map(LOOSE.fullmatch, written)) or any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
     steps = sum(line.number is not None for line in found)

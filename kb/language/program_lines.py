@@ -4,24 +4,23 @@ import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
+from functools import lru_cache
 from typing import NamedTuple
 
-from hearth.kb.language.forms import form_of
+from hearth.kb.language.forms import form_of, form_of_line
 from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Form, Placed
 from hearth.kb.language.line_parts import listed
+from hearth.kb.language.marked_lines import marked
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
-from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
 from hearth.kb.language.unmarked_lines import (
     are_steps,
     chained,
     chained_strongly,
     is_like_step,
     is_order,
-    is_title,
-    sentences,
 )
 from hearth.kb.language.wrappings import Unwrap, unwrapped, unwrapping
 from hearth.schemas.program_blocks import is_sentence
@@ -33,14 +32,12 @@ _END = re.compile(
 )
 """Words that end a plan and are no step."""
 
-_MAY_END = re.compile(r"done|end|finish|complete", re.IGNORECASE)
-
 _NEXT = re.compile(r"\s[(\[]?(\d{1,4})[.):\]]\s+(?=\S)")
 _SEVERAL = re.compile(r"[>→⟶➔➡⇒⟹➜➝;•·∧|/]|\d[.):\]]| [-–—]{1,2} ")
 """A mark that every line of several steps has."""
 
 _OWNER = re.compile(r"[A-Z][a-z]{1,20}:\s+(?=\S)")
-"""Who does a step, or what it is about, in a word before it."""
+"""The owner or the subject of a step, in a word before it."""
 
 _THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>\s*$", re.IGNORECASE)
 
@@ -68,12 +65,12 @@ class ProgramLine(NamedTuple):
 
 def lines_of_program(text: str) -> list[ProgramLine]:
     """Return the lines of a program's text in order; each step of a line of several is one."""
-    if PLAIN.fullmatch(text) and not form_of([text.partition("\n")[0]]):
-        return list(_plain_lines(text))
+    if PLAIN.fullmatch(text) and not form_of_line(text.partition("\n")[0]):
+        return _plain_lines(text)
     raw, form = formed(text.split("\n"))
     if form:
         return [ProgramLine(*each, _kind(each.line)) for each in map(_operated, form.lines(raw)) if not _ends(each)]
-    return list(_kinds(_marked(_read(raw))))
+    return list(_kinds(marked(_read(raw))))
 
 
 PLAIN = re.compile(
@@ -83,33 +80,43 @@ PLAIN = re.compile(
 """A line above numbered steps of plain words, as most plans are: no form has to be tried."""
 
 
-def _plain_lines(text: str) -> Iterator[ProgramLine]:
-    """Yield the lines of a plain plan."""
-    several = _SEVERAL.search(text.partition("\n")[2]) is not None or " then " in text
-    may_end = _MAY_END.search(text) is not None
-    for row, raw in enumerate(text.split("\n")):
-        line = plan_line(raw)
-        if line.number is None:
-            yield ProgramLine(row, line, Kind.TEXT)
-            continue
-        for part in _parts(line) if several or not row else [line]:
-            if not (may_end and _END.fullmatch(part.text)):
-                yield ProgramLine(row, part, Kind.STEP)
+def _plain_lines(text: str) -> list[ProgramLine]:
+    """Return the lines of a plain plan."""
+    return [
+        ProgramLine(row, line, kind)
+        for row, raw in enumerate(text.split("\n"))
+        for line, kind in (_short_plain(raw) if len(raw) <= _SHORT else _plain(raw))
+    ]
+
+
+_SHORT = 200
+"""Characters of a line that is remembered, as plans say the same again and again."""
+
+
+def _plain(raw: str) -> tuple[tuple[PlanLine, Kind], ...]:
+    """Return the steps of a line of a plain plan, or the line if it is none."""
+    line = plan_line(raw)
+    if line.number is None:
+        return ((line, Kind.TEXT),)
+    return tuple((part, Kind.STEP) for part in _parts(line) if not _END.fullmatch(part.text))
+
+
+_short_plain = lru_cache(maxsize=16_384)(_plain)
 
 
 def header(text: str) -> Header:
     """Return title and description of a program's text."""
     top = text.partition("\n")[0]
-    if PLAIN.fullmatch(text) and not form_of([top]):
+    if PLAIN.fullmatch(text) and not form_of_line(top):
         line = plan_line(top)
         return header_of([line]) if line.number is None else Header("", "")
     raw, form = formed(text.split("\n"))
-    placed = form.lines(raw) if form else _marked(_read(raw))
+    placed = form.lines(raw) if form else marked(_read(raw))
     return header_of([line for _, line in placed])
 
 
 def formed(lines: Sequence[str]) -> tuple[list[str], Form | None]:
-    """Return the lines of a text without thoughts and what stands around each, and the form that they have then."""
+    """Return the lines of a text without thoughts and wrappings, and the form that they have then."""
     unwrap, form = reading_of(lines)
     found = _without_thoughts(list(unwrapped(lines, unwrap)))
     return found, form
@@ -120,12 +127,22 @@ def reading_of(lines: Sequence[str]) -> tuple[Unwrap | None, Form | None]:
 
     Nothing unwraps lines that have a form of their own.
     """
-    first = list(unwrapped(_without_thoughts(list(lines[:_LOOKED_AT])), None))
+    first = tuple(lines[:_LOOKED_AT])
+    return _short_reading(first) if sum(map(len, first)) <= _FEW else _reading(first)
+
+
+def _reading(lines: tuple[str, ...]) -> tuple[Unwrap | None, Form | None]:
+    first = list(unwrapped(_without_thoughts(list(lines)), None))
     if form := form_of(first):
         return None, form
     unwrap = unwrapping(first)
     return unwrap, form_of([unwrap(line) for line in first]) if unwrap else None
 
+
+_short_reading = lru_cache(maxsize=512)(_reading)
+
+_FEW = 8_000
+"""Characters of first lines that are remembered: a file is recognized, parted, titled and read, each by its form."""
 
 _LOOKED_AT = 60
 
@@ -145,7 +162,7 @@ def is_unmarked(lines: Sequence[str]) -> bool:
     read = _read(lines)
     if any(line.number is not None for _, line in read):
         return False
-    return any(any(line.number is not None for _, line in _marked(part)) for part in _sections(read))
+    return any(any(line.number is not None for _, line in marked(part)) for part in _sections(read))
 
 
 def _read(raw: Sequence[str]) -> list[Placed]:
@@ -213,8 +230,6 @@ def _has_steps(section: Sequence[PlanLine]) -> bool:
 
 
 _FIRST = 4
-_SIGNED = 3
-"""Lines below the end of a letter that are not its name any more."""
 
 _NUMBERED = re.compile(r"(?:step )?\d{1,4}[.:)] ", re.IGNORECASE)
 
@@ -233,83 +248,6 @@ def _sections(placed: list[Placed]) -> Iterator[list[Placed]]:
         part.append(each)
     if part:
         yield part
-
-
-def _marked(placed: list[Placed]) -> list[Placed]:
-    """Mark the plain lines that are steps, where no line of the text has a mark."""
-    if any(line.number is not None for _, line in placed):
-        return placed
-    plain = [n for n, (_, line) in enumerate(placed) if line.text and _is_plain(line)]
-    named = next((n for n, (_, line) in enumerate(placed) if line.heading and not _is_plain(line)), -1)
-    is_titled, plain = named >= 0, [n for n in plain if n > named]
-    plain = _without_greetings(placed, plain)
-    if plain and not is_titled:
-        top, texts = plain[0], [placed[n].line.text for n in plain]
-        is_apart = top + 1 < len(placed) and not placed[top + 1].line.text
-        is_titled = is_title(texts[0], texts[1:], is_apart) and not (texts[1:] and goes_on(texts[0], texts[1]))
-        plain = _without_description(placed, plain[1:]) if is_titled else plain
-    prose = [(n, placed[n].line.text) for n in plain]
-    if is_prose(prose):
-        return _as_sentences(placed, plain, sentences_of(prose))
-    texts = [_after_label(placed[n].line.text) for n in plain]
-    if not are_steps(texts) and not (is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])):
-        return placed
-    steps = {n for n, text in zip(plain, texts, strict=True) if is_like_step(text) or chained(text)}
-    return [part for n, each in enumerate(placed) for part in (_steps_on(each) if n in steps else [each])]
-
-
-def _without_description(placed: list[Placed], plain: list[int]) -> list[int]:
-    """Leave out sentences between a title and a blank line, where the lines below that are none: they describe."""
-    gaps = (n for n in range(1, len(plain)) if any(not placed[k].line.text for k in range(plain[n - 1], plain[n])))
-    gap = next(gaps, 0)
-    above, below = ([placed[n].line.text for n in part] for part in (plain[:gap], plain[gap:]))
-    describes = len(below) > 1 and all(map(is_sentence, above)) and not any(map(is_sentence, below))
-    return plain[gap:] if describes else plain
-
-
-def _without_greetings(placed: list[Placed], plain: list[int]) -> list[int]:
-    """Leave out how a letter begins, and how it ends with the name below."""
-    end = next((n for n in plain if n and is_farewell(placed[n].line.text)), len(placed))
-    is_end = sum(n > end for n in plain) < _SIGNED
-    return [n for n in plain if not is_greeting(placed[n].line.text) and (n < end or not is_end)]
-
-
-def _as_sentences(placed: list[Placed], plain: list[int], parts: list[Sentence]) -> list[Placed]:
-    """Return lines of prose as its sentences, which are steps."""
-    found: list[Placed] = []
-    for n, each in enumerate(placed):
-        here = [sentence.text for sentence in parts if sentence.row == n]
-        found += [Placed(each.row, PlanLine(text, 0, prose=True)) for text in here]
-        found += [] if here or n in plain or is_greeting(each.line.text) else [each]
-    return found
-
-
-def _is_plain(line: PlanLine) -> bool:
-    """Return whether a line without a mark may be a step: titles may not, but `Plan: walk to sofa` may be."""
-    return not META.match(line.text) and (not line.heading or _LABEL.match(line.text) is not None)
-
-
-_LABEL = re.compile(
-    r"(?:plan|steps|answer|actions?|action sequence|sequence|procedure|instructions|method|solution|program)\s*[:=]\s*",
-    re.IGNORECASE,
-)
-"""Words before the steps of a line, `Plan: walk to sofa; sit on sofa`."""
-
-
-def _after_label(text: str) -> str:
-    return _LABEL.sub("", text, count=1)
-
-
-def _is_order(text: str, placed: Placed) -> bool:
-    """Return whether the one line below a title is a step, and not its description."""
-    return text != placed.line.text or (is_like_step(text) and not is_sentence(text))
-
-
-def _steps_on(placed: Placed) -> list[Placed]:
-    """Return a line as steps: the sentences of prose, else the whole line."""
-    text = _after_label(placed.line.text)
-    parts = sentences(text)
-    return [Placed(placed.row, PlanLine(part, 0, prose=len(parts) > 1)) for part in parts]
 
 
 def _is_joined(lines: Sequence[str]) -> bool:

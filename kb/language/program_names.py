@@ -1,68 +1,39 @@
-"""Names of actions as programs, planners and robots' interfaces spell them, and the step of a call."""
+"""Names of actions as programs, planners and robots' interfaces spell them, and the action that a call means."""
 
 import re
 from collections.abc import Sequence
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading.load import default
 from hearth.kb.spelling import key_of
 
-PLACED = "put"
-"""The meaning of names that put a thing in or on another; the second thing decides which."""
-
-NAMES: dict[str, str] = {
-    **dict.fromkeys(("goto", "goes to", "navigate", "navigateto", "navto", "moveto", "walkto", "gotolocation"), "Walk"),
-    **dict.fromkeys(("pick", "pickup", "pickupobject", "take", "takeobject", "fetch", "grasp", "get"), "Grab"),
-    **dict.fromkeys(("put", "place", "putobject", "placeobject", "putdown", "puton", "placeon"), PLACED),
-    **dict.fromkeys(("placein", "putinside", "insert"), "PutIn"),
-    **dict.fromkeys(("turnon", "toggleon", "toggleobjecton", "activate", "toggle", "poweron"), "SwitchOn"),
-    **dict.fromkeys(("turnoff", "toggleoff", "toggleobjectoff", "deactivate", "poweroff"), "SwitchOff"),
-    **dict.fromkeys(("clean", "cleanobject"), "Wash"),
-    **dict.fromkeys(("openobject",), "Open"),
-    **dict.fromkeys(("closeobject", "shut"), "Close"),
-    **dict.fromkeys(("sliceobject", "slice", "chop"), "Cut"),
-    **dict.fromkeys(("dropobject", "letgo"), "Drop"),
-    **dict.fromkeys(("examine", "inspect", "lookatobject"), "LookAt"),
-    **dict.fromkeys(("search", "searchfor", "locate", "scanfor"), "Find"),
-    **dict.fromkeys(("siton", "sitdownon"), "Sit"),
-    **dict.fromkeys(("lieon", "liedownon"), "Lie"),
-}
-"""The key of a name in a program -> the action."""
-
-_ALONE: dict[str, str] = {
-    **dict.fromkeys(("putback", "putaway", "placeback", "returnobject"), "PutObjBack"),
-    **dict.fromkeys(("putdown", "setdown", "release"), "Release"),
-}
-"""Names that mean another action where they have one thing."""
-
-_ARITY = {PLACED: (2,), "PutIn": (2,)}
+_ON, _IN = ("on", "onto", "ontop"), ("in", "into", "inside")
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 
-def action_of(name: str, objects: Sequence[str], relation: str = "") -> str:
-    """Return the action that a program's name means for these objects; empty where the table has none.
+def action_of(known: Knowledge, name: str, objects: Sequence[str], relation: str = "") -> str:
+    """Return the action that a program's name means for these objects; empty where no action is called so.
 
     Args:
+        known: the actions, whose `calls` are these names.
         name: the name of the call, the value of `action`, or the first word of a pair.
         objects: names of the things.
         relation: how the last thing is named, as `on` in `place(obj="cup", on="table")`.
     """
-    key = key_of(words_of(name)).replace("_", "")
-    meant = _ALONE.get(key, "") if len(objects) == 1 else ""
-    meant = meant or NAMES.get(key, "")
-    if not meant or len(objects) not in _ARITY.get(meant, (1,)):
-        return ""
-    return _put(default(), objects[1], relation) if meant == PLACED else meant
+    called = known.called.get(key_of(words_of(name)), ())
+    fitting = [action for action in called if known.arity[action] == len(objects)]
+    if len(fitting) < 2:
+        return fitting[0] if fitting else ""
+    related = "INSIDE" if _is_in(known, objects[-1], relation.lower()) else "ON"
+    return next((action for action in fitting if known.relation_of(action) == related), "")
 
 
-def _put(known: Knowledge, place: str, relation: str) -> str:
-    """Return whether a thing is put in or on a place: in a hollow place without a top, unless the name says `on`."""
-    if relation.lower() in ("on", "onto", "ontop"):
-        return "PutBack"
+def _is_in(known: Knowledge, place: str, relation: str) -> bool:
+    """Return whether a thing is put in a place: in a hollow one without a top, unless the name says `on`."""
+    if relation in (*_ON, *_IN):
+        return relation in _IN
     name = place.replace("_", " ")
     is_hollow = known.has(name, "CONTAINERS") or known.has(name, "RECIPIENT")
-    is_in = relation.lower() in ("in", "into", "inside") or (is_hollow and not known.has(name, "SURFACES"))
-    return "PutIn" if is_in else "PutBack"
+    return is_hollow and not known.has(name, "SURFACES")
 
 
 def words_of(name: str) -> str:

@@ -1,7 +1,7 @@
 """Sentences: the steps that one line asks for, which may join several clauses, count things and speak of `it`."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -10,40 +10,38 @@ from hearth.kb.language.adjectives import without_adjective
 from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import is_verb, noun_lemmas
 from hearth.kb.language.openings import verb_phrase
-from hearth.kb.language.things import thing_of
-from hearth.kb.language.trailing import changes_act, shortened
+from hearth.kb.language.pronouns import PRONOUN, Mentioned, referred, several, with_place
+from hearth.kb.language.things import thing_of, things_in
+from hearth.kb.language.trailing import changes_act, is_subordinate, shortened
+from hearth.kb.language.typos import corrected
 from hearth.kb.language.understanding import Candidate, Understood, understand, understand_exactly
-from hearth.schemas.program import Step
 
 _JOINTS = re.compile(
     r"(?:\s*[,;])?\s+(?:and then|then|and|&{1,2}|\+)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])",
     re.IGNORECASE,
 )
-_PRONOUN = re.compile(r"\b(?:it|them|her|him)\b", re.IGNORECASE)
-_THINGS = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
-_PEOPLE = re.compile(r"\b(?:her|him)\b(?=$| (?:on|in|to|with|at)\b)", re.IGNORECASE)
 _PLURAL = re.compile(r"\b[a-z]+es\b")
 _OBSERVED = re.compile(
     r"\W*(?:you|i|we|he|she|it|they)(?: can| could)? (?:see|sees|saw|hear|hears|notice|notices)\b", re.IGNORECASE
 )
 """A sentence about a person's observation asks for nothing."""
 
-_INSIDE = re.compile(r"((?:put|place|drop|set|lay|store)(?:s|ing|ped)?(?: back)? .+?)(?: back)? inside", re.IGNORECASE)
-_CLOSING = re.compile(r"(?:close|shut)\b", re.IGNORECASE)
-_PERSON = "PERSON"
-REMEMBERED = 6
-"""Steps of which a pronoun may speak."""
-
 _NUMBERS = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-_COUNTS = {"both": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
+_COUNTS = (
+    {"both": 2, "a couple": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
+)
 _COUNT = re.compile(rf"\b({'|'.join(_COUNTS)})\s+(?:of\s+)?(?:the\s+|my\s+|your\s+)?(?=[a-z])", re.IGNORECASE)
+_ANOTHER = re.compile(r"\b(another|one more|the other|a second)\s+(?=[a-z])", re.IGNORECASE)
+_ORDINALS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5}
+_ORDINAL = re.compile(rf"\bthe ({'|'.join(_ORDINALS)}|other)\s+(?=[a-z])", re.IGNORECASE)
 _BETWEEN = re.compile(r"\b(?:in|on|into|onto|with|to|at|inside)\b", re.IGNORECASE)
+_TWO_TOOLS = re.compile(r" (?:with|using) (?:[a-z]+ ){1,3}and [a-z]+(?: [a-z]+)?$", re.IGNORECASE)
+"""Two tools of one act, `with soap and water`."""
+
 _LEFT_OUT = 3
 _CLAUSES = 12
-
-
-Mentioned = tuple[str, tuple[str, ...]]
-"""A step that was said before: its action and its things."""
+_MISSPELLED = 0.9
+"""The similarity of a clause that has misspelled words and others that are left out."""
 
 
 class Asked(NamedTuple):
@@ -53,16 +51,23 @@ class Asked(NamedTuple):
         meant: the step.
         instance: the number of its first thing; two forks are fork 1 and fork 2.
         left_out: words of the sentence that are left out of the step.
+        second: the number of its second thing.
     """
 
     meant: Candidate
     instance: int = 1
     left_out: str = ""
+    second: int = 1
 
     @property
     def fuzzy(self) -> bool:
         """Return whether words were corrected or left out."""
         return self.meant.score < 1 or bool(self.left_out)
+
+    @property
+    def mentioned(self) -> Mentioned:
+        """The step as later pronouns need it."""
+        return Mentioned(self.meant.action.name, self.meant.names, self.instance, 0, self.second)
 
 
 def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
@@ -71,13 +76,13 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
     Args:
         known: the grammar.
         words: the line.
-        said: the steps before, the last first, as `said_by` gives them.
+        said: the steps before, the last first.
         fuzzy: how far from known words a clause may be; off takes exact readings only.
     """
+    if plain := plain_step(known, words):
+        return plain
     if _OBSERVED.match(words):
         return ()
-    if plain := _plain(known, words):
-        return plain
     words = verb_phrase(" ".join(_plurals_of_said(known, words, said).split()))
     whole = _clause(known, words, said, Fuzzy.OFF)
     if whole:
@@ -85,13 +90,14 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
     clauses = _clauses(words)
     if 1 < len(clauses) <= _CLAUSES and (joined := _joined(known, clauses, said, fuzzy)):
         return joined
-    return _clause(known, words, said, fuzzy) if len(clauses) == 1 and fuzzy is not Fuzzy.OFF else ()
+    is_one = len(clauses) == 1 or _TWO_TOOLS.search(words) is not None
+    return _clause(known, words, said, fuzzy) if is_one and fuzzy is not Fuzzy.OFF else ()
 
 
 @lru_cache(maxsize=65_536)
-def _plain(known: Knowledge, words: str) -> tuple[Asked, ...]:
-    """The step of a line that reads exactly, whatever was said before: without pronoun and without double plural."""
-    if _PRONOUN.search(words) or _double_plurals(known, words):
+def plain_step(known: Knowledge, words: str) -> tuple[Asked, ...]:
+    """Return the step of a line that reads exactly, whatever was said before: without pronoun and double plural."""
+    if _OBSERVED.match(words) or PRONOUN.search(words) or _double_plurals(known, words):
         return ()
     meant = understand_exactly(known, words).meant
     return (Asked(meant),) if meant else ()
@@ -117,7 +123,7 @@ def _double_plurals(known: Knowledge, words: str) -> list[tuple[str, str, str, s
 
 
 def _is_said(name: str, said: Sequence[Mentioned]) -> bool:
-    return any(name in names for _, names in said)
+    return any(name in each.names for each in said)
 
 
 def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked | str, ...]:
@@ -132,7 +138,7 @@ def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
     found: list[Asked | str] = []
     at = 0
     while at < len(clauses) <= _CLAUSES:
-        now = tuple((each.meant.action.name, each.meant.names) for each in reversed(found) if isinstance(each, Asked))
+        now = tuple(each.mentioned for each in reversed(found) if isinstance(each, Asked))
         read, size = _longest(known, clauses[at:], (*now, *said), fuzzy)
         found += read or (clauses[at],)
         at += size
@@ -158,25 +164,28 @@ def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
     """Return what a line as a whole is understood as, and the nearest steps as hints."""
     if _OBSERVED.match(words):
         return Understood(None, ())
-    return understand(known, next(_referred(known, words, said), words), fuzzy)
-
-
-def said_by(steps: Sequence[Step]) -> tuple[Mentioned, ...]:
-    """Return the last steps, the last first, as pronouns need them."""
-    return tuple((step.action, tuple(ref.name for ref in step.objects)) for step in reversed(steps[-REMEMBERED:]))
+    return understand(known, next(referred(known, words, said), words), fuzzy)
 
 
 def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
     """The steps of clauses one after another; what shares a verb, as `grab a cup and a plate`, is read together."""
+    if fuzzy is not Fuzzy.OFF and len(clauses) > 1 and is_subordinate(known, clauses[0].lower()):
+        spoken = (Mentioned("", (thing,)) for thing in things_in(known, clauses[0].lower()))
+        return _without_first(clauses[0], _joined(known, clauses[1:], (*spoken, *said), fuzzy))
     for size in range(1, len(clauses) + 1):
         read = _clause(known, clauses[0], said, fuzzy) if size == 1 else _listed(known, clauses[:size], said)
         if read and size == len(clauses):
             return read
         if read:
-            now = ((each.meant.action.name, each.meant.names) for each in reversed(read))
+            now = (each.mentioned for each in reversed(read))
             if rest := _joined(known, clauses[size:], (*now, *said), fuzzy):
                 return (*read, *rest)
     return ()
+
+
+def _without_first(clause: str, read: tuple[Asked, ...]) -> tuple[Asked, ...]:
+    """The steps of a line without the clause before them, which says when or how they are done."""
+    return (read[0]._replace(left_out=f"{clause} {read[0].left_out}".rstrip()), *read[1:]) if read else ()
 
 
 def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tuple[Asked, ...]:
@@ -228,11 +237,19 @@ def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzz
     if changes_act(words.lower()):
         return ()
     for shorter, out in ((words, ""), *without_adjective(known, words.lower())):
-        for clause in _referred(known, shorter, said):
+        for clause in referred(known, shorter, said):
             meant = understand(known, clause, Fuzzy.TYPOS).meant
             if meant and (clause == shorter or _affords(known, meant)):
                 return (Asked(meant, left_out=out),)
-    return ()
+    return _corrected(known, words.lower(), said)
+
+
+def _corrected(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The step of a clause with misspelled words, of which others are left out; none where it may be several."""
+    sentences = next(iter(corrected(known, words)), ())
+    read = {found for each in sentences if each != words and (found := _shortened(known, each, said, ""))}
+    found = read.pop() if len(read) == 1 else ()
+    return tuple(each._replace(meant=each.meant._replace(score=_MISSPELLED)) for each in found)
 
 
 def _shortened(
@@ -250,28 +267,64 @@ def _shortened(
 
 def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
     """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
-    words = _inside_of(words, said)
-    found = (understand_exactly(known, clause).meant for clause in _referred(known, words, said))
+    words = with_place(known, words, said)
+    if many := several(known, words, said):
+        meant = [(understand_exactly(known, clause).meant, number) for clause, number in many]
+        return tuple(Asked(each, number) for each, number in meant if each) if all(each for each, _ in meant) else ()
+    found = (understand_exactly(known, clause).meant for clause in referred(known, words, said))
     readings = [each for each in found if each and (len(each.names) < 2 or each.names[0] != each.names[1])]
-    if len(readings) == 1:
-        return (Asked(readings[0]),)
     if readings:
         afforded = (each for each in readings if _affords(known, each))
-        return (Asked(next(afforded, readings[0])),)
-    count = _COUNT.search(words)
+        best = readings[0] if len(readings) == 1 else next(afforded, readings[0])
+        return (Asked(best, _number(best, said) if PRONOUN.search(words) else 1),)
+    return _ordered(known, words, said) or _counted(known, words, said)
+
+
+def _number(meant: Candidate, said: Sequence[Mentioned]) -> int:
+    """Return the number of the last thing of a class that was spoken of."""
+    return next((each.instance for each in said if each.names[:1] == meant.names[:1]), 1)
+
+
+def _counted(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The steps of a clause that counts its things, as `two forks` and `another cup`."""
+    count = _COUNT.search(words) or _ANOTHER.search(words)
     if not count or not count.start() or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
         return ()
     meant = _of_one(known, words[: count.start()], words[count.end() :])
     if meant is None or not meant.names:
         return ()
-    return tuple(Asked(meant, number) for number in range(1, _COUNTS[count[1].lower()] + 1))
+    if number := _COUNTS.get(count[1].lower()):
+        return tuple(Asked(meant, each) for each in range(1, number + 1))
+    before = [each.instance for each in said if each.names[:1] == meant.names[:1]]
+    if count[1].lower() == "the other":
+        return (Asked(meant, other),) if (other := _other(before)) else ()
+    return (Asked(meant, max(before, default=0) + 1),)
 
 
-def _inside_of(words: str, said: Sequence[Mentioned]) -> str:
-    """`Put it inside` with the thing that was opened last."""
-    put = _INSIDE.fullmatch(words)
-    opened = next((names[0] for action, names in said if action == "Open"), None) if put else None
-    return f"{put[1]} inside {opened.replace('_', ' ')}" if put and opened else words
+def _other(said: Sequence[int]) -> int:
+    """Return the number of the other one of two things where the first was said last; 0 where it may be either."""
+    return 2 if said[:1] == [1] and max(said) <= 2 else 0
+
+
+def _ordered(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
+    """The step of a clause with one of several things: `the second cup`, `the other cup`."""
+    found = _ORDINAL.search(words)
+    if not found or not found.start() or len(_ORDINAL.findall(words)) > 1:
+        return ()
+    meant = understand_exactly(known, f"{words[: found.start()]}the {words[found.end() :]}").meant
+    thing = next(iter(things_in(known, words[found.end() :].lower())), "")
+    if not meant or meant.names.count(thing) != 1:
+        return ()
+    before = [
+        number
+        for each in said
+        for name, number in zip(each.names, (each.instance, each.second), strict=False)
+        if name == thing
+    ]
+    number = _ORDINALS.get(found[1].lower()) or _other(before)
+    if not number:
+        return ()
+    return (Asked(meant, number) if meant.names[0] == thing else Asked(meant, second=number),)
 
 
 def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:
@@ -284,27 +337,3 @@ def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:
 
 def _affords(known: Knowledge, meant: Candidate) -> bool:
     return all(known.affords(meant.action.name, place, name) for place, name in enumerate(meant.names))
-
-
-def _referred(known: Knowledge, words: str, said: Sequence[Mentioned]) -> Iterator[str]:
-    """The sentence with each thing that its pronoun may stand for, the likeliest first; itself where it has none."""
-    if not _PRONOUN.search(words):
-        yield words
-        return
-    of_things, of_people = _THINGS.search(words), _PEOPLE.search(words)
-    things = _spoken_of(said, is_closed=bool(_CLOSING.match(words))) if of_things or of_people else ()
-    if not things:
-        yield words
-    for thing in things:
-        name = thing.replace("_", " ")
-        if of_things:
-            yield _THINGS.sub(name, words)
-        elif known.has(thing, _PERSON):
-            yield _PEOPLE.sub(name, words)
-
-
-def _spoken_of(said: Sequence[Mentioned], *, is_closed: bool) -> tuple[str, ...]:
-    """The things of steps, the last first; what was opened, or holds another, comes first where something is closed."""
-    opened = [name for action, names in said if is_closed and action == "Open" for name in names]
-    places = [names[1] for _, names in said if is_closed and len(names) > 1]
-    return tuple(dict.fromkeys((*opened, *places, *(name for _, names in said for name in names))))

@@ -1,26 +1,39 @@
 """Things in words: the class that a noun phrase is, as `both plates`, `the fridge door`, `the milk in the fridge`."""
 
 import re
+from collections.abc import Iterator
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.lexicon import is_noun, noun_lemmas
 
 _DETERMINERS = re.compile(
-    r"(?:(?:the|a|an|one|some|any|my|your|his|her|our|their|its|this|that|these|those|one['’]s)\s+(?:of\s+)?)+"
+    r"(?:(?:the|a few|few|a|an|one|some|any|several|my|your|his|her|our|their|its|this|that|these|those"
+    r"|one['’]s)\s+(?:of\s+)?)+"
 )
 _PARTITIVE = re.compile(
     r"(?:\d+(?:[.,/]\d+)? ?(?:k?g|m?l|cl|dl|oz|lbs?|grams?|kilos?|lit(?:er|re)s?|ounces?|pounds?)\b"
     r"(?: of)?\s+"
-    r"|(?:pair|slice|piece|bit|loaf|bunch|handful|sheet|bar|stick|couple|drop|spoonful|scoop|pinch|lot)s? of\s+)"
+    r"|(?:rest|half|remainder|edge|side) of\s+"
+    r"|(?:pair|slice|piece|bit|loaf|bunch|handful|sheet|bar|stick|drop|spoonful|scoop|pinch|lot|carton|can"
+    r"|tin|packet|pack|roll|tube|tub|stack|pile|load|set|bottle(?! of (?:the )?water))s? of\s+)"
 )
 """Amounts, parts and numbers of a thing that are the thing itself; a cup of tea is not, as a cup is a thing as well."""
+
+_OWNER = re.compile(
+    r"(?:the |my |your |his |her |our |their )?(?:mum|mom|mother|dad|father|wife|husband|partner|friend|brother|sister"
+    r"|son|daughter|roommate|flatmate|neighbou?r|guest|grandma|grandpa|granny|nan|man|woman|boy|girl|child|kid|baby"
+    r"|everyone|someone|somebody|user|person|owner)(?:['’]s|s['’])\s+"
+)
+"""People to whom things belong; a dog's bed is not a person's."""
 
 _POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
 _SOURCE = re.compile(r"\s+(?:out of|out from|off of|off|from|from inside|from under|from behind)\s+")
 """Before the place from which a thing is taken; a step has no such place, as its world says where the thing is."""
-_PARTS = re.compile(r"(?: door| doors| lid)$")
+_PARTS = re.compile(r"(?:the )?(?:doors?|lid) of (?:the |a )?(.+)|(.+?) (?:doors?|lid)")
 _OPENED = "CAN_OPEN"
+_LONGEST = 3
+"""Words of a name at most."""
 
 
 @lru_cache(maxsize=65_536)
@@ -41,14 +54,38 @@ def thing_of(known: Knowledge, words: str) -> str | None:
 
 
 def _named(known: Knowledge, words: str) -> str | None:
-    bare = _POSSESSIVE.sub("", _without(_DETERMINERS, words))
-    bare = _without(_DETERMINERS, _without(_PARTITIVE, bare))
-    for name in (words, bare, *_singular(bare)):
+    for name in _names(words):
         if name and (thing := known.object_class(name)):
             return thing.name
-    whole = _PARTS.sub("", bare)
-    thing = known.object_class(whole) if whole != bare else None
+    part = _PARTS.fullmatch(bare_words(words))
+    thing = known.object_class(part[1] or part[2]) if part else None
     return thing.name if thing and known.has(thing.name, _OPENED) else None
+
+
+def _names(words: str) -> Iterator[str]:
+    """Yield the names that some words may be, the likeliest first; only the later ones need the lexicon."""
+    plain = _without(_DETERMINERS, words.removeprefix("of "))
+    bare = _bare(plain)
+    yield from (words, bare)
+    yield from _singular(bare)
+    yield plain.replace("'s ", " ").replace("’s ", " ")
+    owned = _without(_OWNER, plain)
+    yield _bare(owned) if owned != plain else ""
+    yield _plural(bare)
+
+
+def bare_words(words: str) -> str:
+    """Return a noun phrase without article, possessive and amount."""
+    return _bare(_without(_DETERMINERS, words.removeprefix("of ")))
+
+
+def _plural(words: str) -> str:
+    """Return the plural of a name, as some classes are named in the plural alone: a shoe."""
+    return f"{words}s" if is_noun(words.rpartition(" ")[2]) else ""
+
+
+def _bare(words: str) -> str:
+    return _without(_DETERMINERS, _without(_PARTITIVE, _POSSESSIVE.sub("", words)))
 
 
 def _without(beginning: re.Pattern[str], words: str) -> str:
@@ -58,3 +95,16 @@ def _without(beginning: re.Pattern[str], words: str) -> str:
 def _singular(words: str) -> tuple[str, ...]:
     before, space, last = words.rpartition(" ")
     return tuple(before + space + lemma for lemma in noun_lemmas(last) if lemma != last)
+
+
+def things_in(known: Knowledge, text: str) -> tuple[str, ...]:
+    """Return the classes that a text in small letters names, in its order."""
+    words, at, found = text.split(), 0, []
+    while at < len(words):
+        sizes = range(min(_LONGEST, len(words) - at), 0, -1)
+        size, name = next(
+            ((n, name) for n in sizes if (name := thing_of(known, " ".join(words[at : at + n])))), (1, "")
+        )
+        found += [name] if name else []
+        at += size
+    return tuple(found)

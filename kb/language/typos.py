@@ -4,9 +4,24 @@ from functools import lru_cache
 from itertools import islice, product
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import is_english
+from hearth.kb.language.lexicon import inflections, is_english
 
 _SHORTEST = 4
+_USUAL = {"second", "seconds", "minute", "minutes", "hour", "hours", "until", "with", "from", "into", "onto", "then"}
+"""Words around those of actions and objects."""
+
+_SMALL = {
+    "teh": "the",
+    "hte": "the",
+    "thw": "the",
+    "adn": "and",
+    "nad": "and",
+    "ot": "to",
+    "wiht": "with",
+    "fomr": "from",
+}
+"""Usual misspellings of the words that are too short to be corrected."""
+
 _LONG = 7
 _MOST = 32
 
@@ -38,11 +53,21 @@ def _choices(known: Knowledge, word: str) -> tuple[tuple[int, str], ...]:
     from rapidfuzz.distance import OSA
 
     words = _words(known)
-    if len(word) < _SHORTEST or not word.isalpha() or is_english(word):
+    if word in _SMALL:
+        return ((1, _SMALL[word]),)
+    if not word.isalpha() or is_english(word):
         return ((0, word),)
+    if len(word) < _SHORTEST:
+        turned = tuple((1, known) for known in words if len(known) == len(word) and _is_turned(word, known))
+        return turned or ((0, word),)
     allowed = 1 if len(word) < _LONG else 2
     near = process.extract(word, words, scorer=OSA.distance, limit=None, score_cutoff=allowed)
     return tuple(sorted((int(edits), spelt) for spelt, edits, _ in near if len(spelt) >= _SHORTEST))
+
+
+def _is_turned(word: str, known: str) -> bool:
+    """Return whether two letters of a word changed places: `dgo`."""
+    return any(word[:n] + word[n + 1] + word[n] + word[n + 2 :] == known for n in range(len(word) - 1))
 
 
 @lru_cache(maxsize=8)
@@ -51,4 +76,5 @@ def _words(known: Knowledge) -> dict[str, str]:
     said = [words for action in known.actions.values() for words in (action.template, *action.words)]
     names = [name for thing in known.objects for name in known.same_class(thing)]
     words = {word for text in (*said, *names) for word in text.lower().replace("_", " ").split() if "{" not in word}
-    return {word: word for word in sorted(words | set(known.object_spellings))}
+    words |= {form for word in words if word.isalpha() for form in inflections(word)}
+    return {word: word for word in sorted(words | _USUAL | set(known.object_spellings))}

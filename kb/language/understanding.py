@@ -8,13 +8,14 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action
 from hearth.kb.language.fuzzy import Fuzzy
-from hearth.kb.language.idioms import is_idiom
+from hearth.kb.language.hints import hints
+from hearth.kb.language.idioms import is_exchange, is_idiom
 from hearth.kb.language.lexicon import verb_lemmas
 from hearth.kb.language.openings import verb_phrase
-from hearth.kb.language.phrases import Parse, parses
+from hearth.kb.language.phrases import Parse, parses, say
 from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.things import thing_of
-from hearth.kb.language.typos import corrected, near_words
+from hearth.kb.language.typos import corrected
 from hearth.kb.spelling import key_of
 from hearth.schemas.short_repr import brief
 
@@ -24,9 +25,6 @@ ACCEPTED = 0.75
 MARGIN = 0.03
 """The least difference between the best and the second similarity; below it a sentence is ambiguous."""
 
-HINTED = 0.7
-"""The similarity from which an instruction is a hint for a sentence that is not understood."""
-
 _WEAK = 0.5
 _HEADS = 8
 _NAMES = 4
@@ -34,6 +32,9 @@ _SHOWN = 3
 _GRAB = "Grab"
 _POINTED = re.compile(r"point(?:s|ing|ed)? (?!at |to ).+ (?:at|to|towards?) .+")
 """A thing is pointed at another; only the other is an object of the step."""
+
+_OTHERWISE = {"take": "sit", "have": "sit", "insert": "put"}
+"""Verbs that mean the act of another: a seat is taken to sit."""
 
 _ARTICLE = re.compile(r"\b(?:the|a|an|some|my|your|his|her|their)\b ")
 
@@ -54,13 +55,17 @@ class Understood(NamedTuple):
 
     Attributes:
         meant: the step; None where no reading is allowed or several are equally near.
-        candidates: the readings, or the nearest steps where there is none, best first.
+        candidates: the readings, or the steps that may be meant where there is none, best first.
         ambiguous: whether several readings are equally near.
+        unknown: a word that names neither a known action nor a known object; empty where there are candidates.
+        is_action: whether that word is a verb.
     """
 
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
     ambiguous: bool = False
+    unknown: str = ""
+    is_action: bool = False
 
     def __repr__(self) -> str:
         return brief(self)
@@ -72,7 +77,8 @@ def understand(knowledge: Knowledge, sentence: str, fuzzy: Fuzzy = Fuzzy.TYPOS) 
 
     Templates, synonyms, inflections and usual phrasings score 1. Then misspelled words are corrected, unless `fuzzy` is
     off; a word that is English is never taken for another. With `loose`, the valid instruction whose spelling is
-    nearest is accepted. What else is said means nothing, and the nearest instructions are its candidates.
+    nearest is accepted. What else is said means nothing; its candidates are steps with the same verb about things that
+    may be meant, as `hints` finds them.
 
     Examples:
         >>> meant = hearth.understand(known, "Then turn on the TV").meant
@@ -87,11 +93,13 @@ def understand(knowledge: Knowledge, sentence: str, fuzzy: Fuzzy = Fuzzy.TYPOS) 
         read = _without_typos(knowledge, cleaned)
     if read.candidates:
         return read
-    near = _nearest(knowledge, cleaned)
-    if fuzzy is Fuzzy.LOOSE and near and near[0].score >= ACCEPTED:
+    near = _nearest(knowledge, cleaned) if fuzzy is Fuzzy.LOOSE else ()
+    if near and near[0].score >= ACCEPTED:
         is_sure = len(near) < 2 or near[0].score - near[1].score >= MARGIN
         return Understood(near[0] if is_sure else None, near, not is_sure)
-    return Understood(None, tuple(each for each in near if each.score >= HINTED and _related(knowledge, cleaned, each)))
+    hint = hints(knowledge, cleaned)
+    steps = tuple(Candidate(_similar(cleaned, say(*step)), *step) for step in hint.steps)
+    return Understood(None, steps, False, hint.unknown, hint.is_action)
 
 
 @lru_cache(maxsize=65_536)
@@ -99,32 +107,44 @@ def understand_exactly(knowledge: Knowledge, sentence: str) -> Understood:
     """Return the meaning of a sentence by templates, synonyms, inflections and usual phrasings; no near candidates."""
     cleaned = _cleaned(sentence)
     exact = _exact(knowledge, cleaned)
-    return Understood(exact[0], exact) if exact else _exact_otherwise(knowledge, cleaned)
+    if not exact or not _afforded(knowledge, (exact[0].action, exact[0].names)):
+        otherwise = _exact_otherwise(knowledge, cleaned, is_inflected=not exact)
+        if not exact or (otherwise.meant and _afforded(knowledge, (otherwise.meant.action, otherwise.meant.names))):
+            return otherwise
+    return Understood(exact[0], exact)
 
 
-def _exact_otherwise(knowledge: Knowledge, text: str) -> Understood:
+def _exact_otherwise(knowledge: Knowledge, text: str, *, is_inflected: bool = True) -> Understood:
     """The reading of a sentence by its inflections and usual phrasings; several where its places may be either's."""
-    sure = [parse for parse in _readings(knowledge, text) if _afforded(knowledge, parse)]
-    found = tuple(Candidate(1.0, *parse) for parse in sure or _readings(knowledge, text))[:_SHOWN]
+    read = _readings(knowledge, text, is_inflected=is_inflected)
+    sure = [parse for parse in read if _afforded(knowledge, parse)]
+    found = tuple(Candidate(1.0, *parse) for parse in sure or read)[:_SHOWN]
     is_sure = len({each.action.arity for each in found}) < 2 and len({each.names for each in found}) < 2
     return Understood(found[0] if found and is_sure else None, found, bool(found) and not is_sure)
 
 
-def _readings(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
+def _readings(knowledge: Knowledge, text: str, *, is_inflected: bool = True) -> tuple[Parse, ...]:
     """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first.
 
-    Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings.
+    Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings, and
+    that of a verb which means no other act.
     """
     unlikely: tuple[Parse, ...] = ()
     first = text.partition(" ")[0]
-    verbs = (first, *verb_lemmas(first))
-    for phrasing in (text, *phrasings(knowledge, text)):
+    for phrasing in (text, *phrasings(knowledge, text, is_inflected=is_inflected)):
         found = (_with_things(knowledge, parse) for parse in _acts(knowledge, phrasing))
         read = tuple(dict.fromkeys(parse for parse in found if parse))
         if any(_afforded(knowledge, parse) for parse in read):
             return read
-        unlikely = unlikely or (read if phrasing.partition(" ")[0] in verbs else ())
+        if read and not unlikely and _is_same_verb(first, phrasing.partition(" ")[0]):
+            unlikely = read
     return unlikely[:1]
+
+
+def _is_same_verb(said: str, verb: str) -> bool:
+    """Return whether a verb is the one that was said, or one that means no other act; forms need the lexicon."""
+    lemmas = (said,) if verb in (said, _OTHERWISE.get(said)) else (said, *verb_lemmas(said))
+    return verb in lemmas or verb in map(_OTHERWISE.get, lemmas)
 
 
 def _with_things(knowledge: Knowledge, parse: Parse) -> Parse | None:
@@ -137,27 +157,20 @@ def _without_typos(knowledge: Knowledge, text: str) -> Understood:
     """The readings of the sentence with the fewest letters corrected."""
     for sentences in corrected(knowledge, text):
         found: dict[tuple[str, tuple[str, ...]], Candidate] = {}
+        unlikely = dict(found)
         for sentence in sentences:
-            exact = _exact(knowledge, sentence)[:1] or _exact_otherwise(knowledge, sentence).candidates
-            for each in exact:
+            exact = _exact(knowledge, sentence)[:1]
+            for each in exact or _exact_otherwise(knowledge, sentence).candidates:
+                spelt = Candidate(min(_similar(text, sentence), 0.999), each.action, each.names)
                 if _afforded(knowledge, (each.action, each.names)):
-                    spelt = Candidate(min(_similar(text, sentence), 0.999), each.action, each.names)
                     found.setdefault((each.action.name, each.names), spelt)
+                elif exact:
+                    unlikely.setdefault((each.action.name, each.names), spelt)
+        found = found or unlikely
         if found:
             near = tuple(sorted(found.values(), key=lambda each: -each.score))
             return Understood(near[0] if len(near) == 1 else None, near[:_SHOWN], len(near) > 1)
     return Understood(None, ())
-
-
-def _related(knowledge: Knowledge, text: str, near: Candidate) -> bool:
-    """Return whether a sentence has the verb of a step or one of its things; a step with other words is not a hint."""
-    said = (near.action.template, *near.action.words)
-    verbs = {words.lower().partition(" ")[0] for words in said}
-    first = text.partition(" ")[0]
-    if not verbs.isdisjoint((first, *verb_lemmas(first))) or verbs.intersection(near_words(knowledge, first)):
-        return True
-    padded = f" {text} "
-    return any(f" {spelt.replace('_', ' ')}" in padded for name in near.names for spelt in knowledge.same_class(name))
 
 
 def _nearest(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
@@ -179,7 +192,7 @@ def _exact(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
 
 def _acts(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """The steps that some words mean; what an idiom takes, as in `take a shower`, is not grabbed."""
-    if _POINTED.fullmatch(text):
+    if _POINTED.fullmatch(text) or is_exchange(text):
         return ()
     found = (parse for parse in parses(knowledge, text) if parse[0].name != _GRAB or not is_idiom(text))
     return tuple(found)

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
+from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_noun, is_verb
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN
@@ -24,8 +25,9 @@ _LEAD = re.compile(
     rf"|(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)(?= ?,)|um+|uh+|oh"
     r"|yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening)"
     rf"|(?:(?:over|back|down|up|out) )?(?:in|on|at|from) (?:the|my|your|our) [a-z]+(?: [a-z]+)?(?=,)"
-    rf"|er+m?|yeah|yep|well|right|alright|okay|ok|so|great|good|you know|would you be so kind as to"
-    rf"|at last|(?:could|would|can|will) you(?: mind)?|i['’]d like you to|let['’]s|do not forget to"
+    rf"|er+m?|yeah|yep|well|right|alright|okay|ok|so|great|good|you know"
+    rf"|at last|(?:could|would|can|will) you(?: mind| be so kind as to)?|if you don['’]t mind(?= ?,)"
+    rf"|i['’]d like you to|let['’]s|do not forget to"
     rf"|{_SUBJECT}(?: (?:should|must|can|will|(?:need|have|has|needs)(?: to)?|['’]ll|then|now|first|also))*"
     rf"|(?!{_NO_MANNER})[a-z]{{3,}}ly)\b[\s,:]*)+",
     re.IGNORECASE,
@@ -43,7 +45,7 @@ _STRONG = re.compile(rf"{CHAIN.pattern}|\s*(?:>>|;)\s*|\s+>\s+|,?\s+(?:and\s+)?t
 """Separators of steps in a line, and nothing else."""
 
 _LOOSE = tuple(map(re.compile, (r"\s+/{1,2}\s+", r"\s*[•·∧|]\s*", r"\s+&&\s+", r"\s+[-–—]{1,2}\s+")))
-"""What joins steps of a line only where each part is one."""
+"""Separators of steps in a line, but only where each part is one."""
 
 _WEAK = re.compile(r"\s*,\s*(?:and\s+)?(?:finally\s+)?|\s+(?:and|&{1,2}|\+)\s+(?:finally\s+)?", re.IGNORECASE)
 _SENTENCES = re.compile(r"(?<=[a-z)][.!])\s+(?=[A-Z])")
@@ -71,14 +73,26 @@ def is_like_step(text: str) -> bool:
     first, second = word[0].lower(), text[word.end() :].split(maxsplit=1)[:1]
     if first == "make" and second != ["sure"]:
         return True
-    return first not in _NO_ACT and (is_verb(first) or _is_misspelled_verb(first))
+    return first not in _NO_ACT and (is_verb(first) or _is_ours(first) or _is_misspelled_verb(first))
+
+
+def _is_ours(word: str) -> bool:
+    """Return whether a word begins an action as Hearth says it, which the lexicon may not have as a verb: `texts`."""
+    return not _beginnings(default()).isdisjoint((word, word.removesuffix("s")))
+
+
+@lru_cache(maxsize=8)
+def _beginnings(known: Knowledge) -> frozenset[str]:
+    """The words with which actions begin."""
+    said = (words for action in known.actions.values() for words in (action.template, *action.words))
+    return frozenset(words.split()[0].lower() for words in said)
 
 
 def _is_misspelled_verb(word: str) -> bool:
-    """Return whether a word is no English one, and near a verb of actions."""
+    """Return whether a word that English lacks is near a verb of actions."""
     if len(word) < _SHORTEST or is_noun(word) or not word.isascii():
         return False
-    return any(default().action(near) is not None for near in near_words(default(), word))
+    return any(map(_is_ours, near_words(default(), word)))
 
 
 _SHORTEST = 4

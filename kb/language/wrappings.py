@@ -1,4 +1,4 @@
-"""What stands around the lines of a text and is no part of it: branches of a tree, counts of any shape, cue times."""
+"""Marks around the lines of a text that are not part of it: branches of a tree, counts of any shape, cue times."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence

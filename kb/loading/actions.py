@@ -16,10 +16,12 @@ from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
-_ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source",
-                          "set", "then", "like", "ticks", "notice"})  # fmt: skip
+_ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "calls", "groups",
+                          "source", "set", "then", "like", "ticks", "notice"})  # fmt: skip
 _ACTION_SHAPES = {"needs": LIST, "before": LIST, "effects": LIST, "roles": NAMES, "words": NAMES, "aliases": NAMES,
-                  "groups": NAMES, "say": TEXT, "source": TEXT, "then": LIST, "like": TEXT, "notice": TEXT}  # fmt: skip
+                  "calls": NAMES, "groups": NAMES, "say": TEXT, "source": TEXT, "then": LIST, "like": TEXT,
+                  "notice": TEXT}  # fmt: skip
+_INHERITED = ("groups", "calls")
 _REQUIREMENT_SHAPES = dict.fromkeys(("any", "all", "classes", "contains"), NAMES) | {"also": REASONS, "never": REASONS}
 _REPAIR_SHAPES = {"on": TEXT, "actions": NAMES, "when": TEXT, "say": TEXT, "source": TEXT}
 _REPAIR_KEYS = frozenset({"on", "actions", "when", "say", "source"})
@@ -27,8 +29,8 @@ _REPAIR_KEYS = frozenset({"on", "actions", "when", "say", "source"})
 
 def load_actions(layers: Layers, derived: Derived, faults: Faults) -> dict[str, Action]:
     """Every action by name, in the order of the ids."""
-    executed = yaml_entries(layers, "actions.yaml", faults, inherited="groups")
-    written = yaml_entries(layers, "actions_written.yaml", faults, inherited="groups")
+    executed = yaml_entries(layers, "actions.yaml", faults, inherited=_INHERITED)
+    written = yaml_entries(layers, "actions_written.yaml", faults, inherited=_INHERITED)
     grammar = yaml_entries(layers, "affordances.yaml", faults)
     for name in [name for name in written if _only_later(executed.get(name))]:
         own, ours = written.pop(name), executed[name]  # an overlay from before set 3 describes what it executes now
@@ -96,6 +98,7 @@ def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str
         template=str(fields.get("say") or name),
         words=strings(fields.get("words")),
         aliases=strings(fields.get("aliases")),
+        calls=strings(fields.get("calls")),
         groups=_groups(fields.get("groups"), entry, faults),
         source=str(fields.get("source") or "release"),
         later=later,

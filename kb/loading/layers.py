@@ -19,10 +19,10 @@ Keyed = Mapping[tuple[str, ...], Entry]
 T = TypeVar("T")
 
 
-def yaml_entries(layers: Layers, name: str, faults: Faults, inherited: str = "") -> dict[str, Entry]:
+def yaml_entries(layers: Layers, name: str, faults: Faults, inherited: tuple[str, ...] = ()) -> dict[str, Entry]:
     """The top-level entries of a YAML file, over all layers.
 
-    An entry replaces the one below it, but for the part `inherited`, which it takes over where it does not name it.
+    An entry replaces the one below it, but for the parts `inherited`, which it takes over where it does not name them.
     """
     result: dict[str, Entry] = {}
     for layer in layers:
@@ -30,8 +30,9 @@ def yaml_entries(layers: Layers, name: str, faults: Faults, inherited: str = "")
             for key, entry in read_yaml(layer / name, faults).items():
                 below = result.get(key)
                 parts = below.value if below is not None and isinstance(below.value, dict) else {}
-                kept = inherited in parts and isinstance(entry.value, dict)
-                result[key] = entry._replace(value={inherited: parts[inherited], **entry.value}) if kept else entry
+                kept = {part: parts[part] for part in inherited if part in parts}
+                is_laid = kept and isinstance(entry.value, dict)
+                result[key] = entry._replace(value={**kept, **entry.value}) if is_laid else entry
     return result
 
 

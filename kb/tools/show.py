@@ -72,7 +72,7 @@ def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
 
 
 def _set_3(later: Consequence | None) -> list[dict[str, str]]:
-    """Return what action set 3 adds to an action: its checks, its effects, its length and what others notice."""
+    """Return the additions of action set 3 to an action: checks, effects, length and the notice of others."""
     if later is None:
         return []
     rows = [("like", later.like, "")] if later.like else []

@@ -165,7 +165,7 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
 
 
 def is_condition(name: str, found: FieldColumns) -> bool:
-    """Return whether a column holds conditions: `goal` beside predictions, in files to score."""
+    """Return whether a column holds conditions: `goal` next to predictions, in files to score."""
     return name.strip().lower() == "goal" and found.get("program", "").strip().lower() in ("prediction", "predicted")
 
 

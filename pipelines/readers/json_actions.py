@@ -35,9 +35,15 @@ def is_action(value: Any) -> bool:
 
 
 def is_tool_use(value: Any) -> bool:
-    """Return whether a value is a call of a tool as parts of messages hold it, with a name and an input."""
-    is_call = isinstance(value, dict) and value.get("type") in _TOOL_USES
-    return is_call and isinstance(value.get("name"), str) and any(key in value for key in _INPUTS)
+    """Return whether a value is a call of a tool as parts of messages hold it, with a name and an input.
+
+    Without a `type` it has no other key than these and an `id`, and its input is an object.
+    """
+    if not isinstance(value, dict) or not isinstance(value.get("name"), str):
+        return False
+    given = [value[key] for key in _INPUTS if key in value]
+    is_bare = len(given) == 1 and isinstance(given[0], dict) and value.keys() <= {"name", "id", *_INPUTS}
+    return bool(given) and (value.get("type") in _TOOL_USES or is_bare)
 
 
 _TOOL_USES = ("tool_use", "tool_call", "function_call")
@@ -114,7 +120,7 @@ def _step(action: str, names: Sequence[str], relation: str = "") -> str:
     *verb, last = re.split(r"[\s_-]+", action.strip())
     if len(names) == 2 and verb and last.lower() in _BETWEEN:
         return composed(" ".join(verb), " ", names[0], f" {last} ", names[1])
-    meant = action_of(action, names, relation) if names and are_names else ""
+    meant = action_of(default(), action, names, relation) if names and are_names else ""
     if meant:
         return _written(meant, [(class_of(name), "1") for name in names])
     if len(names) == 2 and relation in _BETWEEN:
@@ -138,7 +144,7 @@ def _plain(action: str) -> str:
 
 def is_known(action: str, objects: Sequence[str] = ()) -> bool:
     """Return whether a word is the name of an action, or one that programs use for it with these objects."""
-    return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(action, objects))
+    return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(default(), action, objects))
 
 
 def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:
@@ -186,7 +192,7 @@ def steps_of_mapping(value: dict[str, Any], source: str = "") -> list[str]:
                 known = nodes.setdefault(objects[-1][0], [])
                 known += [] if name in known else [str(name)]
                 objects[-1] = (objects[-1][0], f"{known.index(name) + 1}.{name}")
-        meant = "" if _takes(action, len(objects)) else action_of(action, [name for name, _ in objects])
+        meant = "" if _takes(action, len(objects)) else action_of(default(), action, [name for name, _ in objects])
         found.append(_written(meant or action, objects))
     return found
 

@@ -42,7 +42,7 @@ class Text(str):
         if self.raw == self and "\n" not in self:
             return [[skip, self.line, self.column]]
         if self._has_breaks_alone():
-            return list(self._starts(skip))
+            return self._starts(skip)
         offsets, found, start = self._offsets(), [], 0
         for line in self.split("\n"):
             ends = offsets[start : start + len(line) + 1]
@@ -55,12 +55,13 @@ class Text(str):
         is_json = _unit(self.unit) is JSON_UNIT and "\n" not in self.raw
         return is_json and self.raw.replace("\\n", "\n") == self
 
-    def _starts(self, skip: int) -> Iterator[list[int]]:
-        """Yield the places of lines between which the file has two characters, a backslash and `n`."""
-        column = self.column
-        for line in self.split("\n"):
-            yield [skip, self.line, column]
-            column, skip = column + len(line) + 2, 0
+    def _starts(self, skip: int) -> list[list[int]]:
+        """Return the places of lines between which the file has two characters, a backslash and `n`."""
+        found, line, column = [], self.line, self.column
+        for text in self.split("\n"):
+            found.append([skip, line, column])
+            column, skip = column + len(text) + 2, 0
+        return found
 
     def _jumps(self, ends: Sequence[int], skip: int) -> Iterator[tuple[int, int, int]]:
         """The first character of a line, and each that does not stand right after the one before it."""
@@ -140,10 +141,11 @@ class Located:
 
     def __init__(self, value: Any, raw: str, line: int = 1, column: int = 1) -> None:
         self._raw, self._line, self._column = raw, line, column
-        self._breaks = [match.start() for match in re.finditer("\n", raw)]
+        self._breaks = [match.start() for match in re.finditer("\n", raw)] if "\n" in raw else []
         self._lines: dict[int, int] = {}
         self.whole = True
-        self.value = self._walk(value)
+        alone = _TOKEN.fullmatch(raw) if isinstance(value, str) else None
+        self.value = self._text(value, alone) if alone else self._walk(value)
 
     def line_of(self, value: Any) -> int:
         """The line on which an object of the value, or a text in it, begins; else that of the whole value."""

@@ -131,7 +131,7 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
 
 
 def _are_single(sample: Sequence[Sequence[str]], number: str, layout: Layout) -> bool:
-    """Return whether no cell beside the numbers holds several steps."""
+    """Return whether no cell next to the numbers holds several steps."""
     at = layout.columns.index(number)
     rest = (cell for row in sample[:_FEW] for n, cell in enumerate(row) if n != at and cell.strip())
     return all(map(is_one_step, rest))
@@ -146,7 +146,7 @@ def _is_action(layout: Layout, found: FieldColumns) -> bool:
     return "program" not in found and is_action(dict.fromkeys(layout.columns, "x"))
 
 
-def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns) -> bool:
+def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: Found) -> bool:
     """Return whether most rows hold one step and are next to another row of their title, which is nowhere else."""
     if "title" not in found and "program" in found and (_row_is_step(layout, found) or found.note == _ROWS_ARE_STEPS):
         program = layout.columns.index(found["program"])

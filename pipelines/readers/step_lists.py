@@ -16,7 +16,7 @@ _SEEN = frozenset({
     "obs", "observation", "observations", "thought", "thoughts", "reason", "reasoning", "result", "feedback", "state",
     "reward", "note", "comment", "status",
 })  # fmt: skip
-"""Keys of what is thought, seen or answered beside a step."""
+"""Keys of thoughts, sights and answers next to a step."""
 
 _COUNT_STEPS = frozenset({"order", "position", "sequence", "seq", "stepno", "stepnumber", "stepid", "schritt"})
 _MAY_COUNT = frozenset(

@@ -81,7 +81,7 @@ def _program(rows: list[tuple[Entry, StepRow]], are_steps: bool) -> Entry:
 def row_of_json(found: Any, given: FieldColumns) -> StepRow | None:
     """Return the step that a JSON object is: an action or words with a number, perhaps with the name of its task."""
     value = found.value if isinstance(found, Located) else found
-    if is_tool_use(value):
+    if isinstance(value, dict) and is_tool_use(value):
         return StepRow("", None, True, _record(value, "", step_of(value)))
     if not isinstance(value, dict) or any(isinstance(part, dict) for part in value.values()):
         return None

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hearth.commands.inputs import read_programs
-from hearth.kb.language.plan_lines import META, is_said_around, plan_line
+from hearth.kb.language.plan_lines import META, ROLE, is_said_around, plan_line
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program_blocks import TITLE
@@ -53,7 +53,7 @@ def lost(file: Path, knowledge) -> list[str]:
 
 def is_known(raw: str, said: str, is_log: bool) -> bool:
     line = plan_line(raw)
-    title = plain(TITLE.sub("", line.text.removeprefix("[Goal]"), count=1))
+    title = plain(ROLE.sub("", TITLE.sub("", line.text.removeprefix("[Goal]"), count=1), count=1))
     is_group = line.heading and line.numbered
     if (
         is_group

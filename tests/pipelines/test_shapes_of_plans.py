@@ -49,7 +49,7 @@ def test_a_shape_that_is_not_known_gives_faults_and_no_other_steps(write, knowle
     shape = SHAPES[name]
     programs, faults = read(write, knowledge, shape["file"], shape["text"])
     steps = [step for _, steps in programs for step in steps]
-    assert set(steps) <= set(shape["steps"]) and (faults or name == "todo.txt")
+    assert set(steps) <= set(shape["steps"]) and faults
 
 
 @pytest.mark.parametrize(

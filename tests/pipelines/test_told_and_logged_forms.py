@@ -4,6 +4,7 @@ import pytest
 
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.program_names import action_of, words_of
+from hearth.kb.loading.load import default
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.validate import checked
@@ -47,6 +48,16 @@ TEXTS = {
     ),
     "to a robot": ("a.txt", "hey robot, walk to the desk\nhey robot, find the lamp\nhey robot, switch on the lamp\n"),
     "Org mode": ("a.org", "* Light\n** TODO walk to desk\n** DONE find lamp\n** TODO switch on the lamp\n"),
+    "todo.txt": (
+        "todo.txt",
+        "x 2023-02-03 2023-02-01 walk to desk +light\n(A) 2023-02-01 find lamp @home due:2023-02-04\n"
+        "switch on the lamp pri:B\n",
+    ),
+    "tasks that are done": ("a.txt", "Light\n\nx walk to desk\nx find lamp\nx (B) switch on the lamp\n"),
+    "checked boxes with days": (
+        "a.md",
+        "- [x] 2023-02-03 walk to desk +light\n- [ ] 2023-02-03 find lamp\n- [ ] switch on the lamp due:2023-02-04\n",
+    ),
     "a game": ("a.log", ">go to desk\nYou are at the desk.\n>find lamp\nYou see a lamp.\n>switch on lamp\n"),
     "times": ("a.md", "9:00–9:10 – Walk to the desk\n9:10–9:20 – Find the lamp\n1pm: Switch on the lamp\n"),
     "pairs with colons": ("a.txt", "WALK: desk\nFIND: lamp\nTURN_ON: lamp\n"),
@@ -164,6 +175,35 @@ def test_it_goes_into_what_was_opened_and_along_to_where_one_walks(write, knowle
     assert steps[2:] == ["[Rinse] <cup> (1)", "[Open] <cupboard> (1)", "[PutIn] <cup> (1) <cupboard> (1)"]
 
 
+def test_a_task_that_is_not_understood_is_a_fault(write, knowledge):
+    text = "x 2023-02-03 walk to desk\nx 2023-02-03 juggle lamp\nfrobnicate lamp\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "todo.txt")
+    assert (steps, faults) == (["[Walk] <desk> (1)"], [2, 3])
+
+
+@pytest.mark.parametrize(
+    ("line", "step"),
+    [("I swich on the lamp.", "[SwitchOn] <lamp> (1)"), ("I swithc off the lamp.", "[SwitchOff] <lamp> (1)")],
+)
+def test_a_misspelled_verb_of_two_words_begins_a_step(write, knowledge, line, step):
+    text = f"Light\nI walk to the desk.\nI find the lamp.\n{line}\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "a.txt")
+    assert (steps[2:], faults) == ([step], [])
+
+
+def test_a_verb_that_no_lexicon_has_begins_a_step(write, knowledge):
+    text = "Calls\nShe walks to the desk.\nShe finds the cellphone.\nShe texts on her cellphone.\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "a.txt")
+    assert len(steps) + len(faults) == 3
+
+
+def test_steps_of_two_agents_on_a_line_keep_their_agents(write, knowledge):
+    text = "<char0> [walk] <kitchen> (1) | <char1> [walk] <bathroom> (1)\n<char0> [open] <fridge> (1)\n"
+    ((_, steps, faults, _),) = programs(write, knowledge, text, "a.txt")
+    assert faults == []
+    assert "<char1> [Walk] <bathroom> (1)" in " ".join(steps)
+
+
 @pytest.mark.parametrize(
     ("name", "objects", "relation", "action"),
     [
@@ -178,7 +218,7 @@ def test_it_goes_into_what_was_opened_and_along_to_where_one_walks(write, knowle
     ],
 )
 def test_names_of_programs(name, objects, relation, action):
-    assert action_of(name, objects, relation) == action
+    assert action_of(default(), name, objects, relation) == action
 
 
 def test_names_of_programs_in_words():

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 
 from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commands import COMMANDS
@@ -18,12 +19,13 @@ from hearth.kb.language.forms.quoted import QUOTED
 from hearth.kb.language.forms.react import REACT
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
 from hearth.kb.language.forms.speakers import SPEAKERS
-from hearth.kb.language.forms.tables import TABLES
+from hearth.kb.language.forms.table_rows import TABLES
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
+from hearth.kb.language.forms.todo_lists import TODO_LISTS
 from hearth.kb.language.forms.tuples import TUPLES
 from hearth.kb.language.forms.yaml_lists import YAML
 
-__all__ = ["FORMS", "YAML", "form_of"]
+__all__ = ["FORMS", "YAML", "form_of", "form_of_line"]
 
 FORMS: dict[str, Form] = {
     "quoted list": QUOTED,
@@ -36,6 +38,7 @@ FORMS: dict[str, Form] = {
     "PDDL": PDDL,
     "code": CODE,
     "Org mode": ORG_MODE,
+    "todo.txt": TODO_LISTS,
     "orders": ORDERS,
     "speakers": SPEAKERS,
     "outlines": OUTLINES,
@@ -49,7 +52,7 @@ FORMS: dict[str, Form] = {
 
 _HINT = re.compile(
     r".*(?:->|→|@)|\s*[A-Z][a-z]+[A-Z]|\s*(?:- )?(?:steps|plan|actions|program):|\s*\*+ (?:TODO|DONE)|[^:]{0,40}:\s"
-    r"|\s*[\[(]?\d\d?\d?\d?[-./:].{8,40}:|\s*\[?(?:INFO|DEBUG|\d{9})|[a-z]{3}\s+\d+ \d+:\d\d"
+    r"|\s*x\s|\s*[\[(]?\d\d?\d?\d?[-./:].{8,40}:|\s*\[?(?:INFO|DEBUG|\d{9})|[a-z]{3}\s+\d+ \d+:\d\d"
     r"|\W*(?:\d+\W+)?(?-i:[A-Z_]{3,})|[(\[|]|\s*>|.*[│┃║&\t]|.*\S {3,}\S|[\w ]*\[|\s*<[A-Za-z]|[\w.]+\s*[{<]"
     r"|\s*<t[adr]|.*\s(?:#|//)\s|.*\s\|\s|[\s*]*act|.* \d{1,3}\.?\s*$|.*[(\[|]|\s{2,}[a-z]"
     r"|.*\bcharacter\b|(?!\s*\d)[^:=\d]{2,80}(?:[:=]|(?<= [-–—]) ).{0,400}(?:[,;>→]|then)",
@@ -63,3 +66,16 @@ def form_of(lines: Sequence[str]) -> Form | None:
     if not any(map(_HINT, lines)):
         return None
     return next((form for form in FORMS.values() if form.fits(lines)), None)
+
+
+def form_of_line(line: str) -> Form | None:
+    """Return the form that a text of one line is written in; titles of plans are asked again and again."""
+    return _form_of_short(line) if len(line) <= _SHORT else form_of([line])
+
+
+_SHORT = 200
+
+
+@lru_cache(maxsize=16_384)
+def _form_of_short(line: str) -> Form | None:
+    return form_of([line])

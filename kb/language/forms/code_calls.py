@@ -67,11 +67,17 @@ def called(call: str) -> str:
     if not isinstance(parsed, ast.Call):
         return call
     name = parsed.func.attr if isinstance(parsed.func, ast.Attribute) else getattr(parsed.func, "id", "")
-    arguments = [_name(each) for each in (*parsed.args, *(keyword.value for keyword in parsed.keywords))]
-    relation = (parsed.keywords[-1].arg or "") if parsed.keywords else ""
+    keywords = list(parsed.keywords)
+    if keywords and not parsed.args and keywords[0].arg in _ACTS:  # `execute(action="grab", obj="cup")`
+        name = _name(keywords.pop(0).value) or ""
+    arguments = [_name(each) for each in (*parsed.args, *(keyword.value for keyword in keywords))]
+    relation = (keywords[-1].arg or "") if keywords else ""
     objects = [each for each in arguments if each]
     return composed_step(name, objects, relation) if name and None not in arguments else call
 
+
+_ACTS = frozenset(("action", "act", "verb", "skill", "command", "primitive"))
+"""Keywords of calls that hold the name of the action, where the function only executes it."""
 
 _WITH_WORDS = re.compile(r"(?:\w+\.)*(\w+)\(\s*([A-Za-z][\w '-]*(?:,\s*[A-Za-z][\w '-]*)*)\)")
 

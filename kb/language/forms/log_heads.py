@@ -24,7 +24,7 @@ _MOST = 4
 
 
 class Head(NamedTuple):
-    """Where the head of a line ends, whether it has a time or level, and its level."""
+    """The head of a line: its end, its level, and the answer whether it has a time or level."""
 
     end: int
     is_timed: bool

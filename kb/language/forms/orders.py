@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step
-from hearth.kb.language.forms.speakers import ROBOTS, said_of
+from hearth.kb.language.forms.speakers import ROBOTS, Said, said_of
 from hearth.kb.language.operators import names_thing, operator_step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
 
 
 class _Talk(NamedTuple):
-    """Whose words are steps, and which of them."""
+    """The speaker of the steps of a talk, and the test that finds them."""
 
     who: str
     is_step: Callable[[str], bool]
@@ -25,7 +25,7 @@ _SAID = re.compile(
     r"(?: (?:job|work|done|then|now|robot|there))?\s*[,.!–—-]+\s*)+",
     re.IGNORECASE,
 )
-"""What is said before an order, and asks for nothing."""
+"""Words before an order that ask for nothing."""
 
 _ANSWER = re.compile(
     r"(?:i|it|he|she|there|here|that|this|we) |(?:done|ok|okay|sure|yes|no|sorry|got it|will do)\b", re.IGNORECASE
@@ -40,7 +40,7 @@ _FEWEST = 2
 _TOLD = re.compile(
     r"(?:(?:first|then|next|now|after that|finally|and)\s*,?\s+)*i\s+(?!am\b|have\b|was\b|had\b|do\b)(?=[a-z])", re.I
 )
-"""What somebody says that he or she does."""
+"""The beginning of an act of one's own."""
 
 
 def _is_told(text: str) -> bool:
@@ -54,22 +54,22 @@ def _is_order(text: str) -> bool:
 
 
 def _orders(text: str, is_step: Callable[[str], bool] = _is_order) -> list[str]:
-    """Return the sentences of what somebody says that ask for something, or tell what he or she does."""
+    """Return the sentences of a speaker that ask for something, or report an own act."""
     return [_SAID.sub("", part, count=1) for part in _SENTENCES.split(text) if is_step(part)]
 
 
 def _talk(lines: Sequence[str]) -> _Talk | None:
-    """Return whose words are the steps of a talk: orders first, else what somebody tells."""
+    """Return the speaker of the steps of a talk: of orders first, else of acts of one's own."""
     return next((_Talk(who, is_step) for is_step in (_is_order, _is_told) if (who := _who(lines, is_step))), None)
 
 
 def _who(lines: Sequence[str], is_step: Callable[[str], bool]) -> str:
-    """Return who says steps in a talk: no robot, and most of what he or she says are such; else empty."""
+    """Return the name of the speaker of steps in a talk: no robot, and most of the lines are such; else empty."""
     texts = [line for line in lines if line.strip()]
     if sum(":" in line or ">" in line for line in texts) < _SHARE * len(texts):
         return ""
     said = [each for each in map(said_of, texts) if each and each.who]
-    if len(said) < _SHARE * len(texts):
+    if len(said) < max(_FEWEST, _SHARE * len(texts)) or any(map(_is_plan_of_robot, said)):
         return ""
     lines_of, orders = (
         Counter(each.who for each in said),
@@ -79,6 +79,12 @@ def _who(lines: Sequence[str], is_step: Callable[[str], bool]) -> str:
     others = max((count for other, count in orders.items() if other != who), default=0)
     is_clear = most >= _FEWEST and 2 * most >= lines_of[who] and most > 2 * others
     return who if is_clear and not ROBOTS.fullmatch(who) and not _LABELS.fullmatch(who) else ""
+
+
+def _is_plan_of_robot(said: Said) -> bool:
+    """Return whether a robot answers with numbered steps: these are the steps, and the order is their title."""
+    read = plan_line(said.text)
+    return ROBOTS.fullmatch(said.who) is not None and read.numbered and is_like_step(read.text)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:

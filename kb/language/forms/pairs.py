@@ -51,7 +51,7 @@ def _are_loose(lines: Sequence[str]) -> bool:
 
 
 def _is_known(parts: list[str]) -> bool:
-    return bool(parts) and (default().action(parts[0]) is not None or bool(action_of(parts[0], parts[1:])))
+    return bool(parts) and (default().action(parts[0]) is not None or bool(action_of(default(), parts[0], parts[1:])))
 
 
 def _fits(lines: Sequence[str]) -> bool:

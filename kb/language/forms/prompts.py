@@ -11,10 +11,16 @@ _ASKED = re.compile(r"\s*>\s?(?=[A-Za-z])(?P<said>[^>]+)")
 
 
 def _fits(lines: Sequence[str]) -> bool:
-    """Return whether answers stand between two lines that begin with `>` at least; in a quotation none do."""
-    texts = [_ASKED.fullmatch(line) is not None for line in lines if line.strip()]
-    at = [n for n, is_asked in enumerate(texts) if is_asked]
-    return len(at) > 1 and not all(texts[at[0] : at[-1]])
+    """Return whether answers stand between two lines that begin with `>` at least; in a quotation none do.
+
+    A game numbers no answers: numbered lines between two quotations are a plan with remarks of its readers.
+    """
+    texts = [line for line in lines if line.strip()]
+    at = [n for n, line in enumerate(texts) if _ASKED.fullmatch(line)]
+    if len(at) < 2:
+        return False
+    answers = [line for line in texts[at[0] : at[-1]] if not _ASKED.fullmatch(line)]
+    return bool(answers) and all(plan_line(line).number is None for line in answers)
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:

@@ -16,7 +16,7 @@ _LINE = re.compile(
     r"(?P<said>[^\s\[<].*|\[\d.*|<(?!\w+>\s*\().*)"
 )
 _ACTS = frozenset(("", "INFO", "DEBUG", "ACTION", "EXEC", "STEP"))
-"""Levels of what is done."""
+"""Levels of acts."""
 
 _QUESTION = re.compile(r"\s*\**\s*Q(?:uestion)?\s*\d*\s*:\s*(?P<said>[^*]*)\**\s*")
 ROBOTS = re.compile(
@@ -35,7 +35,7 @@ _MOST = 1_000
 
 
 class Said(NamedTuple):
-    """What a line says: who speaks, the words, and whether a robot does them."""
+    """The words of a line, their speaker, and the answer whether a robot does them."""
 
     who: str
     text: str

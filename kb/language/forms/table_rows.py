@@ -24,7 +24,7 @@ _KINDS: dict[str, tuple[re.Pattern[str], re.Pattern[str]]] = {
     "inner bars": (_INNER, re.compile(_BAR)),
     "blanks": (_WIDE, re.compile(r"\s{2,}")),
 }
-"""Rows by what parts their cells, the surest first: the row, and what stands between its cells."""
+"""Rows by the mark between their cells, the surest first: the row, and the mark."""
 
 _RULE = re.compile(
     r"\s*[|│┃║┌├└┏┣┗╔╠╚+]?[\s:]*[-=─━═]{2,}[\s:|│┃║+┬┼┴┳╋┻╦╬╩┐┤┘┓┫┛╗╣╝─━═=-]*\s*|\s*\\(?:hline|toprule|midrule|bottomrule|(?:begin|end)\{.*)\s*"
@@ -45,11 +45,11 @@ _MOST = 1_000
 
 
 _HINT = re.compile(r".*[|│┃║\t&]|.*\S\s{2,}\S").match
-"""Whether a line may be a row."""
+"""Tests that a line may be a row."""
 
 
 class _Table(NamedTuple):
-    """How the rows of a table are parted, and the names of its columns; none where it has no head."""
+    """The mark between the cells of a table, and the names of its columns; none where it has no head."""
 
     kind: str
     head: tuple[str, ...]
