@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from hearth.old_names import install
-from hearth.schemas.explained_calls import explained
+from hearth.schemas.call_errors import explained
 from hearth.version import VERSION
 
 if TYPE_CHECKING:
@@ -199,7 +199,7 @@ def parse_program(text: str, knowledge: Knowledge | None = None) -> Program:
     """Read a program from text, with canonical names by the grammar (thesis 2.3.3).
 
     The text is an optional title and description, then one instruction a line: `[Action] <object> (instance)`.
-    `schemas.syntax.parse_program` and `kb.grammar.check` return faults instead of raising them.
+    `schemas.syntax.parse_program` and `kb.action_grammar.check` return faults instead of raising them.
 
     Raises:
         HearthError: all faults of syntax and grammar, with line and column.
@@ -212,7 +212,7 @@ def parse_program(text: str, knowledge: Knowledge | None = None) -> Program:
             ...
         hearth.schemas.diagnostics.HearthError: 1:2: UNKNOWN_ACTION: unknown action `Flie` (did you mean `Lie`?)
     """
-    from hearth.kb.grammar import check
+    from hearth.kb.action_grammar import check
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.syntax import parse_program
 

@@ -12,7 +12,7 @@ from hearth.grounding.preconditions.precondition_inference import infer as infer
 from hearth.homes.library import load_graph as load_graph
 from hearth.homes.procedural.home_generator import generate as generate
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.understanding import understand as understand
+from hearth.kb.language.step_understanding import understand as understand
 from hearth.kb.tools.find import Query as Query
 from hearth.kb.tools.find import find as find
 from hearth.pipelines.build import build as build
@@ -33,7 +33,7 @@ from hearth.simulation.engine import run as run
 from hearth.simulation.env import Env as Env
 from hearth.simulation.goal_text import read_goal as read_goal
 from hearth.simulation.goals import Progress as Progress
-from hearth.simulation.holds import holds as holds
+from hearth.simulation.literal_truth import holds as holds
 from hearth.simulation.world.edit import edit as edit
 from hearth.simulation.world.home import Home as Home
 from hearth.simulation.world.world import World as World

@@ -13,7 +13,7 @@ from random import Random
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, HOLDS, Literal, Name
 from hearth.simulation.env import Tick
-from hearth.simulation.holds import Candidates, candidates
+from hearth.simulation.literal_truth import Candidates, candidates
 from hearth.simulation.world.home import Home
 
 Predicate = Literal[Name]

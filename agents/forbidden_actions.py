@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from hearth.schemas.goals import Goal
 from hearth.simulation.actions.legal import Legal
-from hearth.simulation.holds import nodes
+from hearth.simulation.literal_truth import nodes
 from hearth.simulation.world.home import Home
 
 

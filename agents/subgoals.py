@@ -9,7 +9,7 @@ from hearth.agents.belief import Belief
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import STATE_ID
-from hearth.simulation.holds import Candidates, binary, candidates
+from hearth.simulation.literal_truth import Candidates, binary, candidates
 from hearth.simulation.observation.views import View
 from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.home import Home
@@ -44,7 +44,7 @@ class Wanted:
     Attributes:
         part: its number in the goal.
         count: how often it must hold.
-        candidates: the nodes of which it may hold (see `simulation.holds`).
+        candidates: the nodes of which it may hold (see `simulation.literal_truth`).
         last: it is about the agent itself, and comes after the others; 2 if it ends in rest.
     """
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.analysis.corpus_figures import blank, saved
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,7 +4,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from hearth.datasets.damage import reading
+from hearth.datasets.damage_faults import reading
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.graph_sizes import graph_sizes
 from hearth.pipelines.augment import ORIGINAL
@@ -82,7 +82,7 @@ def figures(dataset: Path) -> dict[str, Any]:
     Raises:
         HearthError: MISSING_FILE, without a dataset; DAMAGED_FILE, with a damaged one.
     """
-    from hearth.datasets.damage import using
+    from hearth.datasets.damage_faults import using
     from hearth.datasets.dataset import Dataset
 
     data = Dataset.open(dataset)

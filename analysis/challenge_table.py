@@ -17,7 +17,7 @@ from hearth.challenges.metrics import mean, of_tasks, paired, speedups, summary
 from hearth.challenges.result_files import Results
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 

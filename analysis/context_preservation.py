@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.cases import rerun
+from hearth.datasets.format.case_rows import rerun
 from hearth.datasets.format.codecs import bindings_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened

@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 
 from hearth.analysis import corpus_statistics as numbers
 from hearth.analysis.corpus_statistics import Corpus, Similarities
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.storage.files import replacing
 from hearth.storage.names import inside
 

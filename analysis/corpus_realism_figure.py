@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.analysis import corpus_realism as numbers
 from hearth.analysis.corpus_figures import saved
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from hearth.datasets.format.cases import environment_of
+from hearth.datasets.format.case_rows import environment_of
 from hearth.datasets.format.codecs import program_of
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample, unplaceable
@@ -25,7 +25,7 @@ from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.engine.workers import Workers
 from hearth.pipelines.readers import release
-from hearth.pipelines.readers.item import Item
+from hearth.pipelines.readers.reader_items import Item
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.row_types import DifferenceRow, Row

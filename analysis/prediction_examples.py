@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened

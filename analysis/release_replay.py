@@ -6,13 +6,13 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers import release
 from hearth.pipelines.readers.graph_pairs import read_pair
-from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph_change import Change
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
@@ -118,7 +118,7 @@ def _read(
     if isinstance(text, Diagnostic) or isinstance(graphs, Diagnostic):
         return tuple(fault for fault in (text, graphs) if isinstance(fault, Diagnostic))
     written, faults = parse_program(text, place)
-    program, wrong = grammar.check(written, knowledge, place, text.split("\n"))
+    program, wrong = action_grammar.check(written, knowledge, place, text.split("\n"))
     return (*faults, *wrong) or (program, graphs)
 
 

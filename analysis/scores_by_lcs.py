@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hearth.analysis.corpus_figures import blank, saved
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.scoring.evaluate import METRICS, Scored
 
 BANDS = (0.25, 0.5, 0.65, 0.8, 0.95)

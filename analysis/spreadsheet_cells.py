@@ -3,7 +3,7 @@
 import io
 from collections.abc import Iterable
 
-from hearth.storage.csv_files import rows_writer
+from hearth.storage.csv_files import rows_writer, safe_cell  # noqa: F401 safe_cell was here in 0.2
 
 
 def original_cell(text: str) -> str:

@@ -16,7 +16,7 @@ import orjson
 
 from hearth.grounding.binding import Binding, bind
 from hearth.homes import library
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
@@ -46,7 +46,7 @@ def release() -> tuple[tuple[dict[str, Any], Program], ...]:
         names = sorted(n for n in sample.namelist() if "/executable_programs/" in n and n.endswith(".txt"))
         for name in names[:: max(1, len(names) // PROGRAMS)]:
             graphs = name.replace("executable_programs", "init_and_final_graphs").replace(".txt", ".json")
-            program, _ = grammar.check(parse_program(sample.read(name).decode(), name)[0], default())
+            program, _ = action_grammar.check(parse_program(sample.read(name).decode(), name)[0], default())
             found.append((orjson.loads(sample.read(graphs))["init_graph"], program))
     return tuple(found)
 
@@ -72,7 +72,7 @@ def unbound(length: int = 12) -> tuple[tuple[World, Program], ...]:
     found: list[tuple[World, Program]] = []
     for row in rows:
         with suppress(HearthError):
-            program, faults = grammar.check(parse_program(TITLE + row["Answer.program"])[0], default())
+            program, faults = action_grammar.check(parse_program(TITLE + row["Answer.program"])[0], default())
             if len(program.steps) == length and not faults:
                 found += [(world, program) for world in worlds if isinstance(bind(program, world), Binding)]
     return tuple(found)

@@ -36,7 +36,7 @@ from hearth.rendering.people.motion import Frame, frames
 from hearth.rendering.rays.ray_casting import Caster
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.schemas.failures import Failure
-from hearth.schemas.libraries import library as loaded
+from hearth.schemas.optional_libraries import library as loaded
 from hearth.schemas.rng import rng
 from hearth.simulation.world.home import Home
 

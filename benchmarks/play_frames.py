@@ -21,7 +21,7 @@ from hearth.challenges.tasks import Task
 from hearth.kb.loading.load import default
 from hearth.web import sessions
 from hearth.web.play import start_trial, trial_address
-from hearth.web.play.trials import trial
+from hearth.web.play.play_trials import trial
 from hearth.web.store import Store, default_url
 
 FLAGS = ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader"]

@@ -25,7 +25,7 @@ from websockets.asyncio.client import connect
 from hearth.kb.loading.load import default
 from hearth.web import sessions
 from hearth.web.play import start_trial
-from hearth.web.play.trials import published, trial
+from hearth.web.play.play_trials import published, trial
 from hearth.web.store import Store, default_url
 
 ROOT = Path(__file__).resolve().parents[1]

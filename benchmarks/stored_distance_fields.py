@@ -15,7 +15,7 @@ from time import process_time
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.simulation.motion import stored_ways
+from hearth.simulation.motion import stored_distance_fields
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.navigation import Ways
 from hearth.simulation.world.home import Home
@@ -31,14 +31,14 @@ def measured(name: str) -> tuple[int, float, float, float]:
     floor, every = here.ground.floor, here.ground.every()
     taken: dict[str, list[float]] = {"made": [], "read": []}
     with tempfile.TemporaryDirectory() as folder:
-        file = stored_ways.store(here.ground.ways, every, Path(folder))
+        file = stored_distance_fields.store(here.ground.ways, every, Path(folder))
         for _ in range(TIMES):
             for how, seconds in taken.items():
                 ways = Ways(floor)
                 assert ways.graph.nnz  # both need it
                 begun = process_time()
                 if how == "read":
-                    ways.stored = stored_ways.StoredWays(ways, Path(folder)).field
+                    ways.stored = stored_distance_fields.StoredWays(ways, Path(folder)).field
                 fields = [ways.field(each) for each in every]
                 seconds.append(process_time() - begun)
                 assert len(fields) == len(every)

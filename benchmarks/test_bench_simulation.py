@@ -19,7 +19,7 @@ from oracles.world import World as PlainWorld
 
 from hearth.analysis.release_replay import replay
 from hearth.grounding.binding import Binding, bind
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.loading.load import default
 from hearth.schemas.graph import Edge, Node, from_release
 from hearth.schemas.program import ObjectRef, Step
@@ -171,7 +171,7 @@ def test_replay_reference(benchmark):
                 file = name.replace("executable_programs", "init_and_final_graphs").replace(".txt", ".json")
                 graphs = orjson.loads(sample.read(file))
                 world, end = (PlainWorld(from_release(graphs[key]), release=True) for key in ENDS)
-                program, _ = grammar.check(parse_program(sample.read(name).decode(), name)[0], default())
+                program, _ = action_grammar.check(parse_program(sample.read(name).decode(), name)[0], default())
                 assert reference.run(world, program, OPTIONS["release"][1]) is None
                 assert (world.edges(), world.state_pairs()) == (end.edges(), end.state_pairs())
 

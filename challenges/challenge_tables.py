@@ -17,7 +17,7 @@ from hearth.challenges.episodes import Known, Record
 from hearth.challenges.helper_beliefs import beliefs
 from hearth.challenges.result_files import Results, episode_data
 from hearth.challenges.tasks import Task
-from hearth.datasets.damage import reading
+from hearth.datasets.damage_faults import reading
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import SQL
 from hearth.schemas.agent_messages import read as read_message

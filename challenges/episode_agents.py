@@ -20,7 +20,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
-from hearth.schemas.libraries import lacking, remedy
+from hearth.schemas.optional_libraries import lacking, remedy
 from hearth.storage.files import file_digest
 
 NOBODY = "none"

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from hearth.challenges.household_definition import home_named, share_of
 from hearth.challenges.household_starts import settled
 from hearth.grounding.environments.sampling import sample
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
 from hearth.schemas.goals import Goal

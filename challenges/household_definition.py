@@ -13,7 +13,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.home import Home
 

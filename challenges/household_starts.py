@@ -15,7 +15,7 @@ from hearth.schemas.literals import HANDS, HOLDS, Literal, Name
 from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.goals import Progress
-from hearth.simulation.holds import candidates
+from hearth.simulation.literal_truth import candidates
 from hearth.simulation.motion import positions
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, mask_of

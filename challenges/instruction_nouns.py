@@ -10,7 +10,7 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import AGENT, Name
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 Counted = tuple[tuple[Name, int], ...]
 """Names of things, each with how many of it; 0 for every one."""

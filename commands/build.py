@@ -11,7 +11,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.program_name import program_name
-from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.reading_modes import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.pipelines.build import Funnel

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.commands import grouped_faults, inputs, output
 from hearth.commands.grouped_faults import in_order
-from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.reading_modes import Fuzzy
 from hearth.pipelines.checks.text_checks import Checked, check_text, warnings_of
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.text_decoding import decode
 from hearth.storage.input_files import placed, read_input
 
 if TYPE_CHECKING:
@@ -80,10 +80,10 @@ def _program_text(path: Path, name: str) -> str | None:
     Raises:
         HearthError: it can't be read.
     """
-    from hearth.pipelines.readers import text
-    from hearth.pipelines.readers.recognise import recognise
+    from hearth.pipelines.readers import program_text
+    from hearth.pipelines.readers.recognition_by_content import recognise
 
-    if not path.is_file() or [entry.reader for entry in recognise(path, name)] != [text.NAME]:
+    if not path.is_file() or [entry.reader for entry in recognise(path, name)] != [program_text.NAME]:
         return None
     found = decode(read_input(path), name)
     return found if isinstance(found, str) else None
@@ -120,7 +120,7 @@ def check_file(
 def _check_programs(
     given: Iterable[inputs.Given | Reject], name: str, knowledge: Knowledge, *, affordances: bool, lint: bool
 ) -> Checked:
-    from hearth.kb import grammar
+    from hearth.kb import action_grammar
     from hearth.storage.rejects import Reject
 
     programs = steps = 0
@@ -135,7 +135,7 @@ def _check_programs(
             continue
         programs, steps = programs + 1, steps + len(found.program.steps)
         faults += found.faults
-        faults += grammar.affordances(found.program, knowledge, found.place) if affordances else ()
+        faults += action_grammar.affordances(found.program, knowledge, found.place) if affordances else ()
         warnings += found.warnings
         warnings += warnings_of(found.program, knowledge, found.place, []) if lint else ()
     return Checked(name, programs, steps, tuple(faults), tuple(warnings))

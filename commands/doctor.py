@@ -14,7 +14,7 @@ from pathlib import Path
 
 from hearth.commands import output
 from hearth.rendering.film.stderr_suppression import quiet
-from hearth.schemas.libraries import lacking, remedy
+from hearth.schemas.optional_libraries import lacking, remedy
 
 LIBRARIES = {
     "libusb-1.0.so.0": "libusb-1.0-0",

@@ -32,7 +32,7 @@ def show(
     """
     from hearth.commands.inputs import read_knowledge
     from hearth.homes import library
-    from hearth.models.films.clip_tables import classifier
+    from hearth.models.films.clip_result_tables import classifier
     from hearth.models.films.film_files import ARRAYS, film_file
     from hearth.models.films.film_input import read_masks, read_pictures
     from hearth.models.films.film_prediction import show_film

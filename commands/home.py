@@ -300,8 +300,8 @@ def ways(names: list[str] | None = None, homes: Path | None = None, workers: int
     from hearth.commands.progress_line import bar
     from hearth.homes import library
     from hearth.kb.loading.load import default
-    from hearth.simulation.motion.making_ways import Wanted, make
-    from hearth.simulation.motion.stored_ways import folder
+    from hearth.simulation.motion.distance_field_jobs import Wanted, make
+    from hearth.simulation.motion.stored_distance_fields import folder
 
     chosen = names or library.names(homes)
     wanted = [Wanted(name, library.load_graph(name, default(), homes), default, folder()) for name in chosen]

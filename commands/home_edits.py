@@ -37,7 +37,7 @@ def edited(
         HearthError: an order can't be read, names an unknown node or class, or contradicts the knowledge.
     """
     from hearth.homes.from_graph.layout_from_boxes import has_geometry
-    from hearth.homes.object_repositioning import posed
+    from hearth.homes.moved_boxes import posed
     from hearth.simulation.world.edit import edit, free_id
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.reading_modes import Fuzzy
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,7 +47,7 @@ def read_knowledge(
 
 def _with_classes(known: Knowledge, name: str, graph: Path | None, homes: Path | None) -> Knowledge:
     from hearth.homes import library
-    from hearth.kb.graph_classes import with_classes
+    from hearth.kb.knowledge_with_graph_classes import with_classes
 
     graph = graph or library.given_file(name)
     found = library.graph_of(graph, known) if graph is not None else library.load_graph(name, known, homes)
@@ -201,8 +201,8 @@ def read_programs(
     """
     from hearth.commands import output
     from hearth.pipelines import ingest
-    from hearth.pipelines.readers.columns import FieldColumns, read_columns, shown
-    from hearth.pipelines.readers.item import Source
+    from hearth.pipelines.readers.field_columns import FieldColumns, read_columns, shown
+    from hearth.pipelines.readers.reader_items import Source
     from hearth.storage.rejects import Reject
 
     tables: dict[str, FieldColumns] = {}
@@ -226,7 +226,7 @@ def name_of(file: Path) -> str:
 def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     from dataclasses import replace
 
-    from hearth.kb import grammar
+    from hearth.kb import action_grammar
     from hearth.kb.language.numbered_steps import parse_steps
     from hearth.pipelines.readers import plans
     from hearth.schemas.syntax import parse_program
@@ -241,7 +241,7 @@ def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
         faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])
         return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own)
     written, syntax = parse_program(text, place)
-    program, wrong = grammar.check(written, known, place, text.split("\n"))
+    program, wrong = action_grammar.check(written, known, place, text.split("\n"))
     bad = {fault.line for fault in wrong}
     kept = [number for number, line in enumerate(program.lines) if line not in bad]
     steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(places.line(program.lines[n]) for n in kept)
@@ -326,7 +326,7 @@ def read_goals(goals: Sequence[str], home: Home) -> Goal:
 def _goal_text(file: str) -> Any:
     from pathlib import Path
 
-    from hearth.schemas.decoding import decode
+    from hearth.schemas.text_decoding import decode
     from hearth.storage.input_files import read_input
 
     return decode(read_input(Path(file)), file)
@@ -334,7 +334,7 @@ def _goal_text(file: str) -> Any:
 
 def _goal(text: Any, file: str) -> Any:
     """Return text as it is; a text that begins with a brace as JSON."""
-    from hearth.pipelines.readers.document import parsed
+    from hearth.pipelines.readers.json_documents import parsed
     from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.storage.rejects import Reject
 

@@ -88,23 +88,23 @@ def _statistics(dataset: Any, as_json: bool) -> None:
 def _of_films(number: str, dataset: Any, models: Sequence[str], beam: int, seed: int, as_json: bool) -> None:
     """Tables 4.2, 4.3, its part (b), and 4.6."""
     from hearth.commands.progress_line import bar
-    from hearth.models.films import clip_tables, film_tables
+    from hearth.models.films import clip_result_tables, film_tables
 
     with bar("films") as seen:
-        if number in clip_tables.TABLES:
-            rows: Sequence[Any] = clip_tables.clip_table(number, dataset, models, seed)
+        if number in clip_result_tables.TABLES:
+            rows: Sequence[Any] = clip_result_tables.clip_table(number, dataset, models, seed)
         else:
             rows = film_tables.film_table(dataset, models, seed, beam=beam, seen=seen)
     output.emit(rows) if as_json else _print_films(number, rows)
 
 
 def _print_films(number: str, rows: Sequence[Any]) -> None:
-    from hearth.models.films import clip_tables, film_tables
+    from hearth.models.films import clip_result_tables, film_tables
 
-    if number in clip_tables.TABLES:
-        shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
+    if number in clip_result_tables.TABLES:
+        shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_result_tables.COLUMNS),
                   row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
-        output.table(["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"], shown)
+        output.table(["method", "of", "homes", *clip_result_tables.COLUMNS, "error", "clips", "seeds"], shown)
     else:
         shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
                   row.spread, row.films, row.seeds or None] for row in rows]  # fmt: skip

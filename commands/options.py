@@ -11,7 +11,7 @@ from typing import Annotated, Any, get_origin
 
 import typer
 
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 _Entries = dict[str, dict[str, Any]]
 

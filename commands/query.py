@@ -69,7 +69,7 @@ def query(
 
 def _document(dataset: Dataset, text: str) -> None:
     """Print an answer as JSON; a fault that comes after some rows goes to the standard error, for JSON has begun."""
-    from hearth.datasets.written_answers import document
+    from hearth.datasets.query_output import document
 
     begun = False
     try:
@@ -94,7 +94,7 @@ def _table(dataset: Dataset, text: str, rows: int) -> None:
 
 def _write(dataset: Dataset, text: str, files: Sequence[Path | None], separator: str) -> bool:
     """Write the answer as it was asked for, if it was: into files, or as separated lines to the terminal."""
-    from hearth.datasets.written_answers import write_answer, write_separated
+    from hearth.datasets.query_output import write_answer, write_separated
 
     out, parquet = files
     for file, form in ((parquet, ".parquet"), (out, {"": "", ",": ".csv", "\t": ".tsv"}[separator])):
@@ -108,6 +108,6 @@ def _write(dataset: Dataset, text: str, files: Sequence[Path | None], separator:
 
 def _cell(value: Any) -> Any:
     """Text for a cell: one line, nested values as JSON; whole numbers as they are, for many are ids."""
-    from hearth.datasets.written_answers import line_of
+    from hearth.datasets.query_output import line_of
 
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else line_of(value)

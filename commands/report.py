@@ -20,7 +20,7 @@ def report(
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
-    from hearth.datasets.report.write import write_report
+    from hearth.datasets.report.report_writer import write_report
 
     with bar("shares of programs") as seen:
         programs = write_report(Dataset.open(dataset), out, workers, seen, replays)

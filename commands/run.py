@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from hearth.commands import output
 from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
 from hearth.commands.run_output import Outcome, document, failed, show
-from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.reading_modes import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.schemas.program import Program

@@ -9,8 +9,8 @@ from hearth.schemas.literals import HANDS
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 
 if TYPE_CHECKING:
-    from hearth.schemas.change import Change
     from hearth.schemas.graph import EnvironmentGraph, Node
+    from hearth.schemas.graph_change import Change
 
 _QUIET = frozenset({"CLOSE", "FACING"})
 """Relations that follow from places; they are not listed."""
@@ -53,7 +53,7 @@ class Additions(NamedTuple):
 
 def additions(before: EnvironmentGraph, after: EnvironmentGraph) -> Additions:
     """Return the additions of `after` to `before`, and the other changes."""
-    from hearth.schemas.change import encode
+    from hearth.schemas.graph_change import encode
     from hearth.schemas.vocabulary import OPPOSITE
 
     change = encode(before, after)

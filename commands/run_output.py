@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program, Step
     from hearth.simulation.engine import Execution
-    from hearth.simulation.explain import Check
     from hearth.simulation.motion.base_pose import HandAndBasePose
+    from hearth.simulation.step_explanations import Check
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
 
@@ -162,7 +162,7 @@ def _print_changes(before: World, after: World) -> None:
 
 def _print_fault(execution: Execution, steps: tuple[Step, ...]) -> None:
     """Print the checks of the steps that were to be done, the one that failed, and the facts in the world."""
-    from hearth.simulation.explain import facts
+    from hearth.simulation.step_explanations import facts
 
     failure = execution.failure
     assert failure is not None
@@ -175,7 +175,7 @@ def _print_fault(execution: Execution, steps: tuple[Step, ...]) -> None:
 
 
 def _checks(execution: Execution, tick: int, step: Step) -> list[Check]:
-    from hearth.simulation.explain import checks, checks_until
+    from hearth.simulation.step_explanations import checks, checks_until
 
     world, failure = execution.worlds[tick], execution.failure
     if failure is None or tick != failure.tick:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import typer
 
 from hearth.commands import inputs, output, score_output
-from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.reading_modes import Fuzzy
 
 if TYPE_CHECKING:
     from hearth.scoring.predictions import Pair

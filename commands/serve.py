@@ -11,7 +11,7 @@ from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 
 def serve(

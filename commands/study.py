@@ -129,9 +129,9 @@ def _simulated(study: str, out: Path, seed: int, drop_outs: int, workers: int) -
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
     from hearth.storage.parallel import Seen
-    from hearth.studies.simulate import Crowd
     from hearth.studies.simulated_study import simulated_study
     from hearth.studies.study_file import SHIPPED, named
+    from hearth.studies.study_simulation import Crowd
 
     files = None if study in SHIPPED else Path(study).parent
     with ExitStack() as stack:
@@ -167,8 +167,8 @@ def prepare(
     """
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
-    from hearth.studies.prepare import prepared
     from hearth.studies.study_file import named
+    from hearth.studies.study_preparation import prepared
 
     found = named(study)
     shown = None if people is None else _opened(people, "", found.films.study if found.films else "")
@@ -290,7 +290,7 @@ def _opened(source: Path, store: str, study: str) -> Collected:
 
     if (source / EVENTS).is_file() and not store:
         return opened(source, default)
-    from hearth.schemas.libraries import library
+    from hearth.schemas.optional_libraries import library
 
     library("sqlalchemy")
     from hearth.web.study.study_store import opened_store

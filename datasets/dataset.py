@@ -8,23 +8,23 @@ from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hearth.datasets.damage import reading, refused_question, too_slow, using
+from hearth.datasets.consistent_reads import steady, version
+from hearth.datasets.damage_faults import reading, refused_question, too_slow, using
 from hearth.datasets.file_ranges import reading_between
 from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, define_as, describe, without_zones
 from hearth.datasets.format.ids import names_of
-from hearth.datasets.program_entries import Entry, Run
 from hearth.datasets.published_manifest import published_manifest
-from hearth.datasets.questions import check_question
-from hearth.datasets.steady import steady, version
+from hearth.datasets.published_program import Entry, Run
+from hearth.datasets.read_only_sql import check_question
 from hearth.datasets.stored_homes import StoredHome
+from hearth.schemas.call_errors import explained
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained_calls import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.published_rows import StoredRunRow
 from hearth.schemas.short_repr import cut
 from hearth.schemas.tables import TABLES
 from hearth.storage.manifest import NAME
-from hearth.storage.time_limits import TimeLimit
+from hearth.storage.query_time_limit import TimeLimit
 
 if TYPE_CHECKING:
     from hearth.datasets.tensors import Tensors
@@ -77,8 +77,8 @@ class Dataset:
         Raises:
             HearthError: the path is not a dataset, or a newer version wrote it, or it is incomplete.
         """
-        from hearth.storage.exchange import present
-        from hearth.storage.fetching import fetched
+        from hearth.storage.folder_exchange import present
+        from hearth.storage.url_fetching import fetched
 
         folder = fetched(path)
         if not (folder / NAME).exists() and (present(folder / "publish") / NAME).exists():

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hearth.datasets.damage import using
+from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import absent_tables, earlier, reading
 from hearth.datasets.format.ids import OURS

@@ -11,7 +11,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.codecs import Bindings, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.tensors import GraphSample, Tensors, to_tensors
-from hearth.schemas.explained_calls import explained
+from hearth.schemas.call_errors import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.short_repr import brief

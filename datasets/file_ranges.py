@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hearth.datasets.steady import version
+from hearth.datasets.consistent_reads import version
 from hearth.schemas.tables import KEYS
 from hearth.storage.databases import limited, open_database, pattern_of, quoted, without_patterns
 

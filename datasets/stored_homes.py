@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.graph_change import WorkingGraph, in_states
 from hearth.schemas.short_repr import brief
 
 

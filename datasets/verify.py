@@ -7,7 +7,7 @@ from itertools import islice
 from math import ceil
 from pathlib import Path
 
-from hearth.datasets.damage import reading
+from hearth.datasets.damage_faults import reading
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_homes import own_homes
 from hearth.datasets.dataset_knowledge import other_base
@@ -310,7 +310,7 @@ class Shares(Collection[tuple[str, list[str]]]):
 
 
 def _replay(job: tuple[str, list[str]]) -> Wrong:
-    from hearth.datasets.format.cases import difference_on_replay
+    from hearth.datasets.format.case_rows import difference_on_replay
 
     folder, names = job
     dataset, homes = opened(folder)

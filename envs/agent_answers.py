@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 from hearth.agents.protocol import Choice
 from hearth.envs.json_observations import instruction_text, seen_instances
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.schemas.agent_messages import ASK, TELL, Message
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -22,7 +22,7 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import normal_name, parse_steps
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.engine import act
-from hearth.simulation.observation.as_seen import as_seen
+from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.observation.views import View
 from hearth.simulation.world.bits import indices
 

@@ -11,9 +11,9 @@ from typing import Any
 
 from hearth.envs.agent_answers import WAIT, by_text
 from hearth.envs.text_protocols import Protocol
-from hearth.kb.language.forms.commands import command
-from hearth.kb.language.forms.react import act_of
-from hearth.kb.language.understanding import understand_exactly
+from hearth.kb.language.forms.alfworld_commands import command
+from hearth.kb.language.forms.react_logs import act_of
+from hearth.kb.language.step_understanding import understand_exactly
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step

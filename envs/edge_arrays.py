@@ -11,7 +11,7 @@ from hearth.schemas.vocabulary import RELATION_ID, RELATIONS
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import CLOSE, FACING, INSIDE, ON, Moved
+from hearth.simulation.world.moved_edges import CLOSE, FACING, INSIDE, ON, Moved
 from hearth.simulation.world.world import World
 
 Edges = NDArray[np.int64]

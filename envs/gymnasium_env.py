@@ -13,7 +13,7 @@ from hearth.envs.session import MOST_SEED, Session, Setting
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
 

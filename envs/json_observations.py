@@ -13,8 +13,8 @@ from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import print_step
 from hearth.simulation.goal_trace import acts
-from hearth.simulation.holds import Candidates, nodes
-from hearth.simulation.observation.as_seen import as_seen
+from hearth.simulation.literal_truth import Candidates, nodes
+from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.observation.views import LastAction, Pose, View
 from hearth.simulation.world.home import Home
 

@@ -17,7 +17,7 @@ from hearth.envs.render_modes import MODES, PLAN, Pictures
 from hearth.envs.session import MOST_SEED, MOST_TICKS, Opening, Session, Setting
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 if TYPE_CHECKING:
     from gymnasium.spaces import Dict, Space

@@ -11,7 +11,7 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 PROTOCOLS = {"hearth-text/1": "hearth_text_1.yaml"}
 """The file of each protocol."""

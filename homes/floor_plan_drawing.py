@@ -12,7 +12,7 @@ from hearth.homes.plans.layout import Layout
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Spot
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 SCALE = 90
 """Pixels a metre."""

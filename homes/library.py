@@ -14,12 +14,12 @@ from hearth.homes.node_defaults import filled
 from hearth.homes.plans.layout import Layout, read
 from hearth.homes.scene_graph import scene
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
 from hearth.schemas.graph_wrappers import graph_in
 from hearth.schemas.numbers import number_of
+from hearth.schemas.text_decoding import decode
 from hearth.storage.csv_files import CsvTable
 from hearth.storage.input_files import read_input
 

@@ -15,7 +15,7 @@ from hearth.homes.geometry import Rect
 from hearth.homes.plans.layout import Layout
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 HEAD = 0.9
 """Metres above each drawing, for its title and the legend."""

@@ -9,7 +9,7 @@ import numpy as np
 from hearth.challenges.episode_arrays import EpisodeArrays, episodes_of
 from hearth.challenges.result_files import Results
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.version import DISTRIBUTION, VERSION
 
 

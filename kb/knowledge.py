@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
 
+from hearth.kb.action_groups import groups, relation_of, state_of, tool_of
 from hearth.kb.formula import Effect, Formula, Term
-from hearth.kb.groups import groups, relation_of, state_of, tool_of
 from hearth.kb.knowledge_records import (
     Action,
     Association,
@@ -139,7 +139,7 @@ class Knowledge:
         }
 
     def group(self, name: str) -> frozenset[str]:
-        """The names of the actions of a group (see `kb.groups`).
+        """The names of the actions of a group (see `kb.action_groups`).
 
         Raises:
             KeyError: the group does not exist.

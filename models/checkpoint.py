@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.storage.files import drop_temporary, file_digest, value_digest, write_bytes, write_json
 from hearth.storage.input_files import read_input
 from hearth.version import ACTION_SET, VERSION

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 Batch = TypeVar("Batch")
 

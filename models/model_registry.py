@@ -248,7 +248,7 @@ def _class(entry: Entry) -> Any:
     try:
         return getattr(import_module(f"hearth.models.{module}"), name)
     except ModuleNotFoundError as error:
-        from hearth.schemas.libraries import library
+        from hearth.schemas.optional_libraries import library
 
         library(str(error.name))
         raise

@@ -11,7 +11,7 @@ from typing import Any
 import orjson
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened

@@ -235,14 +235,14 @@ def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen
         most: test executions of 5.2 to 5.4.
         seen: reports executions.
     """
-    from hearth.models.films import clip_tables, film_tables
+    from hearth.models.films import clip_result_tables, film_tables
     from hearth.models.sketches import sketch_tables
     from hearth.models.text import text_tables
 
     models: list[Any] = [*plan.given, *(each.folder(out) for each in plan.needed(seeds))]
     data = Dataset.open(dataset)
-    if plan.table in clip_tables.TABLES:
-        return clip_tables.clip_table(plan.table, data, models)
+    if plan.table in clip_result_tables.TABLES:
+        return clip_result_tables.clip_table(plan.table, data, models)
     if plan.table == film_tables.TABLE:
         return film_tables.film_table(data, models, seen=seen)
     if plan.table in sketch_tables.TABLES:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.codecs import program_of
 from hearth.datasets.format.sketch_choice import ANNOTATED, sketches_query
 from hearth.datasets.format.splits import RULES

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache
 
-from hearth.datasets.format.cases import environment_of, rerun, run_row
+from hearth.datasets.format.case_rows import environment_of, rerun, run_row
 from hearth.datasets.format.codecs import (
     condition_rows,
     conditions_of,

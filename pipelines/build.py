@@ -20,14 +20,14 @@ from hearth.pipelines.engine.user_overlays import kept_overlays, overlays
 from hearth.pipelines.render import no_pictures
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import lacking, remedy
+from hearth.schemas.optional_libraries import lacking, remedy
 from hearth.schemas.short_repr import brief
 from hearth.schemas.stage_rows import RejectedRow
-from hearth.storage.fetching import fetched
 from hearth.storage.lock import locked
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts
 from hearth.storage.stores import working
+from hearth.storage.url_fetching import fetched
 
 FIRST = ("crowd/descriptions.csv", "crowd/programs.csv")
 """The first part of the embedded corpus, in `data_raw`: with faults put into it."""

@@ -21,19 +21,19 @@ from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import (
     crowd,
     enclosed_json,
-    ours,
+    json_records,
     plans,
-    published,
+    program_tables,
+    program_text,
+    published_dataset,
     release,
-    scenes,
+    scene_graphs,
     sketches,
-    spreadsheets,
-    text,
     yaml_documents,
 )
-from hearth.pipelines.readers.columns import Asked, FieldColumns, read_columns, shown
-from hearth.pipelines.readers.item import Item, Source, read_refused, refused
-from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
+from hearth.pipelines.readers.field_columns import Asked, FieldColumns, read_columns, shown
+from hearth.pipelines.readers.reader_items import Item, Source, read_refused, refused
+from hearth.pipelines.readers.recognition_by_content import DOCUMENT, LISTED, TEXTS, Recognised, recognise
 from hearth.pipelines.readers.scanning_time import SECONDS, ScanningTime
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -48,38 +48,38 @@ from hearth.storage.rejects import Reject, as_text
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     release.NAME: release.scan,
     crowd.NAME: crowd.scan,
-    text.NAME: text.scan,
+    program_text.NAME: program_text.scan,
     plans.NAME: plans.scan,
     TEXTS: plans.scan_list,
-    ours.NAME: ours.scan,
-    LISTED: ours.scan_list,
-    DOCUMENT: ours.scan_document,
-    spreadsheets.NAME: spreadsheets.scan,
+    json_records.NAME: json_records.scan,
+    LISTED: json_records.scan_list,
+    DOCUMENT: json_records.scan_document,
+    program_tables.NAME: program_tables.scan,
     yaml_documents.NAME: yaml_documents.scan,
     enclosed_json.NAME: enclosed_json.scan,
-    published.NAME: published.scan,
+    published_dataset.NAME: published_dataset.scan,
     sketches.NAME: sketches.scan,
-    scenes.NAME: scenes.scan,
+    scene_graphs.NAME: scene_graphs.scan,
 }
 """The function that finds the records of a file or folder, by reader."""
 
-_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME, yaml_documents.NAME, enclosed_json.NAME})
+_NAMED = frozenset({json_records.NAME, LISTED, DOCUMENT, program_tables.NAME, yaml_documents.NAME, enclosed_json.NAME})
 """Readers of records whose fields may have other names."""
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
     crowd.NAME: lambda item, salt: [crowd.read(item, salt)],
-    text.NAME: lambda item, salt: [text.read(item)],
+    program_text.NAME: lambda item, salt: [program_text.read(item)],
     plans.NAME: lambda item, salt: [plans.read(item)],
-    ours.NAME: ours.read,
-    published.NAME: lambda item, salt: published.read(item),
+    json_records.NAME: json_records.read,
+    published_dataset.NAME: lambda item, salt: published_dataset.read(item),
     sketches.NAME: lambda item, salt: [sketches.read(item)],
-    scenes.NAME: lambda item, salt: [scenes.read(item)],
+    scene_graphs.NAME: lambda item, salt: [scene_graphs.read(item)],
     "refused": lambda item, salt: [read_refused(item)],
 }
 """The function that reads one record, by reader. To add one: a file in `readers/`, a row here and in `SCANNERS`."""
 
-WEIGHTS = {text.NAME: 1, plans.NAME: 4, ours.NAME: 4, release.NAME: 256, scenes.NAME: 1024}
+WEIGHTS = {program_text.NAME: 1, plans.NAME: 4, json_records.NAME: 4, release.NAME: 256, scene_graphs.NAME: 1024}
 """The weight of a record in filling a partition, by reader; others weigh `_USUAL`."""
 
 _USUAL = 64
@@ -112,8 +112,8 @@ def items(
             yield label, refused(entry.inside, entry.refusal)
             continue
         asked = Asked(given)
-        if entry.reader == spreadsheets.NAME and found_columns is not None:
-            found_columns[entry.inside] = spreadsheets.columns_of(entry.path, given)
+        if entry.reader == program_tables.NAME and found_columns is not None:
+            found_columns[entry.inside] = program_tables.columns_of(entry.path, given)
         elif entry.reader in _NAMED and found_columns is not None:
             found_columns[entry.inside] = asked.found  # filled as its records are read
         checked = repeated.first(scanned(entry, asked), entry.reader, entry.inside)
@@ -253,7 +253,7 @@ def process(record: Found, context: Context) -> list[IngestedRow | Reject]:
     found = read(record["item"], record["source"], context.salt)
     for row in found:
         if not isinstance(row, Reject) and row["kind"] == "scene":
-            scenes.check(row, knowledge(context.settings))
+            scene_graphs.check(row, knowledge(context.settings))
     return found
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
-from hearth.datasets.format.cases import difference_on_replay
+from hearth.datasets.format.case_rows import difference_on_replay
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.format.ids import STAMP, activity_id
 from hearth.datasets.format.splits import BY_CASE, SHARES, share_of

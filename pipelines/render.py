@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from hearth.datasets.format.cases import rerun
+from hearth.datasets.format.case_rows import rerun
 from hearth.pipelines.engine import clip_cases, demonstration_cases
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.split_assignment import programs_of
 from hearth.pipelines.engine.stage import NOTE, Job, Partition, Plan, Stage
 from hearth.pipelines.engine.user_overlays import overlays, overlays_used
-from hearth.schemas.libraries import lacking
+from hearth.schemas.optional_libraries import lacking
 from hearth.schemas.row_types import PinholeRow, TrackRow
 from hearth.schemas.stage_rows import CaseRow, ClippedRow, DemonstratedRow, FilmedRow, RenderedRow
 from hearth.schemas.tables import CLIPPED, DEMONSTRATED, FILMED, RENDERED

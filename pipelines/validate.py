@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 from hearth.datasets.format.codecs import binding_rows, graph_of, named, step_rows, warning_row
 from hearth.grounding.binding import bind_stored
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.numbered_steps import parse_steps
-from hearth.pipelines.checks import program_checks, special_blocks
+from hearth.kb.language.reading_modes import Fuzzy
+from hearth.pipelines.checks import free_text_steps, program_checks
 from hearth.pipelines.engine.build_context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import plans
@@ -89,13 +89,13 @@ def checked(
         place: the file, for diagnostics.
         known: the grammar.
     """
-    expanded = special_blocks.expand(text, before)
+    expanded = free_text_steps.expand(text, before)
     source = expanded.text.split("\n")
     written, faults = parse_program(expanded.text, place)
-    program, wrong = grammar.check(written.numbered(), known, place, source)
+    program, wrong = action_grammar.check(written.numbered(), known, place, source)
     faults = (*faults, *wrong)
     if not faults:
-        faults = grammar.affordances(program, known, place, source)
+        faults = action_grammar.affordances(program, known, place, source)
     if not faults:
         faults = tuple(
             program_checks.diagnostic(each, program, place, source)
@@ -112,7 +112,7 @@ def checked(
     return program, (), (*_replaced(expanded, place), *unexecuted)
 
 
-def _replaced(expanded: special_blocks.Expanded, place: str) -> Iterator[Diagnostic]:
+def _replaced(expanded: free_text_steps.Expanded, place: str) -> Iterator[Diagnostic]:
     for line, text in expanded.replaced:
         message = "a special block, replaced by the steps that the special-blocks file gives for it"
         yield Diagnostic(Code.SPECIAL_BLOCK, message, place, line, found=text[:200])
@@ -123,7 +123,9 @@ def checked_natural_language(
 ) -> tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
     """`checked` for natural-language steps; a fuzzy match is a warning, or with `strict` a fault."""
     parse = parse_steps(text, before, place, known, fuzzy)
-    faults = parse.faults or (parse.warnings if strict else ()) or grammar.affordances(parse.program, known, place)
+    faults = (
+        parse.faults or (parse.warnings if strict else ()) or action_grammar.affordances(parse.program, known, place)
+    )
     if faults:
         return parse.program, faults, ()
     # Natural language loses instances: two lamps may look like one switched on twice, so this is only a warning.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.phrases import say
+from hearth.kb.language.step_phrases import say
 from hearth.repair.handlers.common import Edit, RepairContext, tick_start
 from hearth.repair.handlers.registry import HANDLERS
 from hearth.schemas.failure_words import listed, sentence, step_number

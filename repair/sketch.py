@@ -16,7 +16,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution
-from hearth.simulation.holds import holds
+from hearth.simulation.literal_truth import holds
 from hearth.simulation.rules import Rules, suited
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World

@@ -6,7 +6,7 @@ import yaml
 
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.yaml_extent import LIMITS, LOADER, too_much
+from hearth.schemas.yaml_limits import LIMITS, LOADER, too_much
 
 
 class Text(str):

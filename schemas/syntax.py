@@ -4,7 +4,7 @@
 
 An agent is named only where there are several; an instance is `(1)` as collected or `(1.41)` once bound to node 41, and
 1 where none is written; modifiers are optional; `|` parts what several agents do in one tick. Names and modifiers are
-checked by `hearth.kb.grammar`.
+checked by `hearth.kb.action_grammar`.
 The number that VirtualHome prints after a step, `[0]`, and a comment after the steps, `# twice`, are read over.
 Printing what was parsed gives canonical text back unchanged.
 """
@@ -18,7 +18,7 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.malformed_steps import explain, special
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.program_blocks import STEP, Splitter
+from hearth.schemas.program_boundaries import STEP, Splitter
 
 MAX_LINE = 10_000
 """Characters a line may have; a longer one is rejected instead of being searched for steps."""

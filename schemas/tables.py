@@ -12,7 +12,7 @@ import pyarrow as pa
 
 from hearth.schemas import published_rows, stage_rows
 from hearth.schemas.row_types import Arrow
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 _PLAIN = {str: pa.string(), bool: pa.bool_(), int: pa.int32(), float: pa.float64()}
 

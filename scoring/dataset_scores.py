@@ -6,13 +6,13 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from hearth.datasets.damage import using
+from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.cases import Source, start_of
+from hearth.datasets.format.case_rows import Source, start_of
 from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
-from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.reading_modes import Fuzzy
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.numbered_steps import parse_steps as parse_plan
 from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code

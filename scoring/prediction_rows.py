@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.text_decoding import decode
 from hearth.scoring.line_sequences import Source
 from hearth.scoring.refused_rows import FirstFaults
 from hearth.storage.input_files import LARGEST_TABLE, read_input

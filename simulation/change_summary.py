@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from hearth.schemas.change import Change
+from hearth.schemas.graph_change import Change
 from hearth.simulation.world.world import World
 
 

@@ -4,14 +4,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph_change import Change
 from hearth.schemas.program import Program, Step
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.consequences import actions
-from hearth.simulation.actions.metres import followed
-from hearth.simulation.actions.modified import PLACED, modified
+from hearth.simulation.actions.metric_checks import followed
+from hearth.simulation.actions.modifier_effects import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.processes import advanced, widened

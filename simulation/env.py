@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any, overload
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.graph_change import Change
 from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
 from hearth.schemas.short_repr import brief

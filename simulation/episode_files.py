@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas import change as changes
+from hearth.schemas import graph_change as changes
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.agent_messages import read as read_message
-from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release, read_node, to_release, word
+from hearth.schemas.graph_change import Change
 from hearth.schemas.numbers import stored
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import parse_steps, print_step

@@ -27,7 +27,7 @@ from hearth.schemas.tokens import Tokens
 from hearth.schemas.vocabulary import CHARACTER_CLASS, EVERY_STATE_ID
 from hearth.simulation.goal_trace import acts
 from hearth.simulation.goals import RELATED, check, unknown
-from hearth.simulation.holds import nodes
+from hearth.simulation.literal_truth import nodes
 from hearth.simulation.world.home import Home
 
 OTHER_NAMES = {"ONTOP": "ON", "NEXT_TO": "CLOSE"}

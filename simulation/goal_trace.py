@@ -15,7 +15,7 @@ from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.program import Step
 from hearth.simulation.engine import Execution
-from hearth.simulation.holds import candidates, nodes
+from hearth.simulation.literal_truth import candidates, nodes
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World

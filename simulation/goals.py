@@ -8,20 +8,20 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from operator import is_
 
-from hearth.schemas.change import Change
+from hearth.schemas.call_errors import explained
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.graph_change import Change
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.program import Step
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import EVERY_STATE_ID, RELATIONS
 from hearth.simulation.engine import Execution
 from hearth.simulation.goal_trace import Trace, acts, by_agent
-from hearth.simulation.holds import Candidates, candidates, nodes
+from hearth.simulation.literal_truth import Candidates, candidates, nodes
+from hearth.simulation.world.changed_nodes import BY_PLACE, changed, unchanged
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.touched import BY_PLACE, changed, unchanged
 from hearth.simulation.world.world import World
 
 RELATED = frozenset({*RELATIONS, HOLDS})

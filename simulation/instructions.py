@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step

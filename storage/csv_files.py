@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.terminal import BIDIRECTIONAL
+from hearth.schemas.text_decoding import decode
 from hearth.storage.input_files import LARGEST, read_input
 
 LONGEST = 131_072

@@ -10,9 +10,9 @@ from itertools import count
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.text_decoding import decode
 
 LARGEST = 64 << 20
 """Bytes of a program, plan, graph or list of ratings; a home of a thousand things has two million."""
@@ -128,8 +128,8 @@ def load_yaml(path: Path) -> Any:
     """
     import yaml
 
-    from hearth.schemas.yaml_extent import LARGEST as LARGEST_YAML
-    from hearth.schemas.yaml_extent import LIMITS, LOADER, too_much
+    from hearth.schemas.yaml_limits import LARGEST as LARGEST_YAML
+    from hearth.schemas.yaml_limits import LIMITS, LOADER, too_much
 
     text = decode(read_input(path, LARGEST_YAML), str(path))
     if isinstance(text, Diagnostic):

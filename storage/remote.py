@@ -9,7 +9,7 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.storage.files import TEMPORARY
 from hearth.storage.names import leaves
 

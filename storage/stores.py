@@ -21,8 +21,8 @@ import orjson
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.exchange import beside
 from hearth.storage.files import is_temporary, value_digest, write_bytes
+from hearth.storage.folder_exchange import beside
 from hearth.storage.manifest import NAME, read_manifest
 from hearth.storage.names import inside
 from hearth.storage.remote import filesystem, get, listed, reported, url_of

@@ -9,7 +9,6 @@ from hearth.challenges.episodes import Known
 from hearth.storage.lock import locked
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
-from hearth.studies.simulate import Crowd, simulate
 from hearth.studies.study import EPISODES, Study
 from hearth.studies.study_folder import (
     Collected,
@@ -20,6 +19,7 @@ from hearth.studies.study_folder import (
     references,
     related,
 )  # fmt: skip
+from hearth.studies.study_simulation import Crowd, simulate
 
 Watch = Callable[[str], Seen]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.analysis.corpus_figures import saved
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.storage.names import inside
 from hearth.studies.study_findings import AGENT, PEOPLE, Findings, scales
 

@@ -14,10 +14,10 @@ from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.published_tasks import tasks as published
 from hearth.schemas import located_yaml
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import number_of
+from hearth.schemas.text_decoding import decode
 from hearth.schemas.yaml_fields import Faults, ReadValue, fields, one_of, reads
 from hearth.storage.input_files import read_input
 from hearth.studies.assignment import assignment, balanced, imbalances

@@ -18,13 +18,13 @@ from hearth.schemas.failures import Code
 from hearth.storage.files import write_json
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
-from hearth.studies.conduct import Conduct
 from hearth.studies.event_checks import check_events
 from hearth.studies.events import FORMAT, FileLedger, Ledger, header_of, salted
-from hearth.studies.judged_films import JudgedFilm, goal_in_words, of_episodes
-from hearth.studies.judged_programs import judged_programs
+from hearth.studies.films_to_judge import JudgedFilm, goal_in_words, of_episodes
+from hearth.studies.programs_to_judge import judged_programs
 from hearth.studies.study import EPISODES, Condition, Study
 from hearth.studies.study_file import SHIPPED, named, study_of
+from hearth.studies.study_progress import Conduct
 from hearth.studies.study_trials import check_helpers, lineup_of, record_of, suite_of
 
 EVENTS, FILMS, REFERENCES = "events.jsonl", "films.json", "references"

@@ -6,7 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from hearth.schemas.libraries import lacking
+from hearth.schemas.optional_libraries import lacking
 from hearth.storage.files import write_bytes
 from hearth.studies.comparisons import Comparison
 from hearth.studies.study_figures import draw, names_of, own_figure

@@ -18,10 +18,10 @@ from hearth.schemas.tables import comment_of, struct
 from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
-from hearth.studies.conduct import DONE, LEFT, Standing
 from hearth.studies.events import Event
-from hearth.studies.judged_films import JudgedFilm, read_films
+from hearth.studies.films_to_judge import JudgedFilm, read_films
 from hearth.studies.study_folder import FILMS, Collected
+from hearth.studies.study_progress import DONE, LEFT, Standing
 from hearth.studies.study_trials import record_of, tasks_of
 
 HELPER = 1

@@ -26,17 +26,17 @@ from starlette.websockets import WebSocket
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.web import deadlines, desk_access, front, sessions
+from hearth.web import deadlines, desk_access, sessions, start_pages
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
 from hearth.web.limits import MOST_FIELDS, QUIET_SECONDS, Rate, usual_rates
-from hearth.web.link import Link, nobody
+from hearth.web.person_socket import Link, nobody
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
+from hearth.web.room_request import Visit, Web, by_browser, json_answer, render
 from hearth.web.security import Security
 from hearth.web.sessions import Session
 from hearth.web.store import Store
 from hearth.web.third_party_scripts import FETCHED
-from hearth.web.visit import Visit, Web, by_browser, json_answer, render
 from hearth.web.web_errors import WebError
 
 HERE = Path(__file__).resolve().parent
@@ -79,7 +79,7 @@ def application(
     keeps = tuple(room.keeps for room in rooms)
     web = Web(store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films, follows, keeps)
     web.written()
-    routes: list[BaseRoute] = [_route(web, address) for address in front.ADDRESSES]
+    routes: list[BaseRoute] = [_route(web, address) for address in start_pages.ADDRESSES]
     for room in rooms:
         for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
             routes += [_route(web, address, prefix) for address in addresses]

@@ -17,8 +17,8 @@ from typing import Any
 import sqlalchemy as sql
 
 from hearth.web.limits import MOST_BODY
+from hearth.web.room_request import Handler, Web
 from hearth.web.sessions import Keeps
-from hearth.web.visit import Handler, Web
 
 
 class Who(Enum):
@@ -59,7 +59,7 @@ def post(path: str, handler: Handler, who: Who = Who.PERSON, most: int = MOST_BO
 
 
 def socket(path: str, handler: Callable[[Any], Awaitable[None]]) -> Address:
-    """Return the address of a socket; its handler gets a `Link` of `web/link.py`."""
+    """Return the address of a socket; its handler gets a `Link` of `web/person_socket.py`."""
     return Address("SOCKET", path, handler)
 
 

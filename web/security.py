@@ -10,7 +10,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from hearth.schemas.failures import Code
-from hearth.web.visit import json_answer
+from hearth.web.room_request import json_answer
 from hearth.web.web_errors import WebError
 
 HEADERS = {

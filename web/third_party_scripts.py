@@ -10,7 +10,7 @@ import shutil
 from pathlib import Path
 from typing import NamedTuple
 
-from hearth.schemas.libraries import CHECKOUT
+from hearth.schemas.optional_libraries import CHECKOUT
 
 HERE = Path(__file__).resolve().parent
 FETCHED = HERE / "fetched"

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hearth.datasets.damage import reading
+from hearth.datasets.damage_faults import reading
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.ids import names_of
-from hearth.datasets.program_entries import Run
+from hearth.datasets.published_program import Run
 from hearth.schemas.published_rows import ProgramRow
 
 _BATCH = 128

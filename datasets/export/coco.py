@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import orjson
 
-from hearth.datasets.damage import reading
+from hearth.datasets.damage_faults import reading
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted
 from hearth.schemas.diagnostics import HearthError

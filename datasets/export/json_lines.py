@@ -8,7 +8,7 @@ import orjson
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, stream
-from hearth.datasets.written_answers import write_separated
+from hearth.datasets.query_output import write_separated
 from hearth.schemas.tables import TABLES
 from hearth.storage.names import inside
 

@@ -9,7 +9,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, programs, write
 from hearth.datasets.format.codecs import program_of
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.phrases import say
+from hearth.kb.language.step_phrases import say
 from hearth.schemas.program import Program
 from hearth.schemas.published_rows import ProgramRow
 

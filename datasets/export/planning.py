@@ -18,7 +18,7 @@ from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.planning_domain import TO_DOOR, planning_domain
 from hearth.datasets.export.problems import Task, object_names, problem, tasks
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import run
 from hearth.storage.parallel import Seen, spread, unseen

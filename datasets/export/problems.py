@@ -20,11 +20,11 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, runs, write
 from hearth.datasets.export.planning_domain import planning_domain, relation_predicate
 from hearth.datasets.format.codecs import change_of
-from hearth.datasets.program_entries import Run
+from hearth.datasets.published_program import Run
 from hearth.datasets.verify import StoredHomes
 from hearth.kb.tools.pddl import LIMITS, limit_predicate, option_predicate, options, predicate, unary_predicates
-from hearth.schemas.change import compose
 from hearth.schemas.graph import Edge
+from hearth.schemas.graph_change import compose
 from hearth.schemas.vocabulary import STATE_ID, STATES
 from hearth.simulation.rules import DEFAULT, RULES, Rules
 from hearth.simulation.world import rows
@@ -83,7 +83,7 @@ def pddl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
     """Yield the planning task of each execution that has a goal, sorted by the ids of program and execution."""
-    from hearth.datasets.format.cases import start_of
+    from hearth.datasets.format.case_rows import start_of
 
     homes = StoredHomes(dataset)
     for _, run in runs(dataset, wanted):

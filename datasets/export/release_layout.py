@@ -8,7 +8,7 @@ import orjson
 from hearth.datasets.dataset import OWN, Dataset
 from hearth.datasets.export.batches import Wanted, programs, runs, write
 from hearth.datasets.format.codecs import program_of
-from hearth.datasets.program_entries import Run
+from hearth.datasets.published_program import Run
 from hearth.schemas.graph import to_release
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_object, print_program

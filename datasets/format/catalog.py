@@ -12,7 +12,7 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted, without_patterns
 from hearth.storage.files import replacing, write_bytes
 from hearth.storage.manifest import FORMAT

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.schemas import row_types as forms
 from hearth.schemas import stage_rows
-from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
+from hearth.schemas.graph_change import Change
 from hearth.schemas.literals import RENAMED, Literal
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.row_types import columns_of

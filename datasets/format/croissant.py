@@ -10,7 +10,7 @@ from hearth.datasets.format.datasheet import datasheet
 from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.program import MOST_OBJECTS
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 from hearth.storage.files import file_digest, write_json
 from hearth.version import RELEASED, VERSION
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from hearth.datasets.format.ids import OURS
 from hearth.repair.perturbation_strengths import MILD, strength
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 from hearth.storage.databases import open_database, pattern_of
 
 STRENGTH = "strength"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hearth.datasets.format.texts import Letters, Texts
+from hearth.datasets.format.compact_texts import Letters, Texts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.datasets.format.compact_texts import Letters, Texts
 from hearth.datasets.format.near_duplicates import near_sequences, near_texts
-from hearth.datasets.format.texts import Letters, Texts
 
 NEAR = 0.9
 """Normalised LCS of steps, or similarity of texts, from which two programs are near duplicates."""

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from hearth.datasets.format.compact_texts import Texts
 from hearth.datasets.format.split_columns import SplitPrograms
-from hearth.datasets.format.texts import Texts
 
 Run = tuple[str, str, str]
 """Execution id, program id and home of an execution that ran to its end."""

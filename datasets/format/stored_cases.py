@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any, TypedDict
 
-from hearth.datasets.damage import using
+from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
 from hearth.schemas.row_types import BindingRow, DifferenceRow, StepRow
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 
 @dataclass(frozen=True, slots=True)

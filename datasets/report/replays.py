@@ -8,11 +8,11 @@ from pathlib import Path
 import orjson
 
 from hearth.datasets.dataset import OWN, Dataset
-from hearth.datasets.format.cases import rerun
+from hearth.datasets.format.case_rows import rerun
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import StoredHomes
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.libraries import lacking
+from hearth.schemas.optional_libraries import lacking
 from hearth.storage.names import inside
 
 

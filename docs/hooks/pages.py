@@ -22,7 +22,7 @@ PACKAGES = (
 ENTRY_POINTS = {
     "A dataset": (
         "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:attach", "hearth:Dataset.to_tensors",
-        "hearth:ExecutionGraphs", "hearth.datasets.program_entries:Run.graph", "hearth:verify", "hearth:export",
+        "hearth:ExecutionGraphs", "hearth.datasets.published_program:Run.graph", "hearth:verify", "hearth:export",
     ),
     "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
     "Homes": (
@@ -34,7 +34,12 @@ ENTRY_POINTS = {
         "hearth:TextHome", "hearth:TextHomes",
         "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
-    "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth:read_goal", "hearth.simulation.explain:checks"),
+    "Goals and checks": (
+        "hearth:holds",
+        "hearth:Progress",
+        "hearth:read_goal",
+        "hearth.simulation.step_explanations:checks",
+    ),
     "Environments and variants": (
         "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.repair_loop:repair", "hearth:sketch",
     ),

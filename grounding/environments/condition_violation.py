@@ -7,7 +7,7 @@ from hearth.grounding.environments.partial_environment import PartialEnvironment
 from hearth.grounding.preconditions.conditions import Condition
 from hearth.schemas.graph import Edge
 from hearth.schemas.literals import HANDS, Key
-from hearth.simulation.holds import PETS
+from hearth.simulation.literal_truth import PETS
 from hearth.simulation.world.bits import indices
 
 Target = tuple[int, str]

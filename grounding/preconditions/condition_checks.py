@@ -7,7 +7,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_step
-from hearth.simulation.holds import holds
+from hearth.simulation.literal_truth import holds
 from hearth.simulation.world.world import World
 
 

@@ -14,7 +14,7 @@ class Condition:
     """One thing that must hold at the start.
 
     Attributes:
-        literal: a predicate of `simulation.holds`; its objects stand in the order of the release's files.
+        literal: a predicate of `simulation.literal_truth`; its objects stand in the order of the release's files.
         step: number of the step that needs it, from 0.
         hard: the program can't run without it; a soft one is a default that its author assumed (the cup is in the
             cupboard that was opened).

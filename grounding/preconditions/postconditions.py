@@ -10,7 +10,7 @@ from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
 from hearth.simulation.engine import Execution
-from hearth.simulation.holds import RELATED, holds
+from hearth.simulation.literal_truth import RELATED, holds
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.world import World
 

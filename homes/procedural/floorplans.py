@@ -9,7 +9,7 @@ from typing import Any
 from hearth.homes.geometry import Rect
 from hearth.homes.plans.home_shell import WALL, outer_walls, shared_wall, span
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Plan, Room, Window
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 LEAST_ROOMS, MOST_ROOMS = 3, 9
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
+from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.program_names import action_of, words_of
-from hearth.kb.language.things import thing_of
 from hearth.kb.loading.load import default
 
 

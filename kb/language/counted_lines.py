@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from hearth.kb.language.plan_lines import PlanLine, plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
-from hearth.schemas.program_blocks import TITLE
+from hearth.schemas.program_boundaries import TITLE
 
 _WORDS = (
     "one two three four five six seven eight nine ten eleven twelve",

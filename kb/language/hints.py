@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_english, is_noun, is_verb, noun_lemmas, verb_lemmas
-from hearth.kb.language.phrases import Parse, first_words, parses
+from hearth.kb.language.noun_phrases import bare_words, thing_of
 from hearth.kb.language.phrasings import PHRASED, phrasings
-from hearth.kb.language.things import bare_words, thing_of
-from hearth.kb.language.trailing import changes_act
+from hearth.kb.language.step_phrases import Parse, first_words, parses
+from hearth.kb.language.trailing_words import changes_act
 from hearth.kb.spelling import key_of
 
 _SHOWN = 3

@@ -6,7 +6,7 @@ from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import META, PlanLine
 from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
 from hearth.kb.language.unmarked_lines import are_steps, chained, is_like_step, is_title, sentences
-from hearth.schemas.program_blocks import is_sentence
+from hearth.schemas.program_boundaries import is_sentence
 
 _SIGNED = 3
 """Lines below the end of a letter that are not its name any more."""

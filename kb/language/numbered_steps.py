@@ -5,11 +5,9 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language
-from hearth.kb.language.phrases import say
 from hearth.kb.language.plan_lines import (
     BRACKETED,
     LOOSE,
@@ -22,8 +20,10 @@ from hearth.kb.language.plan_lines import (
 )
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import REMEMBERED, Mentioned
+from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
-from hearth.kb.language.understanding import Candidate, Understood
+from hearth.kb.language.step_phrases import say
+from hearth.kb.language.step_understanding import Candidate, Understood
 from hearth.kb.language.unmarked_lines import is_like_step, is_order
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -241,7 +241,7 @@ class _StepParser:
         faults: tuple[Diagnostic, ...] = (found,) if isinstance(found, Diagnostic) else ()
         if not isinstance(found, Diagnostic):
             written = Program(steps=found, lines=(1,) * len(found))
-            program, faults = grammar.check(written, self.known, self.place, [text])
+            program, faults = action_grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
                 self._mentioned += [_mentioned(step)._replace(line=number) for step in program.steps]

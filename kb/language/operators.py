@@ -6,7 +6,7 @@ from functools import lru_cache
 from hearth.kb.language.action_keys import action_key, bare_key, holds_object, last_name, names_action
 from hearth.kb.language.composed_steps import composed_step, written
 from hearth.kb.language.lexicon import is_verb
-from hearth.kb.language.things import thing_of
+from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.loading.load import default
 
 _DOES = r"(?:(?:do|exec(?:ute)?|run|call|perform|invoke)\s+)?"

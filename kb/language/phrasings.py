@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import verb_lemmas
-from hearth.kb.language.things import thing_of
+from hearth.kb.language.noun_phrases import thing_of
 
 _GOING = "go walk move head come step navigate proceed return travel pop nip wander stroll"
 _PUTTING = "put place set lay stick leave position deposit pop"

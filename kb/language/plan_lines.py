@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from hearth.schemas.program_blocks import TITLE, is_sentence
+from hearth.schemas.program_boundaries import TITLE, is_sentence
 
 _COUNTED = (
     ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"],

@@ -23,7 +23,7 @@ from hearth.kb.language.unmarked_lines import (
     is_order,
 )
 from hearth.kb.language.wrappings import Unwrap, unwrapped, unwrapping
-from hearth.schemas.program_blocks import is_sentence
+from hearth.schemas.program_boundaries import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")
 _END = re.compile(

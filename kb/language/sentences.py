@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.adjectives import without_adjective
-from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import is_verb, noun_lemmas
-from hearth.kb.language.openings import verb_phrase
+from hearth.kb.language.noun_phrases import thing_of, things_in
 from hearth.kb.language.pronouns import PRONOUN, Mentioned, referred, several, with_place
-from hearth.kb.language.things import thing_of, things_in
-from hearth.kb.language.trailing import changes_act, is_subordinate, shortened
+from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.sentence_openings import verb_phrase
+from hearth.kb.language.step_understanding import Candidate, Understood, understand, understand_exactly
+from hearth.kb.language.trailing_words import changes_act, is_subordinate, shortened
 from hearth.kb.language.typos import corrected
-from hearth.kb.language.understanding import Candidate, Understood, understand, understand_exactly
 
 _JOINTS = re.compile(
     r"(?:\s*[,;])?\s+(?:and then|then|and|&{1,2}|\+)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])",

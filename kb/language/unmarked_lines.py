@@ -10,7 +10,7 @@ from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN
 from hearth.kb.language.typos import near_words
 from hearth.kb.loading.load import default
-from hearth.schemas.program_blocks import is_sentence
+from hearth.schemas.program_boundaries import is_sentence
 
 _SUBJECT = r"(?:i|you|he|she|we|they|the (?:robot|person|agent|character|man|woman|child|user))"
 _NO_MANNER = (

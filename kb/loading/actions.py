@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from hearth.kb.action_groups import DECLARED
 from hearth.kb.formula import TRUE, And, Effect, Formula, Term, parse_atom, parse_effect, parse_formula
-from hearth.kb.groups import DECLARED
 from hearth.kb.knowledge_records import Action, Condition, Consequence, Repair, Requirement
 from hearth.kb.loading.entry_shapes import LIST, NAMES, REASONS, TEXT, fits, parts
 from hearth.kb.loading.formula_checks import Derived, check_derived, check_literals

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.yaml_extent import LARGEST, LIMITS, LOADER, too_much
+from hearth.schemas.text_decoding import decode
+from hearth.schemas.yaml_limits import LARGEST, LIMITS, LOADER, too_much
 
 
 class Entry(NamedTuple):

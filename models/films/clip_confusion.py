@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.models.films.clip_tables import HOMES, looked_at
+from hearth.models.films.clip_result_tables import HOMES, looked_at
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset

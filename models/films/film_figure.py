@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.models.films.clip_data import Clips
-from hearth.models.films.clip_tables import classifier
+from hearth.models.films.clip_result_tables import classifier
 from hearth.models.films.film_arrays import COLOURS, FORMS
 from hearth.models.films.film_executions import shown_films
 from hearth.models.films.film_prediction import cut

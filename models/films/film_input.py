@@ -15,7 +15,7 @@ from hearth.rendering.film.clips import RATE, SIZE
 from hearth.rendering.film.stderr_suppression import quiet
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.storage.input_files import read_input, read_start
 
 HEADS = {".webm": (0, b"\x1a\x45\xdf\xa3"), ".mp4": (4, b"ftyp")}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from hearth.models.evaluation import by_group
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities
-from hearth.models.films.clip_tables import HOMES, looks_at_masks, standard_error
+from hearth.models.films.clip_result_tables import HOMES, looks_at_masks, standard_error
 from hearth.models.films.film_examples import film_probabilities
 from hearth.models.films.film_executions import Shown, by_class, shown_films
 from hearth.models.films.film_prediction import cut

@@ -24,7 +24,7 @@ from hearth.models.films.clip_batches import clip_batch, rows_of, traits_of
 from hearth.models.films.clip_data import no_programs
 from hearth.models.films.clip_probabilities import ClipProbabilities
 from hearth.models.films.clip_reader import ClipReader
-from hearth.models.films.clip_tables import classifier
+from hearth.models.films.clip_result_tables import classifier
 from hearth.models.films.film_examples import FilmExample, film_examples
 from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel
 from hearth.models.interface import Request, Settings, Steps, Training

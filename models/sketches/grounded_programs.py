@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from hearth.schemas.literals import AGENT, HOLDS, Literal, Name
 from hearth.simulation.env import Tick
-from hearth.simulation.holds import nodes
+from hearth.simulation.literal_truth import nodes
 from hearth.simulation.observation import reach
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices

@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterator, Mapping
 from difflib import unified_diff
 
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
-from hearth.pipelines.checks import program_checks, special_blocks
+from hearth.pipelines.checks import free_text_steps, program_checks
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_programs, print_step
@@ -57,7 +57,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
             found = True
             yield fault.line - 1, 1, new
     for program in parsed.programs:
-        canonical, faults = grammar.check(program, known, "", lines)
+        canonical, faults = action_grammar.check(program, known, "", lines)
         for fault in faults:
             line = _respelt(fault, lines[fault.line - 1], known) if fault.line else None
             if line is not None:
@@ -75,7 +75,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
 def _written(fault: Diagnostic, line: str) -> list[str] | None:
     """Return the lines that replace a line which is not a step."""
     if fault.code is Code.SPECIAL_BLOCK:
-        expanded = special_blocks.expand(line, 0).text
+        expanded = free_text_steps.expand(line, 0).text
         return expanded.split("\n") if expanded != line else None
     if fault.code is Code.SYNTAX and "lacks its instance" in fault.message:
         start, end = fault.column - 1, fault.column - 1 + fault.length

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.checks import program_checks
 from hearth.schemas.diagnostics import Diagnostic
@@ -54,8 +54,8 @@ def check_program(
         affordances: whether objects must afford their actions.
         lint: whether warnings are asked for.
     """
-    canonical, found = grammar.check(program, knowledge, file, source)
-    afforded = grammar.affordances(canonical, knowledge, file, source) if affordances else ()
+    canonical, found = action_grammar.check(program, knowledge, file, source)
+    afforded = action_grammar.affordances(canonical, knowledge, file, source) if affordances else ()
     return [*found, *afforded], warnings_of(canonical, knowledge, file, source) if lint and not found else []
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.readers import crowd
-from hearth.pipelines.readers.item import Item, refused
+from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.rejects import Reject
 

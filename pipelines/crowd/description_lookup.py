@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.readers import crowd
-from hearth.pipelines.readers.item import Item, refused
+from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.rejects import Reject
 

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from hearth.pipelines.crowd.key_counts import SeenSet, digest
-from hearth.pipelines.readers import crowd, ours, plans, text
-from hearth.pipelines.readers.item import Item, refused
+from hearth.pipelines.readers import crowd, json_records, plans, program_text
+from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.rejects import Reject
 
@@ -29,13 +29,13 @@ class Repeated:
     def first(self, items: Iterable[Item], reader: str, place: str) -> Iterator[Item]:
         """Yield the items of a file, copies as refusals."""
         items = self._new_texts(items, place)
-        if reader != text.NAME or self._likely:
+        if reader != program_text.NAME or self._likely:
             yield from map(self._checked, items)
             return
         count = 0
         for count, item in enumerate(items, 1):  # noqa: B007 - its last value is kept
             yield item
-        self._numbered[f"{text.NAME}:{place}"] = count
+        self._numbered[f"{program_text.NAME}:{place}"] = count
 
     def _new_texts(self, items: Iterable[Item], place: str) -> Iterator[Item]:
         """Yield the items; those whose text was in a folder or archive other than this file's, as refusals."""
@@ -54,7 +54,7 @@ class Repeated:
         if item.reader == "refused":
             return item
         name = item.record_id
-        if name.startswith(f"{text.NAME}:"):
+        if name.startswith(f"{program_text.NAME}:"):
             self._likely = True
         answer = _answer(item)
         if self._was_numbered(name) or self._seen.add(digest(name)):
@@ -80,7 +80,7 @@ def _copy(what: str, item: Item) -> Item:
 
 def _text_key(item: Item) -> int | None:
     """Return a digest of text whose id is only its place, which differs between a folder and an archive of it."""
-    if item.reader not in (text.NAME, ours.NAME) or not item.record_id.startswith(f"{item.reader}:"):
+    if item.reader not in (program_text.NAME, json_records.NAME) or not item.record_id.startswith(f"{item.reader}:"):
         return None
     try:
         return digest([item.reader, item.value.get("text", item.value)])

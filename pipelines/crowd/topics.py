@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hearth.pipelines.checks.findings import Finding
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge

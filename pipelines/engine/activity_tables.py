@@ -12,8 +12,8 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from hearth.datasets.format.compact_texts import Texts
 from hearth.datasets.format.ids import activity_id
-from hearth.datasets.format.texts import Texts
 from hearth.schemas.published_rows import ActivityRow, DescriptionRow, ProgramRow
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import TABLES

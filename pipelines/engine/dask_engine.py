@@ -14,7 +14,7 @@ from hearth.pipelines.engine.stage import Done, Job, Partition, RecordsSeen
 from hearth.pipelines.engine.workers import AHEAD, run_here
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.storage.partitions import Counts
 
 LOSSES = 3

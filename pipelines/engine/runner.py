@@ -19,8 +19,8 @@ from hearth.pipelines.engine.workers import Workers
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import REJECTED
-from hearth.storage.exchange import put_in_place, recover, start_from, tidy
 from hearth.storage.files import drop_temporary, value_digest, write_json
+from hearth.storage.folder_exchange import put_in_place, recover, start_from, tidy
 from hearth.storage.lock import locked
 from hearth.storage.manifest import NAME, TIMING, Manifest, describe, read_manifest
 from hearth.storage.partitions import Counts, part_path, part_state, rejects_path, write_table

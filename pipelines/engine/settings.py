@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from hearth.kb.language.fuzzy import Fuzzy
+from hearth.kb.language.reading_modes import Fuzzy
 
 DERIVED = "homes"
 """Folder of homes that come with the sources: scene graphs in the ingest stage; in the sample stage, homes derived from

@@ -7,7 +7,7 @@ from hashlib import blake2b
 from pathlib import Path
 
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.readers.item import Source
+from hearth.pipelines.readers.reader_items import Source
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import tree_digest, value_digest, walk

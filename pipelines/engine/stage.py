@@ -22,8 +22,8 @@ from hearth.pipelines.engine.record_deadline import Deadline, OverTime
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
-from hearth.storage.exchange import beside
 from hearth.storage.files import value_digest
+from hearth.storage.folder_exchange import beside
 from hearth.storage.partitions import Counts, PartWriter, read_rows
 from hearth.storage.rejects import Reject, as_text
 

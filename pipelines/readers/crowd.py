@@ -14,7 +14,7 @@ from typing import TypedDict
 from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.crowd.topics import no_activity
 from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_fault
-from hearth.pipelines.readers.item import Item, record, refused, worker_hash
+from hearth.pipelines.readers.reader_items import Item, record, refused, worker_hash
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import QuantityRow

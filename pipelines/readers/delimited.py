@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from hearth.pipelines.readers.item import LARGEST_FILE, fault_of, lines
 from hearth.pipelines.readers.placed_texts import text_at
+from hearth.pipelines.readers.reader_items import LARGEST_FILE, fault_of, lines
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place

@@ -5,14 +5,14 @@ import re
 from collections.abc import Iterator
 
 from hearth.kb.language.plan_lines import plan_line
-from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.columns import Asked
-from hearth.pipelines.readers.document import located
+from hearth.pipelines.readers import json_records
+from hearth.pipelines.readers.field_columns import Asked
 from hearth.pipelines.readers.found_records import holds_program, named
-from hearth.pipelines.readers.item import Item, opened
+from hearth.pipelines.readers.json_documents import located
 from hearth.pipelines.readers.placed_texts import Located
+from hearth.pipelines.readers.reader_items import Item, opened
 from hearth.pipelines.readers.step_rows import Entry
-from hearth.schemas.program_blocks import TITLE
+from hearth.schemas.program_boundaries import TITLE
 from hearth.storage.archives import Place, size_of
 
 NAME = "enclosed"
@@ -27,7 +27,7 @@ _MOST = 1_000
 
 def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """Yield the items of each JSON value in a text."""
-    yield from ours.of_entries(_entries(path, place), place, asked)
+    yield from json_records.of_entries(_entries(path, place), place, asked)
 
 
 def holds_programs(path: Place, place: str) -> bool:

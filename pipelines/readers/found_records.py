@@ -4,14 +4,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hearth.kb.language.program_lines import is_plan
-from hearth.pipelines.readers.columns import Asked, FieldColumns, guessed, value_at
+from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, value_at
 from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner
-from hearth.pipelines.readers.models import of_others
+from hearth.pipelines.readers.model_outputs import of_others
 from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
 from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
 from hearth.pipelines.readers.step_texts import IN_LINE
 from hearth.schemas.failures import Code
-from hearth.schemas.program_blocks import STEP
+from hearth.schemas.program_boundaries import STEP
 from hearth.storage.rejects import Reject, as_text
 
 

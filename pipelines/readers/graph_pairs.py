@@ -13,8 +13,8 @@ from typing import Any
 
 import orjson
 
-from hearth.schemas.change import Change, Parts, difference
 from hearth.schemas.graph import Edge, EdgeColumns
+from hearth.schemas.graph_change import Change, Parts, difference
 from hearth.schemas.vocabulary import RELATION_ID, STATE_ID
 
 JsonObject = dict[str, Any]

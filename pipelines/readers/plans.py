@@ -10,12 +10,12 @@ from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_as
 from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
 from hearth.kb.language.unmarked_lines import are_steps, is_order
 from hearth.kb.language.wrappings import bare, raw_of
-from hearth.pipelines.readers.elements import located_entries
-from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
+from hearth.pipelines.readers.json_elements import located_entries
 from hearth.pipelines.readers.placed_texts import Text
+from hearth.pipelines.readers.reader_items import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.unmarked_plans import unmarked_blocks
 from hearth.schemas.failures import Code
-from hearth.schemas.program_blocks import is_sentence
+from hearth.schemas.program_boundaries import is_sentence
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.program_lines import is_plan, lines_of_program
+from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.loading.load import default
 from hearth.pipelines.readers.step_texts import numbered, steps_of
 from hearth.schemas.diagnostics import HearthError

@@ -11,17 +11,17 @@ import orjson
 
 from hearth.datasets.format.codecs import change_row, node_row
 from hearth.pipelines.readers.graph_pairs import EDGE, JsonObject, pair_of, read_pair
-from hearth.pipelines.readers.item import LARGEST_FILE, Item, record, refused
-from hearth.pipelines.readers.text import header
-from hearth.schemas.change import Change
-from hearth.schemas.decoding import decode
+from hearth.pipelines.readers.program_text import header
+from hearth.pipelines.readers.reader_items import LARGEST_FILE, Item, record, refused
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EdgeColumns, read_node
+from hearth.schemas.graph_change import Change
 from hearth.schemas.graph_faults import REMEDY, graph_fault
 from hearth.schemas.numbers import stored
 from hearth.schemas.row_types import ChangeRow, ConditionRow, GraphRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
+from hearth.schemas.text_decoding import decode
 from hearth.storage.archives import archive, members, refusal_of
 from hearth.storage.files import file_digest, walk
 from hearth.storage.names import leaves

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hearth.pipelines.engine.record_deadline import Deadline, OverTime
-from hearth.pipelines.readers.item import Item, refused
+from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.archives import GZIP, ZSTD, Member, Place
 from hearth.storage.rejects import Reject

@@ -9,8 +9,8 @@ from itertools import zip_longest
 
 from hearth.pipelines.readers import crowd, release
 from hearth.pipelines.readers.crowd import WRITTEN
-from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, record, refused
+from hearth.pipelines.readers.json_elements import entries
+from hearth.pipelines.readers.reader_items import Item, record, refused
 from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.archives import Place

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from hearth.pipelines.readers.columns import FieldColumns, guessed
+from hearth.pipelines.readers.field_columns import FieldColumns, guessed
 from hearth.pipelines.readers.json_actions import is_action, is_only_action, is_tool_use, step_of
 from hearth.pipelines.readers.placed_texts import Located
 from hearth.pipelines.readers.program_columns import is_one_step

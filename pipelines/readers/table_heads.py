@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from hearth.kb.language.operators import names_thing
-from hearth.pipelines.readers.columns import FieldColumns
 from hearth.pipelines.readers.delimited import Layout, Rows, layout_of
+from hearth.pipelines.readers.field_columns import FieldColumns
 from hearth.pipelines.readers.json_actions import is_known
 from hearth.pipelines.readers.program_columns import reading_of
 from hearth.pipelines.readers.step_lists import is_time

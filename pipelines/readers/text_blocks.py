@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from hearth.schemas.program_blocks import Splitter
+from hearth.schemas.program_boundaries import Splitter
 from hearth.schemas.syntax import MAX_LINE
 
 LONGEST_PROGRAM = 1_000_000
@@ -28,7 +28,7 @@ class Block(NamedTuple):
 
 
 def blocks(pieces: Iterable[str]) -> Iterator[Block]:
-    """Split a text into programs as `hearth.schemas.program_blocks` does, looking only at blank lines."""
+    """Split a text into programs as `hearth.schemas.program_boundaries` does, looking only at blank lines."""
     cutter = _Cutter()
     for piece in pieces:
         yield from cutter.take(piece)

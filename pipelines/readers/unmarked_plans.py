@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
 from hearth.kb.language.unmarked_lines import chained, is_like_step, is_title
-from hearth.schemas.program_blocks import is_sentence
+from hearth.schemas.program_boundaries import is_sentence
 
 NumberedLines = list[tuple[int, str]]
 

@@ -7,16 +7,16 @@ from typing import Any
 
 import yaml
 
-from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.columns import Asked
+from hearth.pipelines.readers import json_records
+from hearth.pipelines.readers.field_columns import Asked
 from hearth.pipelines.readers.found_records import holds_program
-from hearth.pipelines.readers.item import LARGEST_FILE, Item, opened, suffixless
 from hearth.pipelines.readers.placed_texts import text_at, texts_in
 from hearth.pipelines.readers.program_columns import column_of_steps
+from hearth.pipelines.readers.reader_items import LARGEST_FILE, Item, opened, suffixless
 from hearth.pipelines.readers.step_rows import Entry
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.yaml_extent import LIMITS, LOADER, too_much
+from hearth.schemas.yaml_limits import LIMITS, LOADER, too_much
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
@@ -45,7 +45,7 @@ def values(path: Place, place: str) -> Iterator[tuple[Any, int]]:
 
 def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
     """Yield the items of each record of a file, as of JSON."""
-    yield from ours.of_entries(_entries(path, place), place, asked)
+    yield from json_records.of_entries(_entries(path, place), place, asked)
 
 
 def holds_programs(path: Place, place: str) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hearth.rendering.arrays import Image
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import print_step
 

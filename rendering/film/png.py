@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 STORED = (np.uint8, np.uint16, np.float32)
 """Types of arrays that have an encoding; OpenCV silently makes 8 bits of some others."""

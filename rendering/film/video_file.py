@@ -9,7 +9,7 @@ from hearth.rendering.arrays import Image
 from hearth.rendering.film.stderr_suppression import quiet
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 CODECS = {".webm": "VP80", ".mp4": "mp4v"}
 """OpenCV's codec by file suffix; browsers play VP80."""

@@ -12,7 +12,7 @@ from hearth.rendering.models.textures import SLOTS
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 FALLBACK = "crate"
 """The recipe of classes without an entry."""

@@ -15,7 +15,7 @@ from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import Daylight, Light
 from hearth.rendering.scene.scene import Scene
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 TILE = 128
 LABEL = 14

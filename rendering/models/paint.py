@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hearth.rendering.arrays import Floats
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 
 @dataclass(frozen=True, slots=True)

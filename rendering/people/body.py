@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hearth.rendering.people.body_shape import Shape, proportions
 from hearth.rendering.people.proportions import Proportions, standard
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Hand
 from hearth.rendering.people.palm_targets import OTHER, SIDES, Aim
 from hearth.schemas.graph import Point
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 CHEST = "chest"
 """The place of garments that are not listed."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from hearth.schemas.program import Step
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 
 @dataclass(frozen=True, slots=True)

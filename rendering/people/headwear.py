@@ -15,7 +15,7 @@ from hearth.rendering.scene.instances import Thing, tilted
 from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.graph import Node, Point
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 
 class Worn(NamedTuple):

@@ -21,7 +21,7 @@ from hearth.rendering.scene.instances import Thing, own_mesh, tilted
 from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.graph import Box, Node, Point
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 HOLDS: Mapping[str, Mapping[str, Any]] = packaged("hearth.rendering.people", "holding.yaml")
 """Ways of holding models, by recipe. To add one: a row of `holding.yaml`."""

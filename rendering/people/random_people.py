@@ -9,7 +9,7 @@ from typing import Any
 from hearth.rendering.people.body import BODIES, Body
 from hearth.rendering.people.body_shape import Shape, is_present
 from hearth.schemas.rng import derive
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 CHOICES: dict[str, Any] = packaged("hearth.rendering.people", "variety.yaml")
 """Colours, styles and garments to choose from."""

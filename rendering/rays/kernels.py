@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from hearth.rendering.arrays import Floats, Ints
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -15,7 +15,7 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.rays.reused_arrays import keep
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 
 SYSTEM_LIBRARIES = "libusb-1.0-0 libgl1 libegl1 libx11-6 libgomp1"
 """Debian packages that open3d is linked against."""

@@ -12,7 +12,7 @@ from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.scene.instances import Thing
 from hearth.schemas.graph import Box, Point
 from hearth.schemas.rng import derive
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 TREMBLES = 9.0
 """Times a second that a trembling thing moves to and fro."""

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from hearth.schemas.change import WorkingGraph
 from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.graph_change import WorkingGraph
 from hearth.simulation.engine import Execution
 
 SHOWN = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})

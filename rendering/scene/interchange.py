@@ -20,7 +20,7 @@ from hearth.rendering.scene.instances import Thing, placed, tilted
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.storage.files import replacing
 
 ENDINGS = {"gltf": ".glb", "obj": ".obj"}

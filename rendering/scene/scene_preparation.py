@@ -20,7 +20,7 @@ from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 
 UNSEEN = (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts")
 """Categories that are not drawn as objects; characters are drawn as figures."""

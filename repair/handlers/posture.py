@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from hearth.repair.handlers.common import Edit, Handler, RepairContext, Splice, before, removed
 from hearth.repair.handlers.seats import done_before_seat, stays
-from hearth.simulation.holds import PETS
+from hearth.simulation.literal_truth import PETS
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import lru_cache
 
-from hearth.kb.grammar import affordances, check
+from hearth.kb.action_grammar import affordances, check
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step

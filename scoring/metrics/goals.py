@@ -9,7 +9,7 @@ from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import STATES
 from hearth.scoring.metrics.final_graph import nodes_of
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.moved import INSIDE, NOTHING, ON
+from hearth.simulation.world.moved_edges import INSIDE, NOTHING, ON
 from hearth.simulation.world.world import World
 
 LASTING = ("ON", "INSIDE", *HANDS)

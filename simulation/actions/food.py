@@ -21,7 +21,7 @@ from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
-from hearth.simulation.world.moved import INSIDE, add
+from hearth.simulation.world.moved_edges import INSIDE, add
 from hearth.simulation.world.world import World
 
 

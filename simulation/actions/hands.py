@@ -23,10 +23,10 @@ from hearth.simulation.actions.common import (
 )
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import moved as kinds
+from hearth.simulation.world import moved_edges as kinds
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, made
-from hearth.simulation.world.moved import add, lift
+from hearth.simulation.world.moved_edges import add, lift
 from hearth.simulation.world.states import LYING, OPEN, SITTING
 from hearth.simulation.world.world import World
 

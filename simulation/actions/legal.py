@@ -14,7 +14,7 @@ from hearth.simulation.actions.consequences import actions as consequent
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.observation import reach
-from hearth.simulation.observation.as_seen import as_seen
+from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.processes import widened
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices

@@ -9,7 +9,7 @@ from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.moved import NOTHING, carry
+from hearth.simulation.world.moved_edges import NOTHING, carry
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.states import LYING, SITTING
 from hearth.simulation.world.world import World

@@ -6,7 +6,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import moved as kinds
+from hearth.simulation.world import moved_edges as kinds
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, lowest

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from hearth.kb.formula import And, Count, Effect, Formula, Not, Or, Some, Term, free
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID, RELATIONS
-from hearth.simulation.holds import RELATED
+from hearth.simulation.literal_truth import RELATED
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.affordance import of_kind

@@ -7,7 +7,7 @@ from hearth.simulation.actions import (
     food,
     hands,
     locomotion,
-    metres,
+    metric_checks,
     moving,
     posture,
     senses,
@@ -29,7 +29,7 @@ ACTIONS: dict[str, Action] = {
     )
 }
 
-MOVES: dict[str, Action] = {action.name: action for action in metres.ACTIONS}
+MOVES: dict[str, Action] = {action.name: action for action in metric_checks.ACTIONS}
 """The actions of characters at places; programs may use them, and in homes without geometry nothing executes them."""
 
 EVERY = ACTIONS | MOVES

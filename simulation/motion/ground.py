@@ -17,11 +17,11 @@ from hearth.homes.plans.layout import Layout
 from hearth.schemas.graph import Box, Spot
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 from hearth.simulation.motion.navigation import BODY_RADIUS, Ways, digest_of
-from hearth.simulation.motion.stored_ways import StoredWays
+from hearth.simulation.motion.stored_distance_fields import StoredWays
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home, Memo
-from hearth.simulation.world.moved import INSIDE, NOTHING, ON, Moved
+from hearth.simulation.world.moved_edges import INSIDE, NOTHING, ON, Moved
 from hearth.simulation.world.world import World
 
 UNTOUCHED = frozenset({ROOM_CATEGORY, CHARACTER_CATEGORY, "Floor", "Floors", "Walls", "Ceiling"})

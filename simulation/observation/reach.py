@@ -8,7 +8,7 @@ from hearth.simulation.actions import doors
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
-from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, NOTHING
+from hearth.simulation.world.moved_edges import BEARS, CLOSE, CONTENTS, NOTHING
 from hearth.simulation.world.states import CLOSED
 
 if TYPE_CHECKING:

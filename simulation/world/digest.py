@@ -14,7 +14,7 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.further import counts_of, rows_at_start
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import CLOSE
+from hearth.simulation.world.moved_edges import CLOSE
 from hearth.simulation.world.world import World
 from hearth.simulation.world.world_change import KINDS
 

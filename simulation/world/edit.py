@@ -6,18 +6,18 @@
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
-from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.graph_change import Change
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
-from hearth.simulation.world import fitting, overlay, rows
-from hearth.simulation.world import moved as kinds
+from hearth.simulation.world import moved_edges as kinds
+from hearth.simulation.world import overlay, placement_fit, rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.derived import Movable, added_nodes, extended, without
+from hearth.simulation.world.derived_homes import Movable, added_nodes, extended, without
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import Moved
+from hearth.simulation.world.moved_edges import Moved
 from hearth.simulation.world.world import World
 
 __all__ = ["Movable", "added_nodes", "apply", "edit", "extended", "free_id"]
@@ -72,7 +72,7 @@ def edit(
             world = _without_node(world, world.home.index[node_id])
         for node_id, (relation, target) in place.items():
             i, j = world.home.index[node_id], world.home.index[target]
-            failure = fitting.unfit(world, i, relation, j) if check else None
+            failure = placement_fit.unfit(world, i, relation, j) if check else None
             if failure is not None:
                 return failure
             world = _placed(world, i, relation, j)
@@ -184,7 +184,7 @@ _LEFT_BEHIND = ("close", "facing", "faced", "inside", "contents")
 
 def _linked(world: World, edges: Iterable[Edge], check: bool) -> World | Failure:
     for i, relation, j in _numbered(world.home, edges):
-        failure = fitting.unfit(world, i, relation, j) if check and relation in ("ON", "INSIDE") else None
+        failure = placement_fit.unfit(world, i, relation, j) if check and relation in ("ON", "INSIDE") else None
         if failure is not None:
             return failure
         world = overlay.linked(world, [(i, relation, j)])
@@ -199,7 +199,7 @@ def _with_states(
     for node_id, name in left:
         states[STATE_ID[name]] &= ~(1 << index[node_id])
     for node_id, name in entered:
-        failure = fitting.impossible(world.home, index[node_id], name) if check else None
+        failure = placement_fit.impossible(world.home, index[node_id], name) if check else None
         if failure is not None:
             return failure
         number, bit = STATE_ID[name], 1 << index[node_id]

@@ -7,14 +7,14 @@ from functools import cached_property, partial
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.explained_calls import explained
+from hearth.schemas.call_errors import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import FURTHER_STATES
-from hearth.simulation.world import building
+from hearth.simulation.world import home_building
 from hearth.simulation.world.affordance import allowed, of_kind
 from hearth.simulation.world.bits import indices, mask_of
-from hearth.simulation.world.building import Raw, Rows
+from hearth.simulation.world.home_building import Raw, Rows
 from hearth.simulation.world.nodes import with_states
 
 
@@ -93,11 +93,11 @@ class Home:
         self.knowledge = knowledge
         self.restated = self.absent = 0
         self.base: tuple[Home, int] | None = None
-        read = building.read_nodes(nodes)
+        read = home_building.read_nodes(nodes)
         self.nodes, self.ids, self.index, self.classes = read.nodes, read.ids, read.index, read.classes
         self.by_class, self.properties, self.rooms = read.by_class, read.properties, read.rooms
         self.states, self.agents = read.states, read.agents
-        rows = building.read_edges(edges, read)
+        rows = home_building.read_edges(edges, read)
         self.on, self.bears, self.inside, self.contents, self.close, self.facing, self.faced = rows[:7]
         self.between, self.agent_rows, self.others = rows[7:]
 
@@ -113,7 +113,7 @@ class Home:
             nodes, edges = list(data["nodes"]), data["edges"]
             edges = edges if isinstance(edges, EdgeColumns) else list(edges)
         except (KeyError, TypeError) as error:
-            raise building.bad_graph(f"no environment graph: {type(error).__name__} {error}") from error
+            raise home_building.bad_graph(f"no environment graph: {type(error).__name__} {error}") from error
         return cls(nodes, edges, name, knowledge)
 
     @classmethod

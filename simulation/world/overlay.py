@@ -3,11 +3,11 @@
 from collections.abc import Callable, Iterable
 from operator import or_
 
-from hearth.simulation.world import moved as kinds
+from hearth.simulation.world import moved_edges as kinds
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import change_characters
 from hearth.simulation.world.bits import cleared, indices
-from hearth.simulation.world.moved import Moved, link, unlink
+from hearth.simulation.world.moved_edges import Moved, link, unlink
 from hearth.simulation.world.rows import Numbered
 from hearth.simulation.world.world import World
 

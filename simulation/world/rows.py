@@ -9,7 +9,7 @@ from hearth.schemas.graph import Edge
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
+from hearth.simulation.world.moved_edges import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
 from hearth.simulation.world.state import WorldState
 from hearth.simulation.world.states import CLOSED
 

@@ -13,7 +13,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release, to_release
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import CLOSE, INSIDE, ON
+from hearth.simulation.world.moved_edges import CLOSE, INSIDE, ON
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 

@@ -2,7 +2,7 @@
 
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import Moved
+from hearth.simulation.world.moved_edges import Moved
 
 
 class WorldState:

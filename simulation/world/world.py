@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from hearth.schemas.change import Change
+from hearth.schemas.call_errors import explained
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.graph_change import Change
 from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, replaced
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.further import rows_with_further
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import NOTHING
+from hearth.simulation.world.moved_edges import NOTHING
 from hearth.simulation.world.nodes import with_states
 from hearth.simulation.world.state import WorldState
 from hearth.simulation.world.world_change import encode

@@ -1,15 +1,15 @@
-"""The difference of two worlds, at a cost that follows what moved: `schemas.change` for worlds."""
+"""The difference of two worlds, at a cost that follows what moved: `schemas.graph_change` for worlds."""
 
 from collections.abc import Callable, Iterator, Set
 
-from hearth.schemas.change import Change, Parts, State, difference
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.graph_change import Change, Parts, State, difference
 from hearth.schemas.vocabulary import EVERY_STATE
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
+from hearth.simulation.world.moved_edges import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
 from hearth.simulation.world.state import WorldState
 
 EdgeTurn = tuple[int, str, int, bool]

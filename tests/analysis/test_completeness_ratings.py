@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from hearth.analysis import completeness_ratings
 from hearth.analysis.completeness_ratings import Completeness
 from hearth.cli import app
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program
@@ -27,7 +27,7 @@ from hearth.schemas.syntax import parse_program
     ],
 )
 def test_the_estimate_is_what_has_to_be_inserted(knowledge, maple, steps, expected):
-    program = grammar.check(parse_program(f"{steps}\n")[0], knowledge)[0]
+    program = action_grammar.check(parse_program(f"{steps}\n")[0], knowledge)[0]
     assert completeness_ratings.estimate(program, maple, knowledge, 0) == expected
 
 

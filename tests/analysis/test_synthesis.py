@@ -14,11 +14,11 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.near_duplicates import near_texts
 from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.grounding.environments.sampling import sample
-from hearth.kb import grammar as action_grammar
+from hearth.kb import action_grammar as action_grammar
 from hearth.models.text_examples import corpus
 from hearth.pipelines.build import build
 from hearth.pipelines.checks.program_checks import contradictions
-from hearth.pipelines.readers.published import read, scan
+from hearth.pipelines.readers.published_dataset import read, scan
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng
 from hearth.schemas.syntax import parse_program

@@ -29,7 +29,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.simulation.env import Env
 from hearth.simulation.goals import Progress
-from hearth.simulation.holds import candidates
+from hearth.simulation.literal_truth import candidates
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.digest import digest

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import hearth
 from hearth import cli
 from hearth.commands import output
-from hearth.datasets import written_answers as answers
+from hearth.datasets import query_output as answers
 
 SQL = "SELECT program_id, title, steps, len(steps) AS length FROM programs ORDER BY program_id"
 

@@ -7,7 +7,7 @@ import copy
 import pyarrow as pa
 import pytest
 
-from hearth.datasets.format.cases import difference_of, difference_on_replay, environment_of, home_of, run_row
+from hearth.datasets.format.case_rows import difference_of, difference_on_replay, environment_of, home_of, run_row
 from hearth.datasets.format.codecs import (
     condition_rows,
     conditions_of,
@@ -25,9 +25,9 @@ from hearth.kb.loading.load import default
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job
-from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.schemas.graph_change import Change
 from hearth.schemas.row_types import DifferenceRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import struct

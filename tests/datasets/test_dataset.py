@@ -10,7 +10,7 @@ import pytest
 
 import hearth
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.cases import rerun
+from hearth.datasets.format.case_rows import rerun
 from hearth.datasets.format.catalog import VIEWS
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.schemas.diagnostics import HearthError

@@ -15,7 +15,7 @@ import hearth
 from hearth.datasets.format.card import write_card
 from hearth.datasets.format.croissant import write_croissant
 from hearth.datasets.format.datasheet import datasheet
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 
 ROOT = Path(__file__).resolve().parents[2]
 SHEET = yaml.safe_load((ROOT / "datasets/format/datasheet.yaml").read_text())

@@ -21,9 +21,9 @@ import hearth
 from hearth.analysis.release_replay import replay
 from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
+from hearth.datasets.export.rdf import iri, text
 from hearth.datasets.export.release_layout import ROOT
-from hearth.datasets.export.triples import iri, text
-from hearth.kb.language.phrases import parses
+from hearth.kb.language.step_phrases import parses
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.tables import TABLES

@@ -15,7 +15,7 @@ from golden_files import compare, short
 import hearth
 from hearth.datasets.export.formats import FORMATS, export
 from hearth.datasets.report.drawn_plans import draw
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 from hearth.homes import library
 
 GOLDEN = "exports.json"

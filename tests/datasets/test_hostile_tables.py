@@ -17,12 +17,12 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.diff import compare
 from hearth.datasets.export.formats import export
 from hearth.datasets.published_programs import programs
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 from hearth.datasets.verify import verify
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES
-from hearth.web.annotate.marking import films_of
+from hearth.web.annotate.annotation_marks import films_of
 
 
 @pytest.fixture

@@ -27,7 +27,7 @@ from hearth.datasets.diff import compare
 from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
 from hearth.datasets.format.catalog import earlier
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 from hearth.datasets.verify import verify
 from hearth.kb.loading.load import default
 from hearth.pipelines.build import build

@@ -16,7 +16,7 @@ import pytest
 import hearth
 from hearth.datasets.report.drawn_plans import draw
 from hearth.datasets.report.figures import figures
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Node
 from hearth.schemas.tables import TABLES

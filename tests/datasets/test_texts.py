@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.datasets.format.texts import Letters, Texts, letter
+from hearth.datasets.format.compact_texts import Letters, Texts, letter
 
 some = st.lists(st.text(st.characters(exclude_categories=["Cs"]), max_size=5) | st.sampled_from(["", "a", "é", "😀"]))
 

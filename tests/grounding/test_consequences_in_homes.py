@@ -4,7 +4,7 @@ import pytest
 
 from hearth.grounding.grounded_run import LEAST, attempt
 from hearth.homes import library
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program

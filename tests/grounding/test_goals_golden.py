@@ -6,7 +6,7 @@ from golden_files import compare, short
 from hearth.grounding.environments.goal_environments import sample_for_goal
 from hearth.grounding.environments.multi_agent import sample_together
 from hearth.homes import library
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.schemas.failures import Failure
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.goal_text import read_goal

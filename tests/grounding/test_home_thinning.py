@@ -3,7 +3,7 @@
 import pyarrow as pa
 import pytest
 
-from hearth.datasets.format.cases import environment_of, home_of
+from hearth.datasets.format.case_rows import environment_of, home_of
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.sampling import Size, sample
 from hearth.grounding.preconditions.precondition_inference import infer

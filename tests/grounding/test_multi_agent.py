@@ -3,7 +3,7 @@
 import pytest
 
 from hearth.grounding.grounded_run import attempt
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.schemas.failures import Failure
 from hearth.schemas.syntax import parse_program
 
@@ -23,7 +23,7 @@ def party(knowledge, maple):
                  if {"GRABBABLE", "DRINKABLE"} <= set(c.properties) and knowledge.placements(n)
                  and n not in maple.by_class and knowledge.same_class(n)[0] == n)  # fmt: skip
     program, faults = parse_program(PARTY.replace("apple_juice", thing))
-    program, wrong = grammar.check(program, knowledge)
+    program, wrong = action_grammar.check(program, knowledge)
     assert not faults and not wrong
     return program
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from hearth.datasets.format.cases import run_row
+from hearth.datasets.format.case_rows import run_row
 from hearth.grounding.grounded_run import Trial, attempt
 from hearth.grounding.preconditions.precondition_inference import infer
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.syntax import parse_program
@@ -14,7 +14,7 @@ from hearth.simulation.rules import DEFAULT, WATCHING_OFF, suited
 
 def read(knowledge, *steps):
     program, faults = parse_program("A title\n\n\n" + "\n".join(steps))
-    program, wrong = grammar.check(program, knowledge)
+    program, wrong = action_grammar.check(program, knowledge)
     assert not faults and not wrong
     return program
 

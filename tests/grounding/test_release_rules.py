@@ -4,7 +4,7 @@ import pytest
 
 from hearth.grounding.preconditions.precondition_inference import at_odds, infer
 from hearth.grounding.preconditions.release_rules import by_rules, compare
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.syntax import parse_program
 
@@ -13,7 +13,7 @@ from hearth.schemas.syntax import parse_program
 def read(knowledge):
     def parse(*lines):
         program, faults = parse_program("Title\nWords.\n\n\n" + "\n".join(lines) + "\n")
-        program, wrong = grammar.check(program, knowledge)
+        program, wrong = action_grammar.check(program, knowledge)
         assert not faults and not wrong
         return program
 

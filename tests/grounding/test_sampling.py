@@ -15,7 +15,7 @@ from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library
 from hearth.homes.lint import lint
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.loading.load import default, load
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, from_release
@@ -24,7 +24,7 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.vocabulary import FIRST_ADDED_ID
 from hearth.simulation.engine import run
-from hearth.simulation.holds import holds
+from hearth.simulation.literal_truth import holds
 from hearth.simulation.world.edit import extended
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -48,7 +48,7 @@ Milk from the fridge.
 
 def read(text, knowledge):
     program, faults = parse_program(text)
-    program, wrong = grammar.check(program, knowledge)
+    program, wrong = action_grammar.check(program, knowledge)
     assert not faults and not wrong
     return program
 

@@ -10,7 +10,7 @@ from hearth.grounding.binding import bind
 from hearth.grounding.environments.sampling import Size, sample
 from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.schemas.failures import Failure
 from hearth.schemas.syntax import parse_program, print_step
 from hearth.simulation.world.home import Home

@@ -96,7 +96,7 @@ ALLOWED: dict[tuple[str, str], str] = {
     ("simulation/engine.py", "what as a noun"): "the text of stored failures",
     ("web/annotate/annotate_room.py", "mend"): _URL,
     ("web/annotate/annotate_tables.py", "mend"): "a value of published tables",
-    ("web/annotate/reviewing.py", "mend"): _URL,
+    ("web/annotate/review_stage.py", "mend"): _URL,
     ("web/templates/annotate/review.html", "mend"): _URL,
 }
 """Places that keep a pattern, (file, pattern name), and the reason."""

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import hearth
+from hearth.schemas.call_errors import explained
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.explained_calls import explained
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import act

@@ -44,7 +44,7 @@ def test_no_code_lists_actions(knowledge):
         for file in files()
         for line, actions in listed((ROOT / file).read_text("utf-8"), names)
     ]
-    assert not found, "make it a group (kb/groups.py, `groups:` in kb/data/actions.yaml):\n" + "\n".join(found)
+    assert not found, "make it a group (kb/action_groups.py, `groups:` in kb/data/actions.yaml):\n" + "\n".join(found)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 OURS = {
     "storage/partitions.py": 2,  # numbers of parts
-    "storage/fetching.py": 1,  # the user's number, and a digest
+    "storage/url_fetching.py": 1,  # the user's number, and a digest
     "storage/stores.py": 1,  # the user's number
     "storage/databases.py": 1,  # numbers of a process and its databases
 }

@@ -13,7 +13,7 @@ import pytest
 
 from hearth.commands import doctor
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.libraries import EXTRAS, library, remedy
+from hearth.schemas.optional_libraries import EXTRAS, library, remedy
 from hearth.version import DISTRIBUTION
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -143,7 +143,7 @@ def test_a_missing_library_of_an_extra_is_named(monkeypatch):
 
 def test_a_wheel_says_its_own_name(monkeypatch, tmp_path):
     assert "'.[pictures]'" in remedy("pictures")
-    monkeypatch.setattr("hearth.schemas.libraries.CHECKOUT", tmp_path / "pyproject.toml")
+    monkeypatch.setattr("hearth.schemas.optional_libraries.CHECKOUT", tmp_path / "pyproject.toml")
     assert remedy("pictures") == "run `pip install 'hearth-home-programs[pictures]'`"
 
 

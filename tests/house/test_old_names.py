@@ -30,6 +30,7 @@ GONE = {
     "scoring.dataset_scores": {"read_line"},  # `scoring.line_reader`
     "scoring.metrics.goals": {"SIGNATURE", "signature_of"},  # each score's signature has a version of its own
     "scoring.signature": {"VERSION"},
+    "web.store": {"TRIES"},  # a store that is locked says so after `web.deadlines`
 }
 """Names that have no successor of the same meaning."""
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.numbered_steps import parse_steps
+from hearth.kb.language.reading_modes import Fuzzy
 from hearth.schemas.syntax import print_lines
 
 EXACT = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.kb.groups import DECLARED, DERIVED
+from hearth.kb.action_groups import DECLARED, DERIVED
 from hearth.kb.loading.load import load
 from hearth.schemas.diagnostics import HearthError
 

@@ -3,7 +3,7 @@
 import pytest
 
 from hearth.kb.language.numbered_steps import parse_steps
-from hearth.kb.language.understanding import understand
+from hearth.kb.language.step_understanding import understand
 
 
 def suggestion(knowledge, sentence):

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.kb.language.fuzzy import Fuzzy
 from hearth.kb.language.lexicon import foreign_language, is_english, is_noun, is_verb, verb_lemmas
+from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.numbered_steps import parse_steps
-from hearth.kb.language.phrases import say
+from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
-from hearth.kb.language.things import thing_of
-from hearth.kb.language.understanding import understand
+from hearth.kb.language.step_phrases import say
+from hearth.kb.language.step_understanding import understand
 from hearth.schemas.syntax import print_lines
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.kb.language.understanding import ACCEPTED, understand
+from hearth.kb.language.step_understanding import ACCEPTED, understand
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.kb.language.phrases import parses, say
+from hearth.kb.language.step_phrases import parses, say
 from hearth.kb.tools import graph_and_tables
 from hearth.kb.tools.action_table import action_table
 from hearth.kb.tools.export import export

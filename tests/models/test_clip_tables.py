@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hearth.models.films import clip_tables
+from hearth.models.films import clip_result_tables
 from hearth.models.films.clip_confusion import drawn, of_pairs
 from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.mask_clip_model import TrainedSeenModel
@@ -43,14 +43,14 @@ def given(monkeypatch):
         Clip(0, 0, done, kind, 1) for done, kind in ((WALK, "seen"),) * 2 + ((GRAB, "seen"), (GRAB, "unseen"))
     )
     models = {"a": ("clips-seen", Named(WALK)), "b": ("clips-seen", Named(GRAB)), "m": ("masks", Masked())}
-    monkeypatch.setattr(clip_tables.Clips, "of", lambda *_, **__: Clips(("film",), films, clips, 9))
-    monkeypatch.setattr(clip_tables, "restore", models.__getitem__)
-    monkeypatch.setattr(clip_tables, "named_in_films", lambda trained, test, _: [GRAB] * len(test))
+    monkeypatch.setattr(clip_result_tables.Clips, "of", lambda *_, **__: Clips(("film",), films, clips, 9))
+    monkeypatch.setattr(clip_result_tables, "restore", models.__getitem__)
+    monkeypatch.setattr(clip_result_tables, "named_in_films", lambda trained, test, _: [GRAB] * len(test))
     return models
 
 
 def test_rows_are_of_homes_and_seeds(given):
-    rows = clip_tables.clip_table("4.3", None, ["a", "b"])
+    rows = clip_result_tables.clip_table("4.3", None, ["a", "b"])
     ours = {row.homes: row for row in rows if row.method == "clips-seen"}
     whole = [row.scores["action"] for row in rows if row.method == "clips-seen, whole film"]
     assert whole == [0.5, 1.0, 0.5]
@@ -62,22 +62,22 @@ def test_rows_are_of_homes_and_seeds(given):
 
 
 def test_predicted_masks_need_a_network_that_predicts_them(given):
-    rows = clip_tables.clip_table("4.2", None, ["a", "m"])
+    rows = clip_result_tables.clip_table("4.2", None, ["a", "m"])
     assert [row.method for row in rows if row.of == "ours"] == ["clips-seen"] * 3 + ["clips-seen, whole film"] * 3
     assert given["a"][1].films[0][0].tolist() == np.ones((9, 2, 2)).tolist()
     with pytest.raises(HearthError, match="0 checkpoints of `masks`"):
-        clip_tables.clip_table("4.2", None, ["a"])
+        clip_result_tables.clip_table("4.2", None, ["a"])
 
 
 def test_models_look_at_what_the_table_is_about(given):
     with pytest.raises(HearthError, match="does not look at"):
-        clip_tables.clip_table("4.3", None, ["m"])
+        clip_result_tables.clip_table("4.3", None, ["m"])
     with pytest.raises(HearthError, match="does not look at"):
-        clip_tables.clip_table("4.3b", None, ["a"])
+        clip_result_tables.clip_table("4.3b", None, ["a"])
 
 
 def test_the_thesis_has_a_mean_of_its_columns():
-    for table in clip_tables.TABLES.values():
+    for table in clip_result_tables.TABLES.values():
         for *parts, mean in table.thesis.values():
             assert mean == pytest.approx(sum(parts) / 3, abs=6e-4)
 

@@ -1,4 +1,4 @@
-"""Whether a literal holds, read slowly off the edges of a graph: the twin of `hearth.simulation.holds`.
+"""Whether a literal holds, read slowly off the edges of a graph: the twin of `hearth.simulation.literal_truth`.
 
 Every predicate is asked of one node, or of one and another; what a term stands for is tried node by node.
 """

@@ -18,7 +18,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
-from hearth.pipelines.readers.recognise import recognise
+from hearth.pipelines.readers.recognition_by_content import recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.published_rows import ProgramRow
 from hearth.schemas.rng import rng
@@ -80,7 +80,7 @@ def _programs() -> bytes:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    from hearth.pipelines.readers.published import COLUMNS
+    from hearth.pipelines.readers.published_dataset import COLUMNS
 
     step: StepRow = {"agent": 0, "action": "Sleep", "objects": [], "joins": False, "modifiers": [], "line": 1}
     program: ProgramRow = {

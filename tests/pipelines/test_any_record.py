@@ -14,7 +14,7 @@ from hearth.pipelines import ingest
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Partition, Stage
-from hearth.pipelines.readers import ours
+from hearth.pipelines.readers import json_records
 from hearth.pipelines.readers.crowd import DESCRIPTIONS
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -183,10 +183,10 @@ def test_a_file_whose_name_is_not_text(built, write, name):
 
 def test_a_reader_that_breaks_while_it_looks_for_records(built, write, monkeypatch):
     def scan(path, place, columns):
-        yield from ours.items(GOOD, place, 1, place, columns)
+        yield from json_records.items(GOOD, place, 1, place, columns)
         raise IndexError("a fault of the reader")
 
-    monkeypatch.setitem(ingest.SCANNERS, ours.NAME, scan)
+    monkeypatch.setitem(ingest.SCANNERS, json_records.NAME, scan)
     titles, refused = ingested(built, write("a.jsonl", json.dumps(GOOD) + "\n" + json.dumps(GOOD)))
     assert titles == ["Nap"]
     assert [row["code"] for row in refused] == [INTERNAL_ERROR]
@@ -197,11 +197,11 @@ def test_a_reader_that_breaks_while_it_looks_for_records(built, write, monkeypat
                          ids=("surrogate", "object", "large", "key"))  # fmt: skip
 def test_an_item_that_cannot_be_stored(built, write, monkeypatch, value):
     def scan(path, place, columns):
-        yield from ours.items(GOOD, place, 1, "one", columns)
-        yield from ours.items({**GOOD, **value}, place, 2, "two", columns)
-        yield from ours.items({**GOOD, "title": "Read"}, place, 3, "three", columns)
+        yield from json_records.items(GOOD, place, 1, "one", columns)
+        yield from json_records.items({**GOOD, **value}, place, 2, "two", columns)
+        yield from json_records.items({**GOOD, "title": "Read"}, place, 3, "three", columns)
 
-    monkeypatch.setitem(ingest.SCANNERS, ours.NAME, scan)
+    monkeypatch.setitem(ingest.SCANNERS, json_records.NAME, scan)
     titles, refused = ingested(built, write("a.jsonl", json.dumps(GOOD) + "\n" + json.dumps(GOOD)))
     assert titles == ["Nap", "Read"] and len(refused) == 1
 

@@ -3,7 +3,7 @@
 import pytest
 
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
-from hearth.pipelines.readers.item import Item
+from hearth.pipelines.readers.reader_items import Item
 
 WORDS = "Walk to the kitchen and open the fridge. Take the milk out and pour yourself a glass of it."
 STEPS = [f"[Walk] <thing_{number}> (1)" for number in range(10)]

@@ -14,7 +14,7 @@ from hearth.datasets.dataset_homes import digest, own_homes
 from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
 from hearth.datasets.export.problems import tasks
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 from hearth.datasets.verify import verify
 from hearth.homes.library import load_graph
 from hearth.pipelines.build import build

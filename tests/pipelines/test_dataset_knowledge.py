@@ -16,9 +16,9 @@ from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
 from hearth.datasets.export.planning import helpful
 from hearth.datasets.export.problems import tasks
-from hearth.datasets.format.cases import rerun
+from hearth.datasets.format.case_rows import rerun
 from hearth.datasets.format.stored_cases import stored_cases
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 from hearth.datasets.verify import StoredHomes, verify
 from hearth.kb.loading.load import default, digest
 from hearth.pipelines.build import build

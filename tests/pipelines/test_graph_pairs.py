@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hearth.pipelines.readers.graph_pairs import EDGE, read_pair
-from hearth.schemas.change import Change, Parts, difference, states_of
 from hearth.schemas.graph import EdgeColumns, read_node
+from hearth.schemas.graph_change import Change, Parts, difference, states_of
 
 ids = st.sampled_from([*range(1, 30), 17, 77, 107, 1000])
 edges = st.lists(st.tuples(ids, st.sampled_from(["ON", "INSIDE", "CLOSE", "HOLDS_RH"]), ids), min_size=1, max_size=40)

@@ -8,7 +8,7 @@ import pytest
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
-from hearth.pipelines.readers import spreadsheets
+from hearth.pipelines.readers import program_tables
 from hearth.pipelines.readers.delimited import Rows
 from hearth.pipelines.readers.table_heads import begun
 from hearth.schemas.diagnostics import HearthError
@@ -323,7 +323,7 @@ def test_an_object_of_plans_on_a_line_each_loses_none(write):
 
 def test_another_column_that_reads_as_steps_is_said(write):
     path = write("a.csv", 'name,morning,evening\nAnn,"walk to lamp, sleep","lie on bed, sleep"\n')
-    assert spreadsheets.table_of(path, {}).columns.rivals == {"program": ["evening"]}
+    assert program_tables.table_of(path, {}).columns.rivals == {"program": ["evening"]}
 
 
 def test_comments_in_json_keep_the_places_of_steps(write):

@@ -18,7 +18,7 @@ from hearth.datasets.export.release_layout import stem
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers.crowd import PROGRAMS
-from hearth.pipelines.readers.recognise import recognise
+from hearth.pipelines.readers.recognition_by_content import recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import Program
 from hearth.storage.csv_files import safe_cell

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from hearth.pipelines.readers import elements, item
+from hearth.pipelines.readers import json_elements, reader_items
 from hearth.schemas.failures import Code
 from hearth.storage.rejects import Reject
 
@@ -20,11 +20,11 @@ VALUES = st.recursive(
 
 @pytest.fixture
 def cut(monkeypatch):
-    return lambda size: monkeypatch.setattr(item, "_PIECE", size)
+    return lambda size: monkeypatch.setattr(reader_items, "_PIECE", size)
 
 
 def values(path, key=""):
-    return [value for _, value in elements.entries(path, "f", key)]
+    return [value for _, value in json_elements.entries(path, "f", key)]
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -45,7 +45,9 @@ def test_a_list_under_a_key(tmp_path, cut, other, listed, order, size):
     file.write_text(json.dumps({key: whole[key] for key in order}))
     assert values(file, "answer") == listed
     marks = {list: "[", dict: "{", str: '"'}
-    assert elements.kinds(file) == {k: marks[type(v)] for k, v in whole.items() if isinstance(v, list | dict | str)}
+    assert json_elements.kinds(file) == {
+        k: marks[type(v)] for k, v in whole.items() if isinstance(v, list | dict | str)
+    }
 
 
 @pytest.mark.parametrize(
@@ -71,7 +73,7 @@ def test_comments_and_a_last_comma_mean_nothing(tmp_path, cut, size):
 
 
 def test_an_entry_without_end_is_refused_and_not_kept(tmp_path, monkeypatch):
-    monkeypatch.setattr(elements, "LONGEST_ENTRY", 1_000)
+    monkeypatch.setattr(json_elements, "LONGEST_ENTRY", 1_000)
     file = tmp_path / "a.json"
     file.write_text(json.dumps(["short", "x" * 2_000_000, "after"]))
     short, refusal = values(file)

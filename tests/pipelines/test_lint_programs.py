@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.loading.load import default
 from hearth.pipelines.checks import program_checks
 from hearth.pipelines.crowd import topics
@@ -33,7 +33,7 @@ def test_switched_on_twice():
     ],
 )
 def test_used_without_a_walk(knowledge, steps, missing):
-    found = list(program_checks.not_close(grammar.check(program(steps), knowledge)[0], knowledge))
+    found = list(program_checks.not_close(action_grammar.check(program(steps), knowledge)[0], knowledge))
     assert [(one.step, print_step(one.before[0])) for one in found] == missing
 
 
@@ -63,7 +63,7 @@ def test_words_about_other_things(knowledge, description, is_off):
     ],
 )
 def test_words_related_to_a_thing_without_its_name(knowledge, steps, title, description, is_off):
-    given = grammar.check(program(steps + "\n", title, description), knowledge)[0]
+    given = action_grammar.check(program(steps + "\n", title, description), knowledge)[0]
     assert bool(list(topics.off_topic(given, knowledge))) == is_off
 
 
@@ -88,7 +88,7 @@ def test_going_is_an_effect_where_the_title_says_so():
 
 def test_lamps_and_associated_things_are_within_reach(knowledge):
     for steps in ("[Walk] <bedroom> (1)\n[SwitchOn] <light> (1)\n", "[Walk] <bathtub> (1)\n[SwitchOn] <faucet> (1)\n"):
-        assert not list(program_checks.not_close(grammar.check(program(steps), knowledge)[0], knowledge))
+        assert not list(program_checks.not_close(action_grammar.check(program(steps), knowledge)[0], knowledge))
 
 
 def test_what_was_declared(knowledge):

@@ -12,7 +12,7 @@ from hearth.commands.inputs import read_programs
 from hearth.kb.language.plan_lines import META, ROLE, is_said_around, plan_line
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.program_blocks import TITLE
+from hearth.schemas.program_boundaries import TITLE
 from hearth.storage.rejects import Reject
 
 PLANS = Path(__file__).parents[1] / "messy/plans.jsonl"

@@ -14,7 +14,7 @@ from hearth.kb.language.plan_lines import plan_line
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items
 from hearth.pipelines.ingest import read as read_item
-from hearth.pipelines.readers.columns import guessed, read_columns, shown
+from hearth.pipelines.readers.field_columns import guessed, read_columns, shown
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.rejects import Reject
 

@@ -7,7 +7,7 @@ import zipfile
 import pytest
 from read_sources import PROGRAM, answer, batch, faults, read, rows, zipped
 
-from hearth.pipelines.readers.recognise import recognise
+from hearth.pipelines.readers.recognition_by_content import recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.files import SERVED
 

@@ -13,8 +13,8 @@ import pytest
 import hearth
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.stages import stage
-from hearth.storage import exchange
-from hearth.storage.exchange import away, beside, present, put_in_place, recover, start_from
+from hearth.storage import folder_exchange
+from hearth.storage.folder_exchange import away, beside, present, put_in_place, recover, start_from
 
 READER = """
 import sys
@@ -81,8 +81,10 @@ def test_a_dataset_that_is_open_goes_on_with_the_new_one(again, tmp_path):
 
 def test_nothing_is_missing_until_the_new_one_is_complete(again, tmp_path, monkeypatch):
     folder, seen = tmp_path / "out/publish", []
-    before, exchanged = key(folder), exchange.exchanged
-    monkeypatch.setattr(exchange, "exchanged", lambda one, other: seen.append(key(folder)) or exchanged(one, other))
+    before, exchanged = key(folder), folder_exchange.exchanged
+    monkeypatch.setattr(
+        folder_exchange, "exchanged", lambda one, other: seen.append(key(folder)) or exchanged(one, other)
+    )
     assert again(1).fresh
     assert seen == [before] and key(folder) != before
     assert not beside(folder).exists()
@@ -131,14 +133,14 @@ def folders(tmp_path):
 @pytest.mark.parametrize("can", [True, False])
 def test_a_folder_takes_the_place_of_another(folders, monkeypatch, can):
     if not can:
-        monkeypatch.setattr(exchange, "_renameat2", lambda: None)
+        monkeypatch.setattr(folder_exchange, "_renameat2", lambda: None)
     put_in_place(folders)
     assert sorted(path.name for path in folders.iterdir()) == ["new", "part"]
     assert [path.name for path in folders.parent.iterdir()] == ["data"]
 
 
 def test_where_folders_cannot_be_exchanged_a_stopped_build_loses_nothing(folders, monkeypatch):
-    monkeypatch.setattr(exchange, "_renameat2", lambda: None)
+    monkeypatch.setattr(folder_exchange, "_renameat2", lambda: None)
     beside(folders).rename(folders.parent / "kept")
     with pytest.raises(FileNotFoundError):
         put_in_place(folders)  # stops between the two renames

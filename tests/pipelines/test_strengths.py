@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 import hearth
 from hearth import cli
 from hearth.analysis.augmentation_results import figures
-from hearth.datasets.report.write import write_report
+from hearth.datasets.report.report_writer import write_report
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.tiers import tiered
 from hearth.repair.perturbation_strengths import STRENGTHS_FILE, load_strengths

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hearth.pipelines.crowd.duplicate_records import Repeated
 from hearth.pipelines.crowd.key_counts import SeenSet, digest
 from hearth.pipelines.readers import text_blocks as subject
-from hearth.pipelines.readers.item import Item
-from hearth.schemas.program_blocks import STEP, Splitter
+from hearth.pipelines.readers.reader_items import Item
+from hearth.schemas.program_boundaries import STEP, Splitter
 
 LINES = (
     "Watch TV", "A sentence here.", "[Walk] <a> (1)", "", "", "", "  ", "\t", "<char0> [Sit] <b> (1)", "| x",

@@ -9,7 +9,7 @@ from read_sources import HEADER, answer, batch, faults, read, rows
 from hearth.datasets.format.ids import current_id
 from hearth.pipelines.build import FIRST, corpus
 from hearth.pipelines.readers import crowd
-from hearth.pipelines.readers.item import worker_hash
+from hearth.pipelines.readers.reader_items import worker_hash
 
 WRITTEN = f"Origin,Writer,Style,{HEADER.replace('WorkerId,', '')}"
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from hearth.grounding.preconditions.postconditions import nodes_of, reached
 from hearth.homes import library
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.loading.load import default
 from hearth.repair.augmentation import Augmented, Options, augment
 from hearth.repair.repair_loop import TRIES, repair
@@ -42,7 +42,7 @@ def programs():
     with CORPUS.open(newline="") as file:
         for row in csv.DictReader(file):
             program, faults = parse_program("Title\n\n\n" + row["Answer.program"])
-            checked, wrong = grammar.check(program, default())
+            checked, wrong = action_grammar.check(program, default())
             if not faults and not wrong and 3 <= len(checked.steps) <= 20:
                 found.append((row["HITId"], checked))
     return found
@@ -141,7 +141,7 @@ def release_programs(real_data: Path):
     with zipfile.ZipFile(real_data / "activityprograms-sample.zip") as release:
         names = sorted(name for name in release.namelist() if "withoutconds" in name and name.endswith(".txt"))
         texts = [(name, parse_program(release.read(name).decode())[0]) for name in names]
-    return [(name, grammar.check(program, default())[0]) for name, program in texts]
+    return [(name, action_grammar.check(program, default())[0]) for name, program in texts]
 
 
 def share_repaired(found: list[Augmented]) -> tuple[float, int]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from golden_files import compare, short
 
 from hearth.homes import library
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.kb.loading.load import default
 from hearth.repair.augmentation import Augmented, Options, augment
 from hearth.repair.completion import complete

@@ -16,7 +16,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.syntax import print_step
 from hearth.simulation.engine import run
-from hearth.simulation.holds import holds
+from hearth.simulation.literal_truth import holds
 
 BRINGS = {"Open": "OPEN", "SwitchOn": "ON"}
 ENDS = {"Close": "OPEN", "SwitchOff": "ON"}

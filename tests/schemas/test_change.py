@@ -6,8 +6,8 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.schemas.change import Change, WorkingGraph, apply, compose, encode, in_states
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.schemas.graph_change import Change, WorkingGraph, apply, compose, encode, in_states
 from hearth.schemas.vocabulary import RELATIONS, STATES
 
 IDS = range(1, 7)

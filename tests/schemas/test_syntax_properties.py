@@ -3,11 +3,11 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program, parse_programs, parse_steps, print_program, print_step
+from hearth.schemas.text_decoding import decode
 
 WORD = st.text("abz09", min_size=1, max_size=3)
 NAME = st.lists(WORD, min_size=1, max_size=3).map("_".join)

@@ -2,9 +2,9 @@
 
 import pytest
 
-from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
+from hearth.schemas.text_decoding import decode
 
 TEXT = "Café\n“Sit”\n\n[Walk] <bed> (1)\n"
 

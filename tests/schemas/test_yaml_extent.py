@@ -12,7 +12,7 @@ from hearth.homes import library
 from hearth.repair.perturbation_strengths import load_strengths
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.yaml_extent import DEEPEST, LARGEST, MOST, too_much
+from hearth.schemas.yaml_limits import DEEPEST, LARGEST, MOST, too_much
 
 LAUGHS = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"a{number}: &a{number} [{', '.join([f'*a{number - 1}'] * 9)}]\n" for number in range(1, 9)

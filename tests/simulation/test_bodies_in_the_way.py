@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from walks import at, id_of, step, walked
 
 from hearth.homes.plans.floor import REACH
-from hearth.simulation.actions.metres import _in_the_way
+from hearth.simulation.actions.metric_checks import _in_the_way
 from hearth.simulation.engine import tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.navigation import BODY_RADIUS

@@ -15,7 +15,7 @@ from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.observation import reach
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world import rows
-from hearth.simulation.world.derived import Movable
+from hearth.simulation.world.derived_homes import Movable
 from hearth.simulation.world.edit import added_nodes, apply, edit, extended, free_id
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from hearth.grounding.binding import bind_stored
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
 from hearth.schemas.syntax import parse_program
@@ -38,7 +38,7 @@ def gold():
         place = path.relative_to(folder / ROOT / "executable_programs").with_suffix(".json")
         pair = folder / ROOT / "init_and_final_graphs" / place
         if path.stem.removeprefix("file") in tasks and pair.is_file():
-            program, _ = grammar.check(parse_program(path.read_text(), str(path))[0], known)
+            program, _ = action_grammar.check(parse_program(path.read_text(), str(path))[0], known)
             home = Home.from_release(json.loads(pair.read_text())["init_graph"], "", known)
             yield path.stem, program, World.start(home)
 

@@ -12,8 +12,8 @@ from hearth.kb.loading.load import default
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.engine import act
-from hearth.simulation.explain import checks
 from hearth.simulation.rules import DEFAULT
+from hearth.simulation.step_explanations import checks
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 

@@ -17,7 +17,7 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
 from hearth.simulation.goal_text import read_goal
 from hearth.simulation.goals import Progress
-from hearth.simulation.holds import holds
+from hearth.simulation.literal_truth import holds
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 

@@ -21,7 +21,7 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
 from hearth.simulation.goals import Progress
-from hearth.simulation.holds import BINARY, UNARY, candidates, holds
+from hearth.simulation.literal_truth import BINARY, UNARY, candidates, holds
 from hearth.simulation.observation.reach import in_room, out_of_sight
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home

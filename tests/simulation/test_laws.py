@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from small_worlds import graphs, homes_and_steps
 
 from hearth.kb.loading.load import default
-from hearth.schemas.change import encode
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.graph_change import encode
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.engine import act, run

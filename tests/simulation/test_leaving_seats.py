@@ -19,7 +19,7 @@ from hearth.schemas.literals import Literal
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act
 from hearth.simulation.env import with_agents
-from hearth.simulation.holds import holds
+from hearth.simulation.literal_truth import holds
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.rules import DEFAULT, REPLAY, RULES, read

@@ -13,7 +13,7 @@ from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
 from hearth.simulation.observation import reach
-from hearth.simulation.observation.as_seen import as_seen
+from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.rules import DEFAULT, REPLAY
 from hearth.simulation.world import rows
 from hearth.simulation.world.edit import edit

@@ -24,9 +24,9 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act
-from hearth.simulation.explain import checks
-from hearth.simulation.holds import holds
+from hearth.simulation.literal_truth import holds
 from hearth.simulation.rules import DEFAULT, REPLAY, RULES, read
+from hearth.simulation.step_explanations import checks
 from hearth.simulation.world.affordance import of_kind
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World

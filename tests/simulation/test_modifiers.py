@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hearth.homes.plans.floor import REACH, gaps
-from hearth.kb.grammar import check
+from hearth.kb.action_grammar import check
 from hearth.kb.loading.load import default
 from hearth.kb.modifiers import MODIFIERS, faults
 from hearth.schemas.diagnostics import HearthError

@@ -16,7 +16,7 @@ from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
 from hearth.simulation.observation.views import view
 from hearth.simulation.rules import DEFAULT, REPLAY
-from hearth.simulation.world import building
+from hearth.simulation.world import home_building
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -205,7 +205,7 @@ def test_large_and_small_homes_are_read_alike(seed, monkeypatch):
     extra = (Edge(1, "HOLDS_LH", 1), Edge(1, "LIKES", spread[1]), Edge(spread[1], "LIKES", spread[1]))
     moved = tuple(Edge(spread[a], r, spread[b]) for a, r, b in graph.edges) + extra
     small = Home.from_graph(EnvironmentGraph(nodes, moved), "", default())
-    monkeypatch.setattr(building, "LARGEST_MATRIX", 0)
+    monkeypatch.setattr(home_building, "LARGEST_MATRIX", 0)
     large = Home.from_graph(EnvironmentGraph(nodes, moved), "", default())
     assert small.rows == large.rows
     assert (small.agent_rows, small.others, small.states) == (large.agent_rows, large.others, large.states)

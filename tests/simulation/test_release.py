@@ -10,7 +10,7 @@ from oracles import engine as reference
 from oracles.world import Options
 from oracles.world import World as PlainWorld
 
-from hearth.kb import grammar
+from hearth.kb import action_grammar
 from hearth.schemas.graph import from_release
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
@@ -27,7 +27,7 @@ def cases(folder, knowledge, every: int = 1):
             graphs = name.replace("executable_programs", "init_and_final_graphs").replace(".txt", ".json")
             data = orjson.loads(sample.read(graphs))
             program, faults = parse_program(sample.read(name).decode(), name)
-            checked, more = grammar.check(program, knowledge)
+            checked, more = action_grammar.check(program, knowledge)
             assert not (*faults, *more)
             yield name, checked, data["init_graph"], data["final_graph"]
 

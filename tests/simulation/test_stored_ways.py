@@ -10,9 +10,9 @@ from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.simulation.motion import stored_ways
+from hearth.simulation.motion import stored_distance_fields
+from hearth.simulation.motion.distance_field_jobs import Wanted, make
 from hearth.simulation.motion.ground import ground_of
-from hearth.simulation.motion.making_ways import Wanted, make
 from hearth.simulation.motion.navigation import Ways
 from hearth.simulation.world.home import Home
 
@@ -27,14 +27,14 @@ def ground(maple):
 def stored(ground, folder):
     """The ways of the floor anew, which read what a folder holds."""
     ways = Ways(ground.floor)
-    ways.stored = stored_ways.StoredWays(ways, folder).field
+    ways.stored = stored_distance_fields.StoredWays(ways, folder).field
     ways._field = None  # nothing can be computed
     return ways
 
 
 def test_what_is_read_is_what_is_computed(ground, tmp_path):
     every = ground.every()[:FEW]
-    stored_ways.store(ground.ways, every, tmp_path)
+    stored_distance_fields.store(ground.ways, every, tmp_path)
     ways = stored(ground, tmp_path)
     for ends in every:
         made, read = Ways(ground.floor).field(ends), ways.field(ends)
@@ -89,26 +89,26 @@ def test_what_is_not_true_is_not_taken(ground, tmp_path, change):
     distance, following = np.array(made.distance), np.array(made.following)
     far, cell = np.argsort(np.where(np.isfinite(distance), distance, -1))[[-1, -9]]
     change(distance, following, cell, far)
-    schema = stored_ways._schema(len(distance))
+    schema = stored_distance_fields._schema(len(distance))
     lists = [pa.FixedSizeListArray.from_arrays(pa.array(each), len(distance)) for each in (distance, following)]
     batch = pa.RecordBatch.from_arrays([pa.array([ends], schema.field("ends").type), *lists], schema=schema)
-    with pa.ipc.new_file(str(stored_ways.file_of(ground.ways, tmp_path)), schema) as file:
+    with pa.ipc.new_file(str(stored_distance_fields.file_of(ground.ways, tmp_path)), schema) as file:
         file.write_batch(batch)
-    assert stored_ways.StoredWays(Ways(ground.floor), tmp_path).field(ends) is None
+    assert stored_distance_fields.StoredWays(Ways(ground.floor), tmp_path).field(ends) is None
 
 
 @pytest.mark.parametrize("data", [b"", b"ARROW1", b"\0" * 4096])
 def test_a_file_that_is_none_of_ours_is_left_alone(ground, tmp_path, data):
-    stored_ways.file_of(ground.ways, tmp_path).write_bytes(data)
-    assert stored_ways.StoredWays(ground.ways, tmp_path).field(ground.every()[0]) is None
+    stored_distance_fields.file_of(ground.ways, tmp_path).write_bytes(data)
+    assert stored_distance_fields.StoredWays(ground.ways, tmp_path).field(ground.every()[0]) is None
 
 
 def test_a_file_that_is_cut_short(ground, tmp_path):
-    file = stored_ways.store(ground.ways, ground.every()[:2], tmp_path)
+    file = stored_distance_fields.store(ground.ways, ground.every()[:2], tmp_path)
     whole = file.read_bytes()
     for share in (0.1, 0.5, 0.9, 0.99):
         file.write_bytes(whole[: int(share * len(whole))])
-        assert stored_ways.StoredWays(ground.ways, tmp_path).field(ground.every()[0]) is None
+        assert stored_distance_fields.StoredWays(ground.ways, tmp_path).field(ground.every()[0]) is None
 
 
 def test_ways_of_homes_by_their_floors(tmp_path, monkeypatch):
@@ -120,15 +120,15 @@ def test_ways_of_homes_by_their_floors(tmp_path, monkeypatch):
 
 
 def test_the_folder_is_the_user_s(monkeypatch, tmp_path):
-    assert stored_ways.folder().name == "ways"
-    monkeypatch.setenv(stored_ways.VARIABLE, str(tmp_path))
-    assert stored_ways.folder() == tmp_path
+    assert stored_distance_fields.folder().name == "ways"
+    monkeypatch.setenv(stored_distance_fields.VARIABLE, str(tmp_path))
+    assert stored_distance_fields.folder() == tmp_path
 
 
 def test_a_folder_that_cannot_be_written(ground, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(HearthError) as raised:
-        stored_ways.store(ground.ways, ground.every()[:1], tmp_path / "file")
+        stored_distance_fields.store(ground.ways, ground.every()[:1], tmp_path / "file")
     assert raised.value.diagnostics[0].code == Code.UNWRITABLE
 
 

@@ -12,8 +12,8 @@ from hearth.schemas.vocabulary import STATES
 from hearth.simulation.engine import act
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.changed_nodes import BY_PLACE, changed, unchanged
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.touched import BY_PLACE, changed, unchanged
 from hearth.simulation.world.world import World
 
 RELATIONS = ("ON", "INSIDE", "CLOSE", "FACING", "HOLDS_RH", "HOLDS_LH")

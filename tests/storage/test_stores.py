@@ -20,10 +20,10 @@ from hearth.datasets.verify import verify  # noqa: E402
 from hearth.pipelines.build import build  # noqa: E402
 from hearth.schemas.diagnostics import HearthError  # noqa: E402
 from hearth.schemas.failures import Code  # noqa: E402
-from hearth.storage.fetching import _temporary_folder, fetched  # noqa: E402
 from hearth.storage.files import file_digest  # noqa: E402
 from hearth.storage.remote import url_of  # noqa: E402
 from hearth.storage.stores import Store, store, working  # noqa: E402
+from hearth.storage.url_fetching import _temporary_folder, fetched  # noqa: E402
 
 URL = "memory://bucket/evening"
 
@@ -354,7 +354,7 @@ def test_copies_are_closed_to_others_and_removed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.txt").write_text("a")
     asked = """if True:
-        from hearth.storage.fetching import fetched
+        from hearth.storage.url_fetching import fetched
         from hearth.storage.stores import Store
         print(fetched("file://a.txt"))
         print(Store("memory://x").work)"""

@@ -1,9 +1,9 @@
 """A study small enough to be simulated in a test."""
 
 from hearth.kb.loading.load import default
-from hearth.studies.simulate import Crowd
 from hearth.studies.simulated_study import simulated_study
 from hearth.studies.study_file import study_of
+from hearth.studies.study_simulation import Crowd
 
 SMALL = """
 name: small

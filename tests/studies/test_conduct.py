@@ -6,10 +6,10 @@ from studies.small import small
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.studies.conduct import CONSENT, DONE, EXIT, LEFT, PRACTICE, QUESTIONS, TRIAL, TUTORIAL, Conduct
 from hearth.studies.events import PLACES, Event, FileLedger, MemoryLedger
-from hearth.studies.simulate import Ahead, play_ahead
 from hearth.studies.simulated_people import simulated_person
+from hearth.studies.study_progress import CONSENT, DONE, EXIT, LEFT, PRACTICE, QUESTIONS, TRIAL, TUTORIAL, Conduct
+from hearth.studies.study_simulation import Ahead, play_ahead
 
 
 class Clock:

@@ -10,7 +10,7 @@ from studies.small import simulated
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.studies.judged_films import JudgedFilm, read_films
+from hearth.studies.films_to_judge import JudgedFilm, read_films
 from hearth.studies.study_folder import EVENTS, opened
 
 FILM = JudgedFilm(0, "written", "000-a", "a", "Title: text", "rowan", 0.5, ["[Walk] <kitchen> (1)"]).as_json()

@@ -9,9 +9,9 @@ from web.test_study_room import JUDGE
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.files import write_json
-from hearth.studies.judged_films import JudgedFilm
-from hearth.studies.prepare import prepared
+from hearth.studies.films_to_judge import JudgedFilm
 from hearth.studies.study_file import study_of
+from hearth.studies.study_preparation import prepared
 
 REPLAYED = JUDGE.replace("each: 1", "each: 1\n  shown: replay")
 

@@ -16,12 +16,12 @@ from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.studies.events import PLACES
-from hearth.studies.prepare import prepared
-from hearth.studies.simulate import Crowd, visits
 from hearth.studies.study_file import named
 from hearth.studies.study_findings import AGENT, PEOPLE, findings
 from hearth.studies.study_folder import EVENTS, opened
+from hearth.studies.study_preparation import prepared
 from hearth.studies.study_report import page
+from hearth.studies.study_simulation import Crowd, visits
 from hearth.studies.study_tables import TABLES, Rows, archive, export, person_of
 
 HOLDING = """

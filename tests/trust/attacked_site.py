@@ -16,7 +16,7 @@ from hearth.kb.loading.load import default
 from hearth.web.application import application
 from hearth.web.limits import RATES, Rate
 from hearth.web.play import start_trial
-from hearth.web.play.trials import published, trial
+from hearth.web.play.play_trials import published, trial
 from hearth.web.sessions import find
 from hearth.web.store import Store, default_url
 

@@ -71,8 +71,8 @@ def exports() -> Iterator[Attack]:
 
 def names() -> Iterator[Attack]:
     """Names as archives and stores list them."""
-    from hearth.storage.fetching import fetched
     from hearth.storage.names import file_name, inside
+    from hearth.storage.url_fetching import fetched
 
     def unzip(name: str, ground: Ground) -> Any:
         path = ground.folder / "dataset.zip"
@@ -263,7 +263,7 @@ def reports() -> Iterator[Attack]:
     """Markup in every text that a page shows."""
     from markupsafe import escape
 
-    from hearth.datasets.report.write import write_report
+    from hearth.datasets.report.report_writer import write_report
 
     def write(text: str, ground: Ground) -> None:
         out = ground.folder / "page"

@@ -63,7 +63,7 @@ def used(known: Knowledge, folder: Path) -> Any:
     from hearth.commands.inputs import read_programs
     from hearth.datasets.export.planning_domain import planning_domain
     from hearth.kb.consistency import lint
-    from hearth.kb.language.phrases import parses, say
+    from hearth.kb.language.step_phrases import parses, say
     from hearth.kb.tools.pddl import domain
 
     file = folder.parent / f"{folder.name}.txt"

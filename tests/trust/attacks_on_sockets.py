@@ -13,7 +13,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from hearth.kb.loading.load import default
 from hearth.web.play import start_trial
-from hearth.web.play.trials import published, trial
+from hearth.web.play.play_trials import published, trial
 from hearth.web.sessions import find
 
 FRAMES: tuple[Any, ...] = (

@@ -18,7 +18,7 @@ from attacks_on_studies import JUDGED
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
-from hearth.studies.judged_films import JudgedFilm
+from hearth.studies.films_to_judge import JudgedFilm
 from hearth.studies.study_file import study_of
 from hearth.studies.study_findings import findings
 from hearth.studies.study_folder import EVENTS, FILMS, opened

@@ -19,15 +19,15 @@ from attack import DEEP, Attack, Ground
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.names import inside
-from hearth.studies.filming import film_path
-from hearth.studies.judged_films import JudgedFilm, read_films
-from hearth.studies.judged_programs import program_of
-from hearth.studies.simulate import Crowd
+from hearth.studies.films_to_judge import JudgedFilm, read_films
+from hearth.studies.judged_film_files import film_path
+from hearth.studies.programs_to_judge import program_of
 from hearth.studies.simulated_study import simulated_study
 from hearth.studies.study_file import read_study, study_of
 from hearth.studies.study_findings import findings
 from hearth.studies.study_folder import EVENTS, FILMS, opened
 from hearth.studies.study_report import page
+from hearth.studies.study_simulation import Crowd
 from hearth.studies.study_tables import archive
 from hearth.studies.study_trials import record_of
 

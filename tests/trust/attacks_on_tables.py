@@ -113,7 +113,7 @@ def _asked(folder: Path, aside: Path) -> Iterator[tuple[str, Callable[[], Any]]]
     from hearth.datasets.diff import compare
     from hearth.datasets.export.formats import FORMATS, export
     from hearth.datasets.published_programs import programs
-    from hearth.datasets.report.write import write_report
+    from hearth.datasets.report.report_writer import write_report
     from hearth.datasets.verify import verify
     from hearth.scoring.dataset_scores import score_dataset
 
@@ -254,7 +254,7 @@ FILMS: tuple[Any, ...] = (
 
 def served_films(ground: Ground, file: Any, program: str = "") -> Any:
     """The films of a dataset that the server would show: each is a file of its folder."""
-    from hearth.web.annotate.marking import films_of
+    from hearth.web.annotate.annotation_marks import films_of
 
     folder = small(ground.folder / "dataset")
     (ground.guard / "secret.webm").write_bytes(b"x")

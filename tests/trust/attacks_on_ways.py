@@ -14,7 +14,7 @@ from attack import Attack, Ground
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.simulation.motion import stored_ways
+from hearth.simulation.motion import stored_distance_fields
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.navigation import Ways
 from hearth.simulation.world.home import Home
@@ -38,14 +38,14 @@ def stored() -> bytes:
     """A true file."""
     ways, every = walked()
     with TemporaryDirectory() as folder:
-        return stored_ways.store(ways, every, Path(folder)).read_bytes()
+        return stored_distance_fields.store(ways, every, Path(folder)).read_bytes()
 
 
 def read(data: bytes, folder: Path) -> int:
     """How many fields of a file are taken; each of them must be that which is computed."""
     ways, every = walked()
-    stored_ways.file_of(ways, folder).write_bytes(data)
-    found, taken = stored_ways.StoredWays(ways, folder), 0
+    stored_distance_fields.file_of(ways, folder).write_bytes(data)
+    found, taken = stored_distance_fields.StoredWays(ways, folder), 0
     for ends in every:
         field = found.field(ends)
         if field is not None:

@@ -124,7 +124,7 @@ def _collected(scratch: Path) -> One:
 
 def _drafts(scratch: Path) -> One:
     """A program as the server's store has it."""
-    from hearth.web.annotate.draft import stored
+    from hearth.web.annotate.program_draft import stored
 
     def one(data: bytes) -> Any:
         draft = stored(data.decode("utf-8", "replace"))

@@ -110,7 +110,7 @@ def _read_study(path: Path) -> Any:
 
 
 def _read_films(path: Path) -> Any:
-    from hearth.studies.judged_films import read_films
+    from hearth.studies.films_to_judge import read_films
 
     return read_films(path)
 
@@ -290,7 +290,7 @@ def _answers(scratch: Path) -> One:
 def _messages(scratch: Path) -> One:
     """A message of a page that puts a program together: its form, then its steps."""
     from hearth.kb.loading.load import default
-    from hearth.web.annotate.draft import Draft, read_blocks
+    from hearth.web.annotate.program_draft import Draft, read_blocks
     from hearth.web.messages import Inbox
     from hearth.web.web_errors import WebError
 

@@ -134,7 +134,7 @@ def _game(scratch: Path) -> One:
     from hearth.kb.loading.load import default
     from hearth.web.messages import Inbox, int_field, text_field
     from hearth.web.play.games import Game
-    from hearth.web.play.trials import published, trial
+    from hearth.web.play.play_trials import published, trial
     from hearth.web.web_errors import WebError
 
     game = Game(trial(published("wah", "test-1", 0), default()), default())

@@ -13,7 +13,7 @@ from hearth.envs.json_observations import instruction_text
 from hearth.kb.loading.load import default
 from hearth.web.play import start_trial
 from hearth.web.play.games import Game
-from hearth.web.play.trials import trial
+from hearth.web.play.play_trials import trial
 from hearth.web.sessions import find
 
 

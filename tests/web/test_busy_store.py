@@ -20,7 +20,7 @@ from web.test_web_store import postgres  # noqa: F401
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
-from hearth.web.play.trials import published
+from hearth.web.play.play_trials import published
 from hearth.web.store import Store, default_url, embedded
 
 SOON = 3.0
@@ -124,7 +124,7 @@ def test_a_game_says_that_the_store_is_busy_and_goes_on(server, person):
 def test_a_handler_that_does_not_end_is_left_alone(server, monkeypatch):
     free = threading.Event()
     monkeypatch.setattr("hearth.web.application.WITHIN", 0.5)
-    monkeypatch.setattr("hearth.web.front.missing", lambda: free.wait(20) and [])
+    monkeypatch.setattr("hearth.web.start_pages.missing", lambda: free.wait(20) and [])
     made = Server(server.out, default())
     seconds, answer = timed(made.client().get, "/")
     free.set()

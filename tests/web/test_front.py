@@ -7,10 +7,10 @@ import sqlalchemy as sql
 from web.people import DESK, Server
 
 from hearth.web import desk_access, sessions
-from hearth.web.front import _own_address
 from hearth.web.limits import Rate, usual_rates
 from hearth.web.messages import Inbox, json_object
 from hearth.web.security import HEADERS
+from hearth.web.start_pages import _own_address
 from hearth.web.web_errors import WebError
 from hearth.web.web_tables import SESSIONS
 
@@ -35,7 +35,7 @@ def test_by_its_public_name_browsers_are_told_to_come_by_https(tmp_path, knowled
 
 
 def test_a_fault_of_ours_has_the_policy_and_says_nothing_of_the_inside(server, monkeypatch):
-    monkeypatch.setattr("hearth.web.front.missing", lambda: 1 / 0)
+    monkeypatch.setattr("hearth.web.start_pages.missing", lambda: 1 / 0)
     answer = server.client(raise_server_exceptions=False).get("/")
     assert answer.status_code == 500
     assert answer.json()["error"]["code"] == "INTERNAL_ERROR" and "division" not in answer.text
@@ -43,10 +43,10 @@ def test_a_fault_of_ours_has_the_policy_and_says_nothing_of_the_inside(server, m
 
 
 def test_the_start_page_says_what_lacks(server, monkeypatch):
-    monkeypatch.setattr("hearth.web.front.missing", lambda: ["blockly"])
+    monkeypatch.setattr("hearth.web.start_pages.missing", lambda: ["blockly"])
     page = server.client().get("/").text
     assert "blockly" in page and "make web" in page
-    monkeypatch.setattr("hearth.web.front.missing", list)
+    monkeypatch.setattr("hearth.web.start_pages.missing", list)
     assert "make web" not in server.client().get("/").text
 
 

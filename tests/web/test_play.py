@@ -19,14 +19,14 @@ from hearth.challenges.verification import verify
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import lacking
+from hearth.schemas.optional_libraries import lacking
 from hearth.simulation.world.bits import indices
 from hearth.web.play import game_store, recorded_episode, start_trial
 from hearth.web.play.game_messages import Telling, legal_json
 from hearth.web.play.game_results import results
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import LiveGame, games
-from hearth.web.play.trials import helpers, offered, published, read_trial, trial
+from hearth.web.play.play_trials import helpers, offered, published, read_trial, trial
 
 OWAH = challenge("owah")
 TASK = published("wah", "test-1", 0)
@@ -88,7 +88,7 @@ def test_who_asks_may_help_where_agents_may_talk():
 def test_without_libraries_for_pictures_there_are_buttons_alone(monkeypatch, person):
     """A wheel that is installed with the extra `web` alone serves all that draws nothing."""
     assert 'value="visual"' in person.get("/play/").text
-    monkeypatch.setattr("hearth.web.play.trials.lacking", lambda extra: ["numba"])
+    monkeypatch.setattr("hearth.web.play.play_trials.lacking", lambda extra: ["numba"])
     assert 'value="visual"' not in person.get("/play/").text
     assert trial(TASK, default()).interface == "symbolic"
     for interface in ("visual", "stream"):
@@ -294,7 +294,7 @@ def test_who_keeps_the_other_waiting_waits(server, person, for_two, monkeypatch)
 
 
 def test_who_has_left_keeps_nobody_waiting(server, person, for_two, monkeypatch):
-    monkeypatch.setattr("hearth.web.play.presence.GONE_AFTER", 1.5)
+    monkeypatch.setattr("hearth.web.play.player_presence.GONE_AFTER", 1.5)
     game, other = for_two
     with Player(person, game) as player:
         with Player(other, game):

@@ -18,7 +18,7 @@ from web.playing import alone
 from hearth.kb.loading.load import default
 from hearth.web.play import game_store
 from hearth.web.play.live_games import LiveGame
-from hearth.web.play.trials import published
+from hearth.web.play.play_trials import published
 from hearth.web.store import Store, default_url
 from hearth.web.third_party_scripts import missing
 

@@ -10,7 +10,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.world.world import World
 from hearth.web.play.drawn_games import DrawnGame, model_key
 from hearth.web.play.games import Game
-from hearth.web.play.trials import trial
+from hearth.web.play.play_trials import trial
 
 TASK = tasks("wah", "test-1")[0]
 

@@ -11,7 +11,7 @@ from web.test_web_store import postgres  # noqa: F401
 
 from hearth.kb.loading.load import default
 from hearth.web.play.live_games import LiveGame, games
-from hearth.web.play.trials import published
+from hearth.web.play.play_trials import published
 from hearth.web.web_errors import WebError
 
 pytestmark = pytest.mark.tools

@@ -20,7 +20,7 @@ from hearth.web.annotate.collected_files import collected
 from hearth.web.play import program_door
 from hearth.web.play.game_tables import GAMES, SEATS
 from hearth.web.play.live_games import games
-from hearth.web.play.trials import published
+from hearth.web.play.play_trials import published
 from hearth.web.store import embedded
 from hearth.web.web_tables import SESSIONS
 

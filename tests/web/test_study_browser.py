@@ -13,7 +13,7 @@ from web.people import accessibility, watched
 from web.test_study_room import JUDGE
 
 from hearth.storage.files import write_json
-from hearth.studies.judged_films import JudgedFilm
+from hearth.studies.films_to_judge import JudgedFilm
 
 pytestmark = pytest.mark.tools
 

@@ -18,11 +18,11 @@ from web.people import Server
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.files import write_json
-from hearth.studies.conduct import Conduct
-from hearth.studies.judged_films import JudgedFilm
-from hearth.studies.simulate import Ahead, play_ahead
+from hearth.studies.films_to_judge import JudgedFilm
 from hearth.studies.simulated_people import simulated_person
 from hearth.studies.study_file import study_of
+from hearth.studies.study_progress import Conduct
+from hearth.studies.study_simulation import Ahead, play_ahead
 from hearth.studies.study_trials import tasks_of
 from hearth.web.play.game_tables import GAMES
 from hearth.web.store import default_url, embedded

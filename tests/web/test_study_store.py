@@ -10,8 +10,8 @@ from web.test_web_store import postgres  # noqa: F401
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
-from hearth.studies.conduct import CONSENT, TUTORIAL
 from hearth.studies.events import Event
+from hearth.studies.study_progress import CONSENT, TUTORIAL
 from hearth.web import sessions
 from hearth.web.store import Store, default_url
 from hearth.web.study.study_store import conducted

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from web.test_study_room import at_trial, finish, judging, ledger_of, playing  # noqa: F401
 
-from hearth.studies.conduct import STAGES
 from hearth.studies.study import JUDGE, PLAY
+from hearth.studies.study_progress import STAGES
 from hearth.web.study.study_store import StoreLedger
 from hearth.web.study.study_turns import FIRST, TRIALS, TURNS
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from hearth.studies.conduct import DONE, STAGES
 from hearth.studies.study_file import named
+from hearth.studies.study_progress import DONE, STAGES
 from hearth.web.store import Store, default_url
 from hearth.web.study.study_store import conducted
 from hearth.web.study.study_turns import TURNS

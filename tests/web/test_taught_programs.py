@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from hearth.schemas.yaml_extent import packaged
-from hearth.web.annotate.draft import Draft, read_blocks
+from hearth.schemas.yaml_limits import packaged
 from hearth.web.annotate.live_check import check_draft
+from hearth.web.annotate.program_draft import Draft, read_blocks
 from hearth.web.annotate.trial_run import homes, run_draft
 
 TAUGHT = packaged("hearth.web.annotate", "tutorial.yaml")

@@ -22,7 +22,7 @@ from web.test_annotate import STEPS, TEXT, accept, described, ids, reviewer, sce
 from hearth.schemas.diagnostics import HearthError
 from hearth.web.annotate import collected_files
 from hearth.web.annotate.annotate_tables import TEXTS
-from hearth.web.annotate.draft import Draft, read_blocks, stored
+from hearth.web.annotate.program_draft import Draft, read_blocks, stored
 from hearth.web.limits import Rate
 from hearth.web.messages import Inbox
 from hearth.web.store import Store, default_url

@@ -8,13 +8,13 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
-from hearth.pipelines.checks import special_blocks
+from hearth.pipelines.checks import free_text_steps
 from hearth.schemas.failures import Code
 from hearth.web.annotate import collected_files, withdrawal
 from hearth.web.annotate.annotate_tables import DRAFT, MARKS, PROGRAMS, REVIEWS, TEXTS
-from hearth.web.annotate.draft import SPECIAL, stored
+from hearth.web.annotate.program_draft import SPECIAL, stored
+from hearth.web.room_request import Visit
 from hearth.web.store import Store
-from hearth.web.visit import Visit
 from hearth.web.web_errors import WebError
 
 RATINGS = "ratings.csv"
@@ -81,7 +81,7 @@ def special_texts(store: Store) -> list[tuple[str, int, bool]]:
         for block in stored(draft).blocks
         if block.action == SPECIAL
     )
-    return [(text, number, text in special_blocks.blocks()) for text, number in sorted(texts.items(), key=_by_number)]
+    return [(text, number, text in free_text_steps.blocks()) for text, number in sorted(texts.items(), key=_by_number)]
 
 
 def _by_number(pair: tuple[str, int]) -> tuple[int, str]:

@@ -5,22 +5,22 @@ from __future__ import annotations
 import sqlalchemy as sql
 from starlette.responses import Response
 
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 from hearth.web.annotate import (
     annotate_desk,
     annotated_programs,
-    composing,
+    annotation_marks,
     descriptions,
-    marking,
+    program_stage,
+    review_stage,
     reviewers,
-    reviewing,
     withdrawal,
 )
 from hearth.web.annotate.annotate_tables import TEXTS
 from hearth.web.annotate.collected_files import write_collected
 from hearth.web.annotate.qualification import is_qualified, take_test, test_page
 from hearth.web.room import Room, get, post
-from hearth.web.visit import Visit
+from hearth.web.room_request import Visit
 
 
 def _home(visit: Visit) -> Response:
@@ -49,39 +49,39 @@ ROOM = Room(
         get("/tutorial", _tutorial),
         get("/describe", descriptions.describe),
         post("/describe", descriptions.submit_description),
-        get("/tasks", composing.task_list),
-        get("/task/{text}", composing.read_task),
-        get("/task/{text}/scene", composing.scene_page),
-        post("/task/{text}/scene", composing.set_scene),
-        get("/task/{text}/compose", composing.compose),
-        get("/task/{text}/work", composing.work),
-        post("/task/{text}/save", composing.save),
-        post("/task/{text}/run", composing.try_out),
-        post("/task/{text}/replay", composing.replay),
-        post("/task/{text}/submit", composing.submit),
-        get("/plan/{home}", composing.plan),
-        get("/shapes/{home}", composing.shapes),
-        get("/replay.js", composing.replay_script),
+        get("/tasks", program_stage.task_list),
+        get("/task/{text}", program_stage.read_task),
+        get("/task/{text}/scene", program_stage.scene_page),
+        post("/task/{text}/scene", program_stage.set_scene),
+        get("/task/{text}/compose", program_stage.compose),
+        get("/task/{text}/work", program_stage.work),
+        post("/task/{text}/save", program_stage.save),
+        post("/task/{text}/run", program_stage.try_out),
+        post("/task/{text}/replay", program_stage.replay),
+        post("/task/{text}/submit", program_stage.submit),
+        get("/plan/{home}", program_stage.plan),
+        get("/shapes/{home}", program_stage.shapes),
+        get("/replay.js", program_stage.replay_script),
         get("/test", test_page),
         post("/test", take_test),
-        get("/review", reviewing.review_list),
-        get("/review/{program}", reviewing.review_page),
-        post("/review/{program}", reviewing.judge),
-        get("/review/{program}/mend", reviewing.mend_page),
-        get("/review/{program}/work", reviewing.work),
-        post("/review/{program}/save", reviewing.check),
-        post("/review/{program}/run", reviewing.try_out),
-        post("/review/{program}/replay", reviewing.replay),
-        post("/review/{program}/submit", reviewing.mend),
+        get("/review", review_stage.review_list),
+        get("/review/{program}", review_stage.review_page),
+        post("/review/{program}", review_stage.judge),
+        get("/review/{program}/mend", review_stage.mend_page),
+        get("/review/{program}/work", review_stage.work),
+        post("/review/{program}/save", review_stage.check),
+        post("/review/{program}/run", review_stage.try_out),
+        post("/review/{program}/replay", review_stage.replay),
+        post("/review/{program}/submit", review_stage.mend),
         get("/reviewer/{code}", reviewers.invited_page),
         post("/reviewer/{code}", reviewers.accept_invitation),
-        get("/sketch", marking.sketch_page),
-        post("/sketch/{program}", marking.keep_sketch),
-        get("/rate", marking.rating_page),
-        post("/rate/{program}", marking.keep_rating),
-        get("/film", marking.film_page),
-        post("/film/{film:path}", marking.keep_film),
-        get("/film-of/{film:path}", marking.film_file),
+        get("/sketch", annotation_marks.sketch_page),
+        post("/sketch/{program}", annotation_marks.keep_sketch),
+        get("/rate", annotation_marks.rating_page),
+        post("/rate/{program}", annotation_marks.keep_rating),
+        get("/film", annotation_marks.film_page),
+        post("/film/{film:path}", annotation_marks.keep_film),
+        get("/film-of/{film:path}", annotation_marks.film_file),
     ),
     desk=(
         get("/", annotate_desk.overview),

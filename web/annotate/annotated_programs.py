@@ -9,7 +9,7 @@ import sqlalchemy as sql
 
 from hearth.schemas.failures import Code
 from hearth.web.annotate.annotate_tables import ACCEPTED, DRAFT, PROGRAMS, RETURNED, SUBMITTED, TEXTS
-from hearth.web.annotate.draft import Draft
+from hearth.web.annotate.program_draft import Draft
 from hearth.web.store import Row, Store
 from hearth.web.web_errors import WebError
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action
-from hearth.web.annotate.draft import Draft
+from hearth.web.annotate.program_draft import Draft
 
 DRAWERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("Go", ("goes",)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hearth.schemas.change import Change
+from hearth.schemas.graph_change import Change
 from hearth.schemas.literals import HANDS
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.world.world import World

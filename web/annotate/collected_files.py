@@ -21,9 +21,9 @@ from hearth.storage.csv_files import rows_writer
 from hearth.storage.files import write_bytes
 from hearth.web.annotate import annotated_programs
 from hearth.web.annotate.annotate_tables import MARKS
-from hearth.web.annotate.draft import stored
+from hearth.web.annotate.program_draft import stored
+from hearth.web.room_request import Web
 from hearth.web.store import Row, Store, private
-from hearth.web.visit import Web
 
 PLATFORM = "hearth"
 

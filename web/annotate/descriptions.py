@@ -12,7 +12,7 @@ from starlette.responses import Response
 from hearth.pipelines.crowd.topics import no_activity
 from hearth.schemas.rng import rng
 from hearth.web.annotate.annotate_tables import TEXTS
-from hearth.web.visit import Visit
+from hearth.web.room_request import Visit
 
 SCENES = (
     "living room", "kitchen", "dining room", "bedroom", "kids bedroom", "bathroom", "entrance hall", "home office",

@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.checks import program_checks, special_blocks
+from hearth.pipelines.checks import free_text_steps, program_checks
 from hearth.pipelines.checks.text_checks import check_program
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_program
-from hearth.web.annotate.draft import SPECIAL, Draft, is_plain
+from hearth.web.annotate.program_draft import SPECIAL, Draft, is_plain
 
 REFUSED = frozenset({Code.CONTRADICTION})
 """Codes that `check` warns of and `build` refuses."""
@@ -39,7 +39,7 @@ class Found(NamedTuple):
 def check_draft(draft: Draft, title: str, description: str, known: Knowledge) -> list[Found]:
     """Return all faults and warnings of a draft, ordered by step."""
     lines = _shown_plain(draft).lines()
-    expanded = special_blocks.expand("\n".join(lines), 0)
+    expanded = free_text_steps.expand("\n".join(lines), 0)
     pairs = zip(expanded.text.split("\n"), expanded.lines, strict=True)
     kept = [(line, number) for line, number in pairs if not line.startswith(f"[{SPECIAL}]")]
     source, numbers = [line for line, _ in kept], [number for _, number in kept]

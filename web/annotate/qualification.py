@@ -11,10 +11,10 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
-from hearth.schemas.yaml_extent import packaged
+from hearth.schemas.yaml_limits import packaged
 from hearth.web.annotate.annotate_tables import QUALIFIED
+from hearth.web.room_request import Visit
 from hearth.web.store import Store
-from hearth.web.visit import Visit
 
 YES, NO = "yes", "no"
 """The answers."""

@@ -10,10 +10,10 @@ from starlette.responses import Response
 
 from hearth.schemas.failures import Code
 from hearth.web.annotate.annotate_tables import REVIEWERS
-from hearth.web.front import base_of
+from hearth.web.room_request import Visit
 from hearth.web.sessions import digest
+from hearth.web.start_pages import base_of
 from hearth.web.store import Store
-from hearth.web.visit import Visit
 from hearth.web.web_errors import WebError
 
 

@@ -13,7 +13,7 @@ from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.libraries import library as library_of
+from hearth.schemas.optional_libraries import library as library_of
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.motion.base_pose import hand_and_base_poses
@@ -21,7 +21,7 @@ from hearth.simulation.motion.positions import placed
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
 from hearth.web.annotate.change_words import changed_in_words
-from hearth.web.annotate.draft import SPECIAL, Draft
+from hearth.web.annotate.program_draft import SPECIAL, Draft
 from hearth.web.web_errors import WebError
 
 

@@ -12,7 +12,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.web.play import game_store, play_pages, shared_games
 from hearth.web.play.live_games import games
 from hearth.web.play.play_socket import live
-from hearth.web.play.trials import Trial
+from hearth.web.play.play_trials import Trial
 from hearth.web.room import Room, get, post, socket
 from hearth.web.store import Store
 
@@ -44,7 +44,7 @@ def start_trial(connection: sql.Connection, session: str, trial: Trial, go_on: s
     Args:
         connection: of the transaction.
         session: whose trial it is; it has the first character.
-        trial: as `hearth.web.play.trials.trial` makes it, with the helper, the interface, the seed and the view.
+        trial: as `hearth.web.play.play_trials.trial` makes it, with the helper, the interface, the seed and the view.
         go_on: address of ours to which the page leads once it is over.
 
     Returns:

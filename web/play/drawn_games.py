@@ -25,7 +25,7 @@ from hearth.simulation.world.world import World
 from hearth.storage.files import write_bytes
 from hearth.storage.names import inside
 from hearth.web.play.games import Game
-from hearth.web.play.trials import SIZE
+from hearth.web.play.play_trials import SIZE
 
 
 @lru_cache(maxsize=32)

@@ -9,20 +9,20 @@ from typing import Any
 
 from hearth.envs.json_observations import last_json
 from hearth.homes.geometry import footprint
-from hearth.kb.groups import relation_of
+from hearth.kb.action_groups import relation_of
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation import reach
-from hearth.simulation.observation.as_seen import as_seen
+from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.observation.views import View
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
 from hearth.web.play.games import Game
-from hearth.web.play.remembered import Counted
+from hearth.web.play.player_memory import Counted
 
 USES = ("GRABBABLE", "CAN_OPEN", "HAS_SWITCH", "SURFACES", "CONTAINERS", "SITTABLE", "LIEABLE")
 """Properties of things that pages show; no action uses a thing with none of them, such as a wall."""

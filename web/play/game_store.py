@@ -13,7 +13,7 @@ import sqlalchemy as sql
 
 from hearth.schemas.failures import Code
 from hearth.web.play.game_tables import DECISIONS, GAMES, SEATS
-from hearth.web.play.trials import PERSON, Trial, read_trial
+from hearth.web.play.play_trials import PERSON, Trial, read_trial
 from hearth.web.sessions import check_tab
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError

@@ -13,7 +13,7 @@ GAMES = sql.Table(
     owner(),
     sql.Column("created", sql.Float, nullable=False, comment="seconds since 1970, UTC"),
     sql.Column("task", sql.Text, nullable=False, index=True, comment="id of its task"),
-    sql.Column("trial", sql.Text, nullable=False, comment="JSON, see web/play/trials.py"),
+    sql.Column("trial", sql.Text, nullable=False, comment="JSON, see web/play/play_trials.py"),
     sql.Column("code", sql.Text, nullable=False, unique=True, comment="the secret by which a second person joins"),
     sql.Column("go_on", sql.Text, nullable=False, comment="address of ours to go on to after its end"),
     sql.Column("end", sql.Text, comment="JSON: why it ended before its goal and time, if it did"),

@@ -21,8 +21,8 @@ from hearth.simulation.actions.legal import Legal
 from hearth.simulation.env import Tick
 from hearth.simulation.observation.views import View
 from hearth.simulation.world.digest import digest
-from hearth.web.play.remembered import Remembered
-from hearth.web.play.trials import OTHERS, PERSON, PROGRAM, Trial
+from hearth.web.play.play_trials import OTHERS, PERSON, PROGRAM, Trial
+from hearth.web.play.player_memory import Remembered
 
 Texts = tuple[str | None, ...]
 """Each character's attempt in a tick, as records have it (`Grab 41`); None where it waited."""

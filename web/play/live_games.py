@@ -19,9 +19,9 @@ from hearth.web.deadlines import BoundedLock
 from hearth.web.play import game_store
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
-from hearth.web.play.presence import AWAITED, HERE, presence, signs
+from hearth.web.play.play_trials import PROGRAM
+from hearth.web.play.player_presence import AWAITED, HERE, presence, signs
 from hearth.web.play.program_door import ProgramDoor, program_door
-from hearth.web.play.trials import PROGRAM
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
 

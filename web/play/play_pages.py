@@ -10,16 +10,16 @@ from starlette.responses import Response
 from hearth.challenges.challenge_definition import NAMES, challenge
 from hearth.challenges.result_files import MOST_SEEDS
 from hearth.schemas.failures import Code
-from hearth.schemas.libraries import library
+from hearth.schemas.optional_libraries import library
 from hearth.web.play import game_store
 from hearth.web.play.game_messages import goal_words
 from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import games
-from hearth.web.play.trials import INTERFACES, Trial, drawable, offered, published, trial
+from hearth.web.play.play_trials import INTERFACES, Trial, drawable, offered, published, trial
+from hearth.web.room_request import Visit
 from hearth.web.third_party_scripts import missing
-from hearth.web.visit import Visit
 from hearth.web.web_errors import WebError
 
 SHOWN = {"symbolic": "Buttons and a floor plan", "visual": "First person, in 3D", "stream": "First person, pictures"}

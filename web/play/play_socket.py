@@ -12,12 +12,12 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import deadlines, sessions
 from hearth.web.handler_threads import in_thread
-from hearth.web.link import Link
 from hearth.web.messages import int_field, text_field
+from hearth.web.person_socket import Link
 from hearth.web.play.game_messages import Telling
 from hearth.web.play.live_games import LiveGame, games
-from hearth.web.play.presence import SIGN_EVERY, give_sign
-from hearth.web.play.trials import PERSON, PROGRAM, SIZE
+from hearth.web.play.play_trials import PERSON, PROGRAM, SIZE
+from hearth.web.play.player_presence import SIGN_EVERY, give_sign
 from hearth.web.web_errors import WebError
 
 if TYPE_CHECKING:

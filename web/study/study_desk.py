@@ -9,16 +9,16 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
-from hearth.studies.conduct import DONE, LEFT, Conduct
 from hearth.studies.events import PLACES
 from hearth.studies.study_findings import findings
 from hearth.studies.study_folder import Collected
+from hearth.studies.study_progress import DONE, LEFT, Conduct
 from hearth.studies.study_report import page
 from hearth.studies.study_tables import archive, person_of
+from hearth.web.room_request import Visit
 from hearth.web.study.study_pages import conduct_here, study_here
 from hearth.web.study.study_schema import STUDIES
 from hearth.web.study.study_store import collected_in
-from hearth.web.visit import Visit
 
 SILENT, DELETED = "silent", "deleted"
 OVER = (DONE, LEFT, SILENT, DELETED)

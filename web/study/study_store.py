@@ -15,12 +15,12 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.names import inside
-from hearth.studies.conduct import Conduct
 from hearth.studies.event_checks import check_events
 from hearth.studies.events import PLACES, Event, salted
 from hearth.studies.study import Study
 from hearth.studies.study_file import study_of
 from hearth.studies.study_folder import Collected
+from hearth.studies.study_progress import Conduct
 from hearth.web import play  # noqa: F401 - its tables are those of trials' games
 from hearth.web.sessions import forget as forget_session
 from hearth.web.store import Store, default_url, embedded, usable

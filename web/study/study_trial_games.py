@@ -8,13 +8,13 @@ from typing import Any
 import sqlalchemy as sql
 
 from hearth.challenges.result_files import episode_data
-from hearth.studies.conduct import PRACTICE, Conduct, Standing
+from hearth.studies.study_progress import PRACTICE, Conduct, Standing
 from hearth.studies.study_trials import job_of, practice_task
 from hearth.web import play
 from hearth.web.play import game_store
-from hearth.web.play.trials import Trial, trial
+from hearth.web.play.play_trials import Trial, trial
+from hearth.web.room_request import Web
 from hearth.web.study.study_schema import TRIAL_GAMES
-from hearth.web.visit import Web
 
 BACK = "/study/"
 """The address that a game's page leads to when the game is over."""

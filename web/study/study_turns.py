@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from hearth.schemas.failures import Code
-from hearth.studies.conduct import (
+from hearth.studies.study import JUDGE, PLAY, Study
+from hearth.studies.study_progress import (
     CONSENT,
     DONE,
     EXIT,
@@ -17,7 +18,6 @@ from hearth.studies.conduct import (
     TUTORIAL,
     Standing,
 )  # fmt: skip
-from hearth.studies.study import JUDGE, PLAY, Study
 from hearth.web.web_errors import WebError
 
 UNASKED = "unasked"

@@ -4,25 +4,25 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
+from hearth.kb.language.forms.action_pairs import PAIRS
+from hearth.kb.language.forms.alfworld_commands import COMMANDS
 from hearth.kb.language.forms.code_calls import CODE
-from hearth.kb.language.forms.commands import COMMANDS
-from hearth.kb.language.forms.commented import COMMENTED
+from hearth.kb.language.forms.commented_steps import COMMENTED
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.operator_lines import OPERATORS
 from hearth.kb.language.forms.orders import ORDERS
 from hearth.kb.language.forms.org_mode import ORG_MODE
 from hearth.kb.language.forms.outlines import OUTLINES
-from hearth.kb.language.forms.pairs import PAIRS
 from hearth.kb.language.forms.pddl_plans import PDDL
-from hearth.kb.language.forms.prompts import PROMPTS
-from hearth.kb.language.forms.quoted import QUOTED
-from hearth.kb.language.forms.react import REACT
+from hearth.kb.language.forms.python_tuples import TUPLES
+from hearth.kb.language.forms.quoted_lists import QUOTED
+from hearth.kb.language.forms.react_logs import REACT
+from hearth.kb.language.forms.robot_logs import SPEAKERS
 from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
-from hearth.kb.language.forms.speakers import SPEAKERS
 from hearth.kb.language.forms.table_rows import TABLES
+from hearth.kb.language.forms.text_games import PROMPTS
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.todo_lists import TODO_LISTS
-from hearth.kb.language.forms.tuples import TUPLES
 from hearth.kb.language.forms.yaml_lists import YAML
 
 __all__ = ["FORMS", "YAML", "form_of", "form_of_line"]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step
-from hearth.kb.language.forms.speakers import ROBOTS, Said, said_of
+from hearth.kb.language.forms.robot_logs import ROBOTS, Said, said_of
 from hearth.kb.language.operators import names_thing, operator_step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.unmarked_lines import is_like_step

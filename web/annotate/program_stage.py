@@ -1,0 +1,202 @@
+"""Stage two: read a description, set the scene, put the program together, check it, run it, submit it (figure 3-3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from starlette.responses import Response
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Code
+from hearth.web.annotate import annotated_programs, block_grammar, live_check, trial_run
+from hearth.web.annotate.annotate_tables import SUBMITTED
+from hearth.web.annotate.program_draft import MOST_KINDS, Draft, read_blocks, read_quantity, stored
+from hearth.web.messages import int_field, text_field
+from hearth.web.room_request import Visit
+from hearth.web.store import Row
+from hearth.web.web_errors import WebError
+
+Run = Callable[[Draft, str, str, Knowledge], dict[str, Any]]
+
+
+def task_list(visit: Visit) -> Response:
+    """Return step one: the descriptions that the person may write a program for."""
+    return visit.page("annotate/tasks.html", tasks=annotated_programs.tasks(visit.web.store, visit.person))
+
+
+def read_task(visit: Visit) -> Response:
+    """Step two: the description."""
+    text = _text(visit)
+    program = annotated_programs.own_program(visit.web.store, visit.person, text["id"])
+    return visit.page("annotate/read.html", text=text, program=program)
+
+
+def scene_page(visit: Visit) -> Response:
+    """Step three: rooms and props."""
+    return _scene_page(visit, _draft(visit), 200, "")
+
+
+def set_scene(visit: Visit) -> Response:
+    """Store the scene; go on to the blocks, or stay to add another prop."""
+    draft, text = _draft(visit), visit.part("text")
+    rooms = {
+        name: count for name in visit.web.known.rooms if (count := read_quantity(visit.field(f"room {name}"), name))
+    }
+    props = {name: count for name in draft.props if (count := read_quantity(visit.field(f"prop {name}", 10), name))}
+    wanted, fault = visit.field("add", 100).strip(), ""
+    if wanted:
+        found = visit.web.known.object_class(wanted)
+        if found is None or found.category in ("Rooms", "Characters"):
+            near = visit.web.known.suggest(wanted)
+            fault = f"Nothing is called “{wanted}”." + (f" Did you mean {' or '.join(near)}?" if near else "")
+        elif len(props) < MOST_KINDS:
+            props[found.name] = max(1, read_quantity(visit.field("quantity", 10), "quantity"))
+    version = int(visit.field("version", 9)) if visit.field("version", 9).isdecimal() else 0
+    draft = draft.with_scene(rooms, props)
+    annotated_programs.save(visit.web.store, visit.person, text, version, draft)
+    if visit.field("go", 10) == "compose" and not fault:
+        return visit.go(f"/annotate/task/{text}/compose")
+    if fault:
+        return _scene_page(visit, draft, 400, fault)
+    return visit.go(f"/annotate/task/{text}/scene#add")
+
+
+def _scene_page(visit: Visit, draft: Draft, status: int, fault: str) -> Response:
+    known, program = visit.web.known, _own(visit)
+    text = _text(visit)
+    names = sorted(name for name, thing in known.objects.items() if thing.category not in ("Rooms", "Characters"))
+    values: dict[str, Any] = {
+        "rooms": known.rooms,
+        "names": names,
+        "draft": draft,
+        "version": program["version"],
+        "fault": fault,
+    }
+    return visit.page("annotate/scene.html", status, text=text, **values)
+
+
+def compose(visit: Visit) -> Response:
+    """Step four: the program."""
+    text, program = _text(visit), _own(visit)
+    if not stored(program["draft"]).things():
+        return visit.go(f"/annotate/task/{text['id']}/scene")
+    base, closed = f"/annotate/task/{text['id']}", program["state"] not in annotated_programs.CHANGED
+    values: dict[str, Any] = {
+        "base": base,
+        "mode": "write",
+        "homes": trial_run.homes(),
+        "closed": closed,
+        "program": program,
+    }
+    return visit.page("annotate/compose.html", text=text, **values)
+
+
+def work(visit: Visit) -> Response:
+    """Return the program, the blocks and the things, for the page's scripts."""
+    program = _own(visit)
+    return visit.answer(work_of(visit, program, stored(program["draft"])))
+
+
+def work_of(visit: Visit, program: Row, draft: Draft) -> dict[str, Any]:
+    """Return the work of any program, as JSON."""
+    known = visit.web.known
+    blocks = {"actions": block_grammar.actions(known), "things": block_grammar.things(draft, known)}
+    changes = program["state"] in annotated_programs.CHANGED
+    return {"version": program["version"], "steps": draft.as_json()["steps"], "changes": changes, **blocks}
+
+
+def save(visit: Visit) -> Response:
+    """Keep the steps as they are; they may have empty slots."""
+    message = visit.json()
+    draft = sent(visit, message, _draft(visit))
+    version, program = int_field(message, "version", 1, 10**9), _own(visit)
+    same = draft.dumped() == program["draft"] and program["state"] in annotated_programs.CHANGED
+    if same:  # as a page does that is opened; it takes nothing from another tab
+        version = int(program["version"])
+    else:
+        version = annotated_programs.save(visit.web.store, visit.person, visit.part("text"), version, draft)
+    return visit.answer({"version": version, "found": check_of(visit, _text(visit), draft)})
+
+
+def submit(visit: Visit) -> Response:
+    """Hand the program in for review, if it has no fault."""
+    message = visit.json()
+    draft = sent(visit, message, _draft(visit))
+    found = check_of(visit, _text(visit), draft)
+    if fault := next((each for each in found if each["fault"]), None):
+        refused = WebError(Code[fault["code"]], "steps", "a program without faults", fault["message"])
+        return visit.answer({**refused.as_json(), "found": found}, 400)
+    version = int_field(message, "version", 1, 10**9)
+    annotated_programs.save(visit.web.store, visit.person, visit.part("text"), version, draft, SUBMITTED)
+    return visit.answer({"go": "/annotate/tasks"})
+
+
+def try_out(visit: Visit) -> Response:
+    """Run the program in a home."""
+    message = visit.json()
+    draft = sent(visit, message, _draft(visit))
+    return visit.answer(run_of(visit, _text(visit), message, draft))
+
+
+def replay(visit: Visit) -> Response:
+    """Return the same run in 3D."""
+    message = visit.json()
+    draft = sent(visit, message, _draft(visit))
+    return visit.answer(run_of(visit, _text(visit), message, draft, trial_run.replay_draft))
+
+
+def run_of(
+    visit: Visit, text: Row, message: dict[str, Any], draft: Draft, run: Run = trial_run.run_draft
+) -> dict[str, Any]:
+    """Return a run, in the home that a message names, of a draft without faults: in words, or in 3D.
+
+    Raises:
+        WebError: TOO_FAST; or the code of the first fault.
+    """
+    visit.web.rates["run"].check(visit.person, "run")
+    if fault := next((each for each in check_of(visit, text, draft) if each["fault"]), None):
+        place = f"step {fault['step'] + 1}" if fault["step"] >= 0 else "program"
+        raise WebError(Code[fault["code"]], place, "a program without faults", fault["message"])
+    return run(draft, text["title"], text_field(message, "home", 40), visit.web.known)
+
+
+def plan(visit: Visit) -> Response:
+    """Return the floor plan of a home."""
+    trial_run.home_of(visit.part("home"), visit.web.known)
+    return Response(trial_run.plan_of(visit.part("home"), visit.web.known), media_type="image/svg+xml")
+
+
+def shapes(visit: Visit) -> Response:
+    """Return the shapes of a home in 3D."""
+    found = trial_run.shapes_of(visit.part("home"), visit.web.known)
+    return Response(found, media_type="application/json", headers={"Cache-Control": "private, max-age=3600"})
+
+
+def replay_script(visit: Visit) -> Response:
+    """Return the script that plays runs in 3D."""
+    return Response(trial_run.replay_script(), media_type="text/javascript")
+
+
+def check_of(visit: Visit, text: Row, draft: Draft) -> list[dict[str, Any]]:
+    """Return the faults and warnings of a draft for a description."""
+    found = live_check.check_draft(draft, text["title"], text["description"], visit.web.known)
+    return [each._asdict() for each in found]
+
+
+def _text(visit: Visit) -> Row:
+    return annotated_programs.text_of(visit.web.store, visit.part("text"))
+
+
+def _own(visit: Visit) -> Row:
+    return annotated_programs.begun(visit.web.store, visit.person, _text(visit)["id"])
+
+
+def _draft(visit: Visit) -> Draft:
+    return stored(_own(visit)["draft"])
+
+
+def sent(visit: Visit, message: dict[str, Any], scene: Draft) -> Draft:
+    """Return the draft with the steps that a page sent."""
+    return replace(scene, blocks=read_blocks(message.get("steps"), scene, visit.web.known))
