@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __version__ = VERSION
 install()
-if "gymnasium" in sys.modules:  # its `make` then knows `hearth/Home-v0`; nobody else pays for it
+if sys.modules.get("gymnasium") is not None:  # its `make` then knows `hearth/Home-v0`; nobody else pays for it
     import_module("hearth.challenges.named_task_envs")
 
 

@@ -130,5 +130,5 @@ def _some(tasks: Sequence[Task] | Any) -> tuple[Any, ...]:
     return found
 
 
-if "gymnasium" in sys.modules:
+if sys.modules.get("gymnasium") is not None:
     register()

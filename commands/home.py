@@ -271,7 +271,7 @@ def stats(
     found: dict[str, Any] = {name: of_homes(graphs, known) for name, graphs in groups.items() if graphs}
     for figures in found.values():
         # Homes of different sizes are compared by edges a node.
-        figures["density, % of theirs"] = beside(figures, found.get("theirs"))
+        figures["density beside theirs, %"] = beside(figures, found.get("theirs"))
     if reference := groups.pop("against"):
         for name, graphs in groups.items():
             if graphs:

@@ -206,6 +206,8 @@ class Dataset:
                     raise too_slow(limit.seconds) from error
                 if isinstance(error, HearthError):
                     raise
+                if type(error).__name__ == "InterruptException" or "Query interrupted" in str(error):
+                    raise KeyboardInterrupt from error
                 raise refused_question(error, self.folder, self._names()) from error
 
     def _names(self) -> list[str]:

@@ -28,16 +28,30 @@ def plain(value: Any) -> Any:
     """Return a value of DuckDB's for JSON; a value without a form there, such as a number over 64 bits, as text."""
     if isinstance(value, dict):
         return {str(key): plain(each) for key, each in value.items()}
+    if hasattr(value, "nanoseconds"):
+        return _interval(value)
     if isinstance(value, list | tuple):
         return [plain(each) for each in value]
     if isinstance(value, Decimal):
-        return float(value)
+        return plain(int(value)) if value.as_tuple().exponent == 0 else float(value)
     kept = value is None or isinstance(value, str | float | datetime | date | time)
     return value if kept or (isinstance(value, int) and abs(value) < 2**63) else str(value)
 
 
+def _interval(value: Any) -> str:
+    """Return an interval of Arrow in words, as DuckDB writes it: `1 month 3 days 00:00:05`."""
+    seconds, fraction = divmod(value.nanoseconds, 1_000_000_000)
+    clock = f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}"
+    clock += f".{fraction:09}".rstrip("0") if fraction else ""
+    counted = ((value.months // 12, "year"), (value.months % 12, "month"), (value.days, "day"))
+    said = [f"{number} {unit}{'s' * (number != 1)}" for number, unit in counted if number]
+    return " ".join([*said, *([clock] if value.nanoseconds or not said else [])])
+
+
 def line_of(value: Any) -> Any:
     """Return a value for a cell: nested ones as JSON."""
+    if hasattr(value, "nanoseconds"):
+        return _interval(value)
     return orjson.dumps(plain(value)).decode() if isinstance(value, list | dict) else value
 
 
@@ -72,9 +86,21 @@ def _each(column: Any, form: Callable[[Any], Any]) -> Any:
     """Return the values of a column in a form; what every form leaves as it is, is not looked at one by one."""
     import pyarrow.types as kinds
 
-    kind, values = column.type, column.to_pylist()
+    kind = column.type
+    try:
+        values = column.to_pylist()
+    except (OverflowError, ValueError):  # a date that Python has none for
+        values = _days(column) if kinds.is_date32(kind) else [str(each) for each in column]
     kept = kinds.is_signed_integer(kind) or kinds.is_floating(kind) or kinds.is_boolean(kind) or kinds.is_string(kind)
     return values if kept else map(form, values)
+
+
+def _days(column: Any) -> list[str | None]:
+    """Return days as text, those after the year 9999 too."""
+    import numpy as np
+    import pyarrow as pa
+
+    return [None if day is None else str(np.datetime64(day, "D")) for day in column.cast(pa.int32()).to_pylist()]
 
 
 def _records(columns: list[str], batch: Any) -> list[dict[str, Any]]:

@@ -35,6 +35,8 @@ ENTRY_POINTS = {
         "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
     "Goals and checks": (
+        "hearth.challenges.instruction_writer:instruction",
+        "hearth.challenges.instruction_reader:read_instruction",
         "hearth:holds",
         "hearth:Progress",
         "hearth:read_goal",

@@ -70,9 +70,9 @@ def test_predicted_masks_need_a_network_that_predicts_them(given):
 
 
 def test_models_look_at_what_the_table_is_about(given):
-    with pytest.raises(HearthError, match="does not look at"):
+    with pytest.raises(HearthError, match="does not read the input"):
         clip_result_tables.clip_table("4.3", None, ["m"])
-    with pytest.raises(HearthError, match="does not look at"):
+    with pytest.raises(HearthError, match="does not read the input"):
         clip_result_tables.clip_table("4.3b", None, ["a"])
 
 

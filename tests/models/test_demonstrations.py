@@ -240,7 +240,7 @@ def pictured(parted, numbers, tmp_path_factory):
             row = {field.name: None for field in TABLES["demonstration_frames"]}
             rows.append({**row, "execution_id": case["execution_id"], "tick": tick, "index": tick,
                          "file": f"frames/{place}/above.npz"})  # fmt: skip
-    (path,) = (folder / "demonstration_frames").glob("*.parquet")
+    path = next(iter(sorted((folder / "demonstration_frames").glob("*.parquet"))))
     pq.write_table(pa.Table.from_pylist(rows, TABLES["demonstration_frames"]), path)
     return hearth.load(folder)
 

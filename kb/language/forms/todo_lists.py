@@ -25,7 +25,7 @@ def _fits(lines: Sequence[str]) -> bool:
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
     """Return the lines: each below the first task with marks is a task, and one above that asks for a step."""
-    first = next(row for row, raw in enumerate(lines) if _ITEM.match(raw))
+    first = next((row for row, raw in enumerate(lines) if _ITEM.match(raw)), 0)
     return [
         _line(row, raw, is_task=row > first or (row > 0 and is_like_step(raw.strip()))) for row, raw in enumerate(lines)
     ]
