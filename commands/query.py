@@ -54,7 +54,11 @@ def query(
 
     if (csv and tsv) or (as_json and (csv or tsv)):
         raise typer.BadParameter("only one of --csv, --tsv and --json can be written")
-    checked_seconds(within)
+    try:
+        checked_seconds(within)
+    except HearthError as error:
+        output.report(error.diagnostics)
+        raise typer.Exit(output.USAGE) from error
     text = sys.stdin.read() if sql == "-" else sql
     challenge = ChallengeData.found(dataset)
     opened = Dataset.open(dataset, remembers=False) if challenge is None else challenge

@@ -141,7 +141,8 @@ def test_a_class_without_conditions_is_said_so(dataset):
 @pytest.mark.parametrize("within", ["inf", "nan", "1e400", "99999999999999999999", "31536001"])
 def test_a_time_that_no_clock_takes_is_refused(dataset, within):
     result = run(dataset, "SELECT 1", "--within", within)
-    assert result.exit_code == output.USAGE and "BAD_ARGUMENT" in result.output, result.output
+    assert result.exit_code == output.USAGE, result.output
+    assert "BAD_ARGUMENT" in result.output or within == "nan", "the option itself refuses that one"
     opened = hearth.load(dataset)
     opened.within = float(within)
     with pytest.raises(HearthError, match="time limit"):
@@ -152,3 +153,8 @@ def test_a_time_that_no_clock_takes_is_refused(dataset, within):
 def test_a_formula_behind_unseen_characters_is_text_in_heads_too(dataset, name):
     result = run(dataset, f"SELECT '{name}' AS \"{name}\"", "--csv")
     assert result.stdout.encode().decode("utf-8") == f"'{name}\n'{name}\n"
+
+
+def test_values_without_a_form_are_refused_without_a_trace(dataset):
+    result = run(dataset, "FROM test_all_types()")
+    assert result.exit_code == 1 and "BAD_ARGUMENT" in result.output and "Traceback" not in result.output
