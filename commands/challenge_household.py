@@ -41,13 +41,13 @@ def print_tasks(split: str, out: Path | None, seed: int, limit: int | None, work
         output.emit({**document, "reasons": dict(found.rejected.most_common()), **shown})
         return
     for task in found.tasks[:SHOWN]:
-        print(f"{task.id}  {task.family}, {task.home}, {output.counted(task.min_ticks, 'tick')}")
-        print(f"  {output.shown(task.instruction)}\n  {output.shown(str(task.goal))}\n")
+        output.line(f"{task.id}  {task.family}, {task.home}, {output.counted(task.min_ticks, 'tick')}")
+        output.line(f"  {output.shown(task.instruction)}\n  {output.shown(str(task.goal))}\n")
     if found.tasks[SHOWN:]:
-        print(f"... and {len(found.tasks) - SHOWN:,} more; --out has all\n")
+        output.line(f"... and {len(found.tasks) - SHOWN:,} more; --out has all\n")
     output.figures(document)
     for reason, number in found.rejected.most_common():
-        print(f"rejected: {number:,} draws: {reason}")
+        output.line(f"rejected: {number:,} draws: {reason}")
 
 
 def print_solved(splits: list[str] | None, limit: int | None, workers: int, as_json: bool) -> None:
@@ -86,10 +86,10 @@ def print_solved(splits: list[str] | None, limit: int | None, workers: int, as_j
         output.emit({**figures, "families": families, "unsolved": unsolved})
         return
     output.figures(figures)
-    print()
+    output.line("")
     output.table(("family", "solved by the human-like agent"), list(families.items()))
     for task_id in unsolved:
-        print(f"not solved within {settings()['ticks']} ticks: {task_id}")
+        output.line(f"not solved within {settings()['ticks']} ticks: {task_id}")
 
 
 def _drawn(split: str, seed: int, limit: int | None, workers: int) -> Drawing:

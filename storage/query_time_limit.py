@@ -25,7 +25,7 @@ def checked_seconds(seconds: float | None) -> float | None:
     """
     if seconds is None or (math.isfinite(seconds) and 0 <= seconds <= LONGEST):
         return seconds
-    remedy = f"give seconds from 0 to {LONGEST:,} (a year); 0 is no limit"
+    remedy = f"give seconds from 0 to {LONGEST:,} (a year); 0: no limit"
     raise HearthError.of(Code.BAD_ARGUMENT, f"`{seconds:g}` is not a time limit", suggestion=remedy)
 
 

@@ -54,7 +54,7 @@ def _kind(record: logging.LogRecord) -> str:
 
 
 def _shorten(record: logging.LogRecord) -> None:
-    """Leave out the trace of what a stranger or the limit of open files causes: it is no fault of the program."""
+    """Leave out the trace of an error that a stranger or the limit of open files causes, not the program."""
     error = record.exc_info[1] if record.exc_info else None
     if isinstance(error, UnicodeDecodeError) or getattr(error, "errno", None) in (errno.EMFILE, errno.ENFILE):
         record.msg = f"{record.getMessage().splitlines()[0]} ({type(error).__name__})"

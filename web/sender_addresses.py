@@ -10,14 +10,14 @@ from hearth.schemas.failures import Code
 from hearth.web.web_errors import WebError
 
 ONE_SENDER = 64
-"""Bits of an IPv6 address that name a network: whoever has one address of it has all."""
+"""Bits of an IPv6 address that name a network: a sender with one address of it has all."""
 
 
 def sender_of(asked: HTTPConnection) -> str:
     """Return the sender that limits count: an IPv4 address, or the network of an IPv6 one; "" where there is none.
 
     Raises:
-        WebError: BAD_ARGUMENT: a proxy names what is no address.
+        WebError: BAD_ARGUMENT: the address that a proxy names is not one.
     """
     return one_sender(asked.client.host) if asked.client and asked.client.host else ""
 
@@ -26,7 +26,7 @@ def one_sender(address: str) -> str:
     """Return the sender of an address, in whichever way it is written.
 
     Raises:
-        WebError: BAD_ARGUMENT: it is none.
+        WebError: BAD_ARGUMENT: it is not an address.
     """
     try:
         found = ip_address(address.partition("%")[0])

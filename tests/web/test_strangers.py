@@ -203,7 +203,6 @@ def test_one_address_does_not_take_all_places_of_a_study(study):
 
 
 def test_an_address_counts_once_however_it_is_written(study):
-    """Of six free places, one address gets two."""
     assert joins(study, "203.0.113.5", 2) == 2
     for spelling in ("::ffff:203.0.113.5", "::FFFF:cb00:7105", "0:0:0:0:0:ffff:203.0.113.5"):
         assert joins(study, spelling, 1) == 0, spelling
@@ -221,7 +220,6 @@ def test_what_is_no_address_is_refused(server, none):
 
 
 def test_a_post_of_a_session_that_was_deleted_meanwhile_is_refused_with_a_code(server, person, monkeypatch):
-    """The session goes between the check of its token and the handler's write."""
     found = sessions.find
 
     def raced(store, token):
