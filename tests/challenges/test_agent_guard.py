@@ -6,7 +6,9 @@ import time
 from contextlib import suppress
 
 import pytest
+from typer.testing import CliRunner
 
+from hearth import cli
 from hearth.challenges.agent_guard import AgentError, Guarded
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import Lineup, load
@@ -197,3 +199,10 @@ def test_what_a_finalizer_raises_is_a_line(tmp_path, monkeypatch, capsys):
     made = load(f"{file}:Ends")()
     del made
     assert capsys.readouterr().err == "warning[AGENT_FAILED]: Ends.__del__ raised SystemExit; ignored\n"
+
+
+@pytest.mark.parametrize("seconds", ["inf", "1e400", "99999999999999999999"])
+@pytest.mark.parametrize("words", [("play", "maple", "--within"), ("challenge", "run", "x", "--seconds")])
+def test_a_time_that_no_clock_takes_is_refused(words, seconds):
+    result = CliRunner().invoke(cli.app, [*words, seconds])
+    assert result.exit_code == 2 and words[-1] in result.output and "31536000" in result.output
