@@ -39,7 +39,8 @@ _SEVERAL = re.compile(r"[>→⟶➔➡⇒⟹➜➝;•·∧|/]|\d[.):\]]| [-–�
 _OWNER = re.compile(r"[A-Z][a-z]{1,20}:\s+(?=\S)")
 """The owner or the subject of a step, in a word before it."""
 
-_THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>\s*$", re.IGNORECASE)
+_THOUGHT = re.compile(r"\s*<(/?)think(?:ing)?>", re.IGNORECASE)
+_THOUGHT_END = re.compile(r"</think(?:ing)?>", re.IGNORECASE)
 
 
 class Kind(StrEnum):
@@ -257,14 +258,16 @@ def _is_joined(lines: Sequence[str]) -> bool:
 
 
 def _without_thoughts(lines: list[str]) -> list[str]:
-    """Empty the lines between `<think>` and `</think>`, which a model wrote to itself."""
+    """Empty the text between `<think>` and `</think>`, which a model wrote to itself."""
     if not any(map(_THOUGHT.match, lines)):
         return lines
     thinks, found = False, []
     for line in lines:
         mark = _THOUGHT.match(line)
         thinks = not mark[1] if mark else thinks
-        found.append("" if mark or thinks else line)
+        ended = _THOUGHT_END.search(line) if thinks else None
+        thinks = thinks and not ended
+        found.append(line[ended.end() :] if ended else "" if mark or thinks else line)
     return found
 
 

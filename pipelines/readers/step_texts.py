@@ -34,6 +34,9 @@ def steps_of(text: str) -> list[str]:
     """
     if looks_like_mapping(text):
         return mapped_steps(text)
+    enclosed = _IN_OBJECT.fullmatch(text.strip())
+    if enclosed:
+        return _quoted(text, enclosed[1])
     lines = text.strip().split("\n")
     in_line = next((line for line in lines if IN_LINE.match(line)), "")
     if in_line and not any(plan_line(line).number for line in lines if line != in_line):
@@ -43,9 +46,22 @@ def steps_of(text: str) -> list[str]:
     if len(lines) > 1:
         return pieces_of(text, text.split("\n"))
     if lines[0].startswith(('["', "['")):
-        return pieces_of(text, [re.sub(r"\\(.)", r"\1", one or other) for one, other in _QUOTED.findall(lines[0])])
+        return _quoted(text, lines[0])
     said = SAID.match(lines[0])
     return pieces_of(text, [step for step in _IN_ONE_LINE.split(lines[0][said.end() if said else 0 :]) if step.strip()])
+
+
+_IN_OBJECT = re.compile(
+    r"\{\s*(?:\"\w+\"\s*:\s*\"[^\"]*\"\s*,\s*)*\"(?:plan|steps|actions|program|answer|response)\"\s*:\s*"
+    r"\[(\s*\"[^{}]*\"\s*)\]\s*\}",
+    re.IGNORECASE,
+)
+"""A list of steps in an object of JSON, as models answer that write JSON alone."""
+
+
+def _quoted(text: str, listed: str) -> list[str]:
+    """Return the texts in quotation marks of a list."""
+    return pieces_of(text, [re.sub(r"\\(.)", r"\1", one or other) for one, other in _QUOTED.findall(listed)])
 
 
 def numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[str, Places]:

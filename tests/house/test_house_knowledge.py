@@ -41,6 +41,7 @@ NAMED = {
 OPTIONAL = {
     ("simulation/env.py", "knowledge"): "without it, a home is refused that is only named",
     ("challenges/household.py", "knowledge"): "a published task has ours",
+    ("envs/text_homes.py", "knowledge"): "a published task has ours",
 }
 """Parameters for knowledge that may be left out, and what is then not possible."""
 

@@ -131,3 +131,16 @@ def test_the_head_of_a_line_has_few_parts(piece):
 
 def test_repeated_heads_do_not_multiply_the_work():
     assert head_of("[10:00] " * 5_000).end < 100
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<think>It is dark.</think>\nLight\n1. walk to the desk\n2. find the lamp\n",
+        "<think>It is dark.\nFirst the desk.</think>\nLight\n1. walk to the desk\n2. find the lamp\n",
+        "<think>\nIt is dark.\n</think>\n\n**Light**\n\n1. walk to the desk\n2. find the lamp\n",
+        "<thinking>Dark. OK.</thinking>Here is a plan for **Light**:\n\n1. walk to the desk\n2. find the lamp\n",
+    ],
+)
+def test_a_thought_is_no_title(write, knowledge, text):
+    assert read(write, knowledge, "a.txt", text) == ([("Light", LAMP[:2])], [])

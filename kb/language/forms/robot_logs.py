@@ -30,6 +30,13 @@ _TASK = re.compile(r"(?:task|goal)\s*[=:]\s*[\"']?([^\"']+)[\"']?")
 _JOINT = re.compile(r"\s*(?:->|=>|→|;)\s*|\s+>\s+")
 _NEXT = re.compile(r"(?:^|\s)[(\[]?\d{1,2}[.):\]]\s+")
 _IT = re.compile(r"^(?:it|he|she|the robot)\s+(?=[a-z])", re.IGNORECASE)
+_COURTESY = re.compile(
+    r"(?:sure(?: thing)?|of course|certainly|absolutely|okay|ok|great|alright|all right|yes|no problem|will do)"
+    r"\s*[.!,]+\s+(?=\S)",
+    re.IGNORECASE,
+)
+"""An assent before a step, which asks for nothing."""
+
 _SHARE = 0.6
 _MOST = 1_000
 
@@ -92,9 +99,12 @@ def _of_line(row: int, raw: str) -> Iterator[Placed]:
     if said is None:
         yield Placed(row, plan_line(raw)._replace(number=None, numbered=False))
     elif said.is_step:
-        read = plan_line(said.text)
-        if not read.text.endswith(":") and not (read.number is None and is_said_around(read.text)):
-            yield from (step(row, part.strip(" ,")) for part in _parts(read, said.text) if part.strip(" ,."))
+        words = _COURTESY.sub("", said.text, count=1)
+        read = plan_line(words)
+        if read.text.endswith(":") or (read.number is None and is_said_around(read.text)):
+            yield remark(row, said.text)
+        else:
+            yield from (step(row, part.strip(" ,")) for part in _parts(read, words) if part.strip(" ,."))
     elif task := _TASK.search(said.text):
         yield title(row, task[1])
     elif said.who == "q" or _PEOPLE.fullmatch(said.who):
