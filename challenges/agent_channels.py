@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from hearth.challenges.agent_process import end, start
+from hearth.challenges.agent_stderr import relay
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -200,7 +201,7 @@ class ProcessChannel(Channel):
     """Lines to the standard input of a child process and from its standard output.
 
     Args:
-        argv: the program and its arguments; no shell reads them. Its standard error stays ours.
+        argv: the program and its arguments; no shell reads them. Its standard error is passed on to ours.
 
     Raises:
         HearthError: MISSING_FILE: it can't be started.
@@ -216,12 +217,14 @@ class ProcessChannel(Channel):
             raise HearthError.of(Code.MISSING_FILE, message, file=argv[0][:200]) from error
         assert self.process.stdin is not None and self.process.stdout is not None
         given, taken = self.process.stdout, self.process.stdin
+        self._errors = relay(self.process)
         super().__init__(given.read, taken.write, (given.close, taken.close))
 
     def close(self, patience: float = 2.0) -> None:
         """Close its input and wait some seconds for its end; then end the process and its children."""
         super().close()
         end(self.process, patience)
+        self._errors.join(patience)
 
 
 class StandardChannel(Channel):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
-from asyncio import CancelledError
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from types import FrameType
+from types import FrameType, FunctionType
 
 from hearth.agents.protocol import Agent, Choice
 from hearth.schemas.agent_messages import Message
@@ -16,6 +16,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.terminal import shown
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
 
@@ -89,9 +90,9 @@ class Guarded:
 
     def close(self) -> None:
         """End what the agent has started, if it has a `close`; its failures do not matter any more."""
-        end = getattr(self.agent, "close", None)
-        if callable(end):
-            with suppress(AgentError), self._watched():
+        with suppress(AgentError), self._watched():  # even looking for it may run the agent's code
+            end = getattr(self.agent, "close", None)
+            if callable(end):
                 end()
 
     def _plain(self, step: Step, view: View) -> Step:
@@ -108,34 +109,83 @@ class Guarded:
     @contextmanager
     def _watched(self) -> Iterator[None]:
         try:
-            with _within(self.seconds):
+            with _within(self.seconds), _streams_kept():
                 yield
         except _Late:
             message = f"no answer within {self.seconds:g} s"
             raise AgentError(Diagnostic(Code.TIMED_OUT, message), self.number) from None
-        except _FAULTS as error:
-            raise AgentError(_fault_of(error), self.number) from error
+        except BaseException as error:
+            if _is_ours(error):
+                raise
+            raise AgentError(_fault_of(error, self.seconds), self.number) from error
 
 
-_FAULTS = (Exception, SystemExit, CancelledError, GeneratorExit)
-"""Raised by an agent, they are its fault; an interrupt of the keyboard is ours."""
+def _is_ours(error: BaseException) -> bool:
+    """Return whether an error is an interrupt of the keyboard; all others are the fault of the agent."""
+    return type(error) is KeyboardInterrupt
 
 
-def _fault_of(error: BaseException) -> Diagnostic:
+@contextmanager
+def refusing(place: str, seconds: float = SECONDS) -> Iterator[None]:
+    """Let an agent's file, class or attributes run code before an episode.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, whatever that code raises.
+    """
+    try:
+        with _within(seconds), _streams_kept():
+            yield
+    except BaseException as error:
+        if _is_ours(error):
+            raise
+        said = f"no answer within {seconds:g} s" if type(error) is _Late else _fault_of(error, seconds).message
+        raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {said}") from error
+
+
+@contextmanager
+def _streams_kept() -> Iterator[None]:
+    """Give the process its standard streams back, where an agent replaced them.
+
+    Raises:
+        HearthError: AGENT_FAILED: it did.
+    """
+    before = sys.stdin, sys.stdout, sys.stderr
+    try:
+        yield
+    finally:
+        after = sys.stdin, sys.stdout, sys.stderr
+        sys.stdin, sys.stdout, sys.stderr = before
+    if any(new is not old for new, old in zip(after, before, strict=True)):
+        raise HearthError.of(Code.AGENT_FAILED, "it replaced a standard stream, which the whole process shares")
+
+
+def _fault_of(error: BaseException, seconds: float) -> Diagnostic:
     """Return the diagnostic of an error that an agent raised; its name, text and attributes may themselves fail."""
     try:
-        if type(error) is HearthError and error.diagnostics:
-            return error.diagnostics[0]
-        return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}: {error}"[:300])
-    except _FAULTS:
+        with _within(seconds):
+            if type(error) is HearthError and error.diagnostics:
+                return error.diagnostics[0]
+            return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}: {error}"[:300])
+    except BaseException as again:
+        if _is_ours(again):
+            raise
         return Diagnostic(Code.AGENT_FAILED, _name_of(error))
 
 
 def _name_of(error: BaseException) -> str:
-    try:
-        return str(type.__dict__["__name__"].__get__(type(error)))[:300]
-    except _FAULTS:
-        return "an exception without a name"
+    return str(type.__dict__["__name__"].__get__(type(error)))[:300]
+
+
+def say_unraisable() -> None:
+    """Let errors that Python ignores, such as those of an agent's `__del__`, be a line and no traceback."""
+    sys.unraisablehook = _unraisable
+
+
+def _unraisable(found: sys.UnraisableHookArgs) -> None:
+    name = type.__dict__["__name__"].__get__(found.exc_type)
+    where = found.object.__qualname__ if type(found.object) is FunctionType else "a finalizer"
+    with suppress(OSError, ValueError, AttributeError):
+        sys.stderr.write(f"warning[{Code.AGENT_FAILED}]: {shown(where)[:100]} raised {shown(name)[:100]}; ignored\n")
 
 
 @contextmanager

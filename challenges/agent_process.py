@@ -36,7 +36,7 @@ def environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
 
 
 def start(argv: Sequence[str]) -> subprocess.Popen[bytes]:
-    """Start a program with pipes to its standard input and output, in a session of its own.
+    """Start a program with pipes to its standard input, output and error, in a session of its own.
 
     Raises:
         OSError: it cannot be started.
@@ -64,13 +64,20 @@ def start(argv: Sequence[str]) -> subprocess.Popen[bytes]:
 def _popen(words: list[str], pass_fds: tuple[int, ...] = ()) -> subprocess.Popen[bytes]:
     pipe = subprocess.PIPE
     return subprocess.Popen(
-        words, stdin=pipe, stdout=pipe, bufsize=0, start_new_session=True, env=environment(), pass_fds=pass_fds
+        words,
+        stdin=pipe,
+        stdout=pipe,
+        stderr=pipe,
+        bufsize=0,
+        start_new_session=True,
+        env=environment(),
+        pass_fds=pass_fds,
     )
 
 
 def _close(process: subprocess.Popen[bytes]) -> None:
     process.wait()
-    for pipe in (process.stdin, process.stdout):
+    for pipe in (process.stdin, process.stdout, process.stderr):
         if pipe is not None:
             pipe.close()
 

@@ -12,7 +12,7 @@ from typing import Any
 from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
 from hearth.agents.online_helper_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
-from hearth.challenges.agent_guard import SECONDS, Guarded
+from hearth.challenges.agent_guard import SECONDS, Guarded, refusing, say_unraisable
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.command_agents import CommandAgent, is_command
 from hearth.challenges.episode_loop import Player
@@ -142,9 +142,10 @@ class Lineup:
         if not is_own(name):
             return CommandAgent(name, self.seconds, which.messages)
         own = self._own(name, which)
-        if not hasattr(own, "subgoal"):
-            with suppress(AttributeError):  # a class with slots: helpers that ask for its subgoal then say so
-                own.subgoal = None  # type: ignore[attr-defined]
+        with refusing(name):
+            if not hasattr(own, "subgoal"):
+                with suppress(AttributeError):  # a class with slots: helpers that ask for its subgoal then say so
+                    own.subgoal = None  # type: ignore[attr-defined]
         return own
 
     def _own(self, place: str, which: Challenge) -> Agent:
@@ -152,11 +153,9 @@ class Lineup:
         if place in ONLINE:
             return ONLINE[place].make(which.goals_in)
         made = load(place)
-        try:
+        with refusing(place):
             own: Agent = made()
-        except (Exception, SystemExit) as error:
-            raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {type(error).__name__}: {error}") from error
-        lacking = [f"`{name}`" for name in ("reset", "act") if not callable(getattr(own, name, None))]
+            lacking = [f"`{name}`" for name in ("reset", "act") if not callable(getattr(own, name, None))]
         if lacking:
             message = f"{place} has no {' and '.join(lacking)}"
             suggestion = "write reset(self, observation, goal, seed) and act(self, observation, legal)"
@@ -175,9 +174,10 @@ def partial_of(agent: Any) -> bool | None:
 
     Our oracles see everything, near-sighted agents never do; the challenge decides for all others.
     """
-    ours = type(agent).__module__.startswith("hearth.agents.")
-    if getattr(agent, "near_sighted", False):
-        return True
+    with refusing("near_sighted"):
+        ours = type(agent).__module__.startswith("hearth.agents.")
+        if getattr(agent, "near_sighted", False):
+            return True
     return False if ours and agent.__dict__.get("habits") is not None and agent.habits.sees_all else None
 
 
@@ -199,10 +199,9 @@ def load(place: str) -> Any:
     if spec is None or spec.loader is None:
         raise HearthError.of(Code.BAD_ARGUMENT, f"`{file}` is not Python", suggestion="FILE.py:CLASS")
     module = importlib.util.module_from_spec(spec)
-    try:
+    say_unraisable()
+    with refusing(place):
         spec.loader.exec_module(module)
-    except (Exception, SystemExit) as error:
-        raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {type(error).__name__}: {error}") from error
     found = getattr(module, name, None)
     if not callable(found):
         classes = ", ".join(

@@ -86,7 +86,7 @@ def print_solved(splits: list[str] | None, limit: int | None, workers: int, as_j
         output.emit({**figures, "families": families, "unsolved": unsolved})
         return
     output.figures(figures)
-    output.line()
+    output.line("")
     output.table(("family", "solved by the human-like agent"), list(families.items()))
     for task_id in unsolved:
         output.line(f"not solved within {settings()['ticks']} ticks: {task_id}")

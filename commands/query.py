@@ -50,9 +50,15 @@ def query(
     from hearth.commands.bounded_process import bound_memory, ended_within
     from hearth.datasets.dataset import Dataset
     from hearth.storage.databases import memory_limit
+    from hearth.storage.query_time_limit import checked_seconds
 
     if (csv and tsv) or (as_json and (csv or tsv)):
         raise typer.BadParameter("only one of --csv, --tsv and --json can be written")
+    try:
+        checked_seconds(within)
+    except HearthError as error:
+        output.report(error.diagnostics)
+        raise typer.Exit(output.USAGE) from error
     text = sys.stdin.read() if sql == "-" else sql
     challenge = ChallengeData.found(dataset)
     opened = Dataset.open(dataset, remembers=False) if challenge is None else challenge

@@ -68,6 +68,8 @@ def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) 
         names: of all columns, tables and views, which may have been meant by an unknown one.
     """
     message = str(error).split("\n\n", 1)[0]
+    if "Required module" in message:
+        return _without_form()
     if isinstance(error, MemoryError) or type(error).__name__ == "OutOfMemoryException":
         return too_big(message)
     if "arquet" in message and str(folder) in message and type(error).__name__ in _OF_FILES:
@@ -76,6 +78,12 @@ def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) 
     if unbound and (found := _UNKNOWN.search(message.split("\n", 1)[0].rstrip("!"))):
         return _unknown(found["column"] or found["name"], (found["kind"] or "column").split()[-1].lower(), names)
     return HearthError.of(Code.SYNTAX, message)
+
+
+def _without_form() -> HearthError:
+    """Return the error of values for which DuckDB wants a library that Hearth does without: times with a zone."""
+    message, remedy = "a value inside another has a time zone, which answers do not", "cast it: CAST(column AS VARCHAR)"
+    return HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
 
 
 def too_slow(seconds: float | None) -> HearthError:

@@ -5,12 +5,18 @@ BIDIRECTIONAL = (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 
 
 _CODES = (*range(32), *range(127, 160), 0x2028, 0x2029, *BIDIRECTIONAL)
 _SHOWN = {code: f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}" for code in _CODES if chr(code) not in "\n\t"}
+_GONE = {code: None for code in _CODES if chr(code) not in "\n\r\t"}
 _IN_JSON = {code: f"\\u{code:04x}" for code in _CODES if code > 126}
 
 
 def shown(text: str) -> str:
     """Return the text with control characters and direction marks escaped; line breaks and tabs stay."""
     return text if text.isprintable() else text.translate(_SHOWN)
+
+
+def without_controls(text: str) -> str:
+    """Return the text of a page without those characters, which nobody sees there."""
+    return text.translate(_GONE)
 
 
 def shown_json(document: str) -> str:

@@ -24,6 +24,9 @@ def delimiter_of(line: str) -> str:
 
 
 _RUNS = ("=", "+", "-", "@", "\t", "\r")
+_SKIPPED = " \ufeff\u200b\u200c\u200d\u2060\u00a0"
+"""Characters in front of a formula that a spreadsheet does not show, or takes for the mark of a file's beginning."""
+
 _UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\t\n\r"} | {
     code: f"\\u{code:04x}" for code in BIDIRECTIONAL
 }
@@ -31,7 +34,8 @@ _UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if 
 
 def safe_cell(text: str) -> str:
     """Return the text, with an apostrophe in front if a spreadsheet would read it as a formula."""
-    return f"'{text}" if text.startswith((*_RUNS, "'")) else text
+    seen = text.lstrip(_SKIPPED)
+    return f"'{text}" if seen.startswith((*_RUNS, "'")) else text
 
 
 def rows_writer(file: IO[str], delimiter: str = ",") -> Callable[[Iterable[Iterable[object]]], object]:

@@ -13,7 +13,7 @@ from typing import Any
 from urllib.parse import parse_qsl
 
 import jinja2
-from sqlalchemy.exc import DBAPIError, OperationalError
+from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, HTTPConnection, Request
@@ -34,6 +34,7 @@ from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
 from hearth.web.room_request import Visit, Web, by_browser, json_answer, render
 from hearth.web.security import Security
+from hearth.web.sender_addresses import sender_of
 from hearth.web.sessions import Session
 from hearth.web.store import Store
 from hearth.web.third_party_scripts import FETCHED
@@ -129,8 +130,8 @@ def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
         deadlines.begin()
         # By session, for many people may have one address; a token that is made up is none.
         session = await in_thread(sessions.find, web.store, token_of(request))
-        sender = session.id if session else (request.client.host if request.client else "")
-        web.rates["request"].check(sender[:100], request.url.path)
+        sender = session.id if session else sender_of(request)
+        web.rates["request"].check(sender, request.url.path)
         body = await _body(request, address.most)
         return await in_thread(_answer, web, address, request, session, body, within=within)
 
@@ -151,7 +152,12 @@ def _answer(web: Web, address: Address, request: Request, session: Session | Non
     fields = dict(request.query_params)
     if is_form:
         fields = _form(body)
-    return address.handler(Visit(web, request, session, body, fields))  # type: ignore[no-any-return]
+    try:
+        return address.handler(Visit(web, request, session, body, fields))  # type: ignore[no-any-return]
+    except IntegrityError:
+        if session is not None and sessions.find(web.store, session.token) is None:
+            raise nobody() from None  # it was deleted after the request had come
+        raise
 
 
 def _form(body: bytes) -> dict[str, str]:

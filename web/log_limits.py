@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import time
 from collections.abc import Callable
@@ -31,6 +32,7 @@ class FewOfAKind(logging.Filter):
     def filter(self, record: logging.LogRecord) -> bool:
         """Return whether a line is written."""
         now, kind = self._now(), _kind(record)
+        _shorten(record)
         since, count = self._counted.get(kind, (now, 0))
         if now - since >= 60:
             if count > MOST_LINES:
@@ -49,6 +51,14 @@ def _kind(record: logging.LogRecord) -> str:
         trace = trace.tb_next
     at = f"{kind and kind.__name__} {trace.tb_frame.f_code.co_filename}:{trace.tb_lineno}" if trace else ""
     return f"{record.name} {str(record.msg).partition(chr(10))[0][:80]} {at}"
+
+
+def _shorten(record: logging.LogRecord) -> None:
+    """Leave out the trace of an error that a stranger or the limit of open files causes, not the program."""
+    error = record.exc_info[1] if record.exc_info else None
+    if isinstance(error, UnicodeDecodeError) or getattr(error, "errno", None) in (errno.EMFILE, errno.ENFILE):
+        record.msg = f"{record.getMessage().splitlines()[0]} ({type(error).__name__})"
+        record.args, record.exc_info, record.exc_text = (), None, None
 
 
 def limit_logs() -> None:

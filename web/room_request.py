@@ -14,6 +14,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
+from hearth.schemas.terminal import without_controls
 from hearth.web.limits import Rate
 from hearth.web.messages import json_object
 from hearth.web.sessions import Keeps, Session
@@ -137,7 +138,7 @@ Handler = Callable[[Visit], Response]
 
 def render(web: Web, template: str, session: Session | None, **values: Any) -> str:
     """Return the HTML of a template."""
-    return web.templates.get_template(template).render(session=session, **values)
+    return without_controls(web.templates.get_template(template).render(session=session, **values))
 
 
 def json_answer(value: Any, status: int = 200) -> Response:

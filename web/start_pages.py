@@ -11,6 +11,7 @@ from hearth.web import desk_access, sessions
 from hearth.web.room import Who, get, post
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.security import scheme_of
+from hearth.web.sender_addresses import sender_of
 from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 from hearth.web.web_errors import WebError
 
@@ -118,7 +119,7 @@ def _entered(visit: Visit, answer: Response, token: str) -> Response:
 
 
 def _sender(visit: Visit) -> str:
-    return visit.request.client.host if visit.request.client else ""
+    return sender_of(visit.request)
 
 
 def base_of(visit: Visit) -> str:

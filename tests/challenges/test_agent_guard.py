@@ -1,12 +1,17 @@
 """Agents of others that crash in odd ways or do not stop: a code comes of it, and nothing else."""
 
 import asyncio
+import sys
 import time
 from contextlib import suppress
 
 import pytest
+from typer.testing import CliRunner
 
+from hearth import cli
 from hearth.challenges.agent_guard import AgentError, Guarded
+from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_agents import Lineup, load
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step
@@ -111,3 +116,93 @@ def test_whatever_an_agent_raises_is_its_failure(error):
 
 def test_a_fault_of_ours_keeps_its_code():
     assert fault(raising(HearthError.of(Code.NO_PLACE, "x"))) == Code.NO_PLACE
+
+
+class Silent(BaseException):
+    """No `Exception`, and its texts end the process."""
+
+    __str__ = ending
+
+    def __repr__(self):
+        raise Silent
+
+
+class Endless(Exception):
+    def __str__(self):
+        stubborn()
+        return ""
+
+
+@pytest.mark.parametrize("error", [BaseExceptionGroup("x", [SystemExit(1)]), Silent(), BaseException("x"), Endless()])
+def test_what_is_no_exception_is_the_agents_failure_too(error):
+    assert fault(raising(error)) == Code.AGENT_FAILED
+
+
+def test_an_interrupt_of_the_keyboard_is_ours():
+    with pytest.raises(KeyboardInterrupt):
+        Guarded(Agent(raising(KeyboardInterrupt())), 1, frozenset()).act(None, ())
+
+
+class Hidden:
+    """Ends the process when any attribute is looked for."""
+
+    def __getattribute__(self, _name):
+        raise SystemExit(9)
+
+
+def test_an_agent_without_attributes_is_the_agents_failure():
+    hidden = Guarded(Hidden(), 1, frozenset())
+    with pytest.raises(AgentError) as found:
+        hidden.act(None, ())
+    assert found.value.fault.code == Code.AGENT_FAILED
+    hidden.close()
+
+
+def test_an_agent_that_takes_the_standard_streams_away_fails_and_they_are_back(monkeypatch):
+    before = sys.stdout
+    assert fault(lambda: setattr(sys, "stdout", None)) == Code.AGENT_FAILED
+    assert sys.stdout is before
+
+
+OWN = """
+import sys
+
+class Hidden:
+    def __getattribute__(self, name):
+        raise SystemExit(9)
+
+class Group:
+    def __init__(self):
+        raise BaseExceptionGroup("x", [SystemExit(1)])
+
+class Ends:
+    reset = act = lambda *_: None
+
+    def __del__(self):
+        sys.exit(1)
+"""
+
+
+@pytest.mark.parametrize("name", ["Hidden", "Group"])
+def test_a_class_that_ends_the_process_before_an_episode_is_refused(tmp_path, name):
+    file = tmp_path / "own.py"
+    file.write_text(OWN)
+    with pytest.raises(HearthError) as found:
+        Lineup(f"{file}:{name}")._main(f"{file}:{name}", challenge("household"))
+    assert found.value.diagnostics[0].code == Code.BAD_ARGUMENT
+
+
+def test_what_a_finalizer_raises_is_a_line(tmp_path, monkeypatch, capsys):
+    file = tmp_path / "own.py"
+    file.write_text(OWN)
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
+    made = load(f"{file}:Ends")()
+    del made
+    assert capsys.readouterr().err == "warning[AGENT_FAILED]: Ends.__del__ raised SystemExit; ignored\n"
+
+
+@pytest.mark.parametrize("seconds", ["inf", "1e400", "99999999999999999999"])
+@pytest.mark.parametrize("words", [("play", "maple", "--within"), ("challenge", "run", "x", "--seconds")])
+def test_a_time_that_no_clock_takes_is_refused(words, seconds):
+    result = CliRunner().invoke(cli.app, [*words, seconds])
+    assert result.exit_code == 2 and words[-1] in result.output and "31536000" in result.output

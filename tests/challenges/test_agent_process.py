@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.challenges import agent_process
+from hearth.challenges import agent_process, agent_stderr
 from hearth.challenges.agent_channels import ProcessChannel
 from hearth.schemas.diagnostics import HearthError
 
@@ -113,3 +113,12 @@ def test_what_cannot_be_started_is_said(argv):
     with pytest.raises(HearthError, match="can't be started"):
         ProcessChannel(argv)
     assert sys.platform != "linux" or len(list(Path("/proc/self/fd").iterdir())) == before
+
+
+def test_what_an_agent_says_on_its_standard_error_moves_no_cursor_and_ends(capsys, monkeypatch):
+    monkeypatch.setattr(agent_stderr, "MOST_SAID", 100)
+    said = r"import os; os.write(2, b'\x1b[31mred\x07 \xff\xe2\x80\xae' + b'x' * 3_000_000)"
+    ProcessChannel([sys.executable, "-c", said]).close(10)
+    err = capsys.readouterr().err
+    assert err.startswith(r"\x1b[31mred\x07 ") and "\\u202e" in err
+    assert len(err) < 200 and err.endswith("left out\n")

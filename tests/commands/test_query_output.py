@@ -15,6 +15,7 @@ import hearth
 from hearth import cli
 from hearth.commands import output
 from hearth.datasets import query_output as answers
+from hearth.schemas.diagnostics import HearthError
 
 SQL = "SELECT program_id, title, steps, len(steps) AS length FROM programs ORDER BY program_id"
 
@@ -135,3 +136,25 @@ def test_a_class_without_conditions_is_said_so(dataset):
     headings = [number for number, line in enumerate(shown) if line.startswith("Conditions of the start")]
     assert all(shown[number + 1 : number + 2] and shown[number + 1].startswith("  ") for number in headings)
     assert "No condition of the start names a sauce pan." in shown
+
+
+@pytest.mark.parametrize("within", ["inf", "nan", "1e400", "99999999999999999999", "31536001"])
+def test_a_time_that_no_clock_takes_is_refused(dataset, within):
+    result = run(dataset, "SELECT 1", "--within", within)
+    assert result.exit_code == output.USAGE, result.output
+    assert "BAD_ARGUMENT" in result.output or within == "nan", "the option itself refuses that one"
+    opened = hearth.load(dataset)
+    opened.within = float(within)
+    with pytest.raises(HearthError, match="time limit"):
+        opened.rows("SELECT 1")
+
+
+@pytest.mark.parametrize("name", ["\ufeff=1+1", " =1+1", "\u200b@x", "\ufeff\ufeff+1"])
+def test_a_formula_behind_unseen_characters_is_text_in_heads_too(dataset, name):
+    result = run(dataset, f"SELECT '{name}' AS \"{name}\"", "--csv")
+    assert result.stdout.encode().decode("utf-8") == f"'{name}\n'{name}\n"
+
+
+def test_values_without_a_form_are_refused_without_a_trace(dataset):
+    result = run(dataset, "FROM test_all_types()")
+    assert result.exit_code == 1 and "BAD_ARGUMENT" in result.output and "Traceback" not in result.output

@@ -39,6 +39,8 @@ PRINTED = {
     ("cli.py", "sys.stderr.write"): "a sentence of ours",
     ("cli.py", "typer.echo"): "our version",
     ("storage/csv_files.py", "csv.writer"): "the one guarded writer, `rows_writer`",
+    ("challenges/agent_guard.py", "sys.stderr.write"): "a line about a finalizer, through `shown`",
+    ("challenges/agent_stderr.py", "sys.stderr.write"): "what agents' programs say, through `shown`",
     ("pipelines/engine/progress.py", "self._console.print"): "through `shown`, as commands are out of its reach",
     ("commands/model_output.py", "console.print"): "two columns in color, through `shown`",
 }

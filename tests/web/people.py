@@ -33,6 +33,7 @@ class Server:
         self.app = application(self.store, knowledge, out, DESK, **options)
 
     def client(self, **options) -> TestClient:
+        options = {"client": ("127.0.0.1", 50_000), **options}
         return TestClient(self.app, base_url=BASE, follow_redirects=False, **options)
 
     def person(self) -> TestClient:

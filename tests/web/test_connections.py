@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import errno
+import logging
 import re
 import socket
 import time
@@ -10,6 +12,8 @@ from urllib.parse import urlsplit
 
 import httpx2 as httpx
 import pytest
+
+from hearth.web.log_limits import FewOfAKind
 
 WITHIN = 13.0
 """Seconds after which a connection that asks nothing has ended: ten, and some for a busy machine."""
@@ -109,6 +113,21 @@ def test_the_log_does_not_grow_at_the_limit_of_open_files(serving):
     for each in held:
         each.close()
     assert answers(server.address)
+
+
+def test_a_text_that_is_no_utf8_and_a_lack_of_files_are_a_line_each():
+    shown = []
+    handler, logger = logging.Handler(), logging.Logger("strangers")
+    handler.emit = lambda record: shown.append(handler.format(record))
+    logger.addHandler(handler)
+    logger.addFilter(FewOfAKind())
+    for error in (UnicodeDecodeError("utf-8", b"\xff", 0, 1, "x"), OSError(errno.EMFILE, "many"), KeyError("ours")):
+        try:
+            raise error
+        except Exception:
+            logger.exception("it happened\nmore")
+    assert shown[:2] == ["it happened (UnicodeDecodeError)", "it happened (OSError)"]
+    assert "Traceback" in shown[2], "a fault of ours says where"
 
 
 def answers(address: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 import threading
@@ -172,6 +173,14 @@ def test_only_the_last_tab_acts(server, person, game):
         assert old.act(TURN)["error"]["code"] == "OUT_OF_ORDER"
         assert old.ask({"type": "hello", "tab": "old"})["tick"] == 1
         assert old.act(TURN)["tick"] == 2
+
+
+def test_who_did_not_say_hello_does_not_finish_a_game(server, person, game):
+    with Player(person, game, "a") as player, connected(person, game) as silent:
+        silent.send_text('{"n": 1, "type": "finish"}')
+        assert json.loads(silent.receive_text())["error"]["code"] == "LOCKED"
+        assert player.act(TURN)["over"] is False
+        assert player.ask({"type": "finish"})["over"] is True
 
 
 def test_two_decisions_of_one_tick_are_one(server, person, game):

@@ -15,6 +15,7 @@ from web.test_annotate import RIGHT, STEPS, TEXT, accept, described, ids, review
 from web.test_study_room import JUDGE
 
 from hearth.kb.loading.load import default
+from hearth.web import sessions
 from hearth.web.annotate.annotate_tables import PROGRAMS, REVIEWS, TEXTS
 from hearth.web.annotate.collected_files import collected
 from hearth.web.play import program_door
@@ -199,6 +200,43 @@ def joins(server, address, many):
 def test_one_address_does_not_take_all_places_of_a_study(study):
     assert joins(study, "10.0.0.7", 6) == 2
     assert joins(study, "10.0.0.8", 1) == 1, "there is a place for another"
+
+
+def test_an_address_counts_once_however_it_is_written(study):
+    assert joins(study, "203.0.113.5", 2) == 2
+    for spelling in ("::ffff:203.0.113.5", "::FFFF:cb00:7105", "0:0:0:0:0:ffff:203.0.113.5"):
+        assert joins(study, spelling, 1) == 0, spelling
+
+
+def test_a_network_of_ipv6_is_one_address(study):
+    assert sum(joins(study, f"2001:db8::{n}", 1) for n in range(1, 6)) == 2
+    assert joins(study, "2001:db8:0:1::1", 1) == 1
+
+
+@pytest.mark.parametrize("none", ["203.0.113.005", '"203.0.113.5"', "203.0.113.5:8080", "me"])
+def test_what_is_no_address_is_refused(server, none):
+    answer = server.client(client=(none, 5)).post("/begin")
+    assert answer.status_code == 400 and answer.json()["error"]["code"] == "BAD_ARGUMENT"
+
+
+def test_a_post_of_a_session_that_was_deleted_meanwhile_is_refused_with_a_code(server, person, monkeypatch):
+    found = sessions.find
+
+    def raced(store, token):
+        session = found(store, token)
+        if session is not None:
+            sessions.forget(store, session.id)
+        return session
+
+    monkeypatch.setattr(sessions, "find", raced)
+    answer = person.post("/annotate/describe", data=TEXT)
+    assert (answer.status_code, answer.json()["error"]["code"]) == (401, "NO_SESSION"), answer.text
+
+
+def test_a_page_has_no_control_characters_of_a_text(server, person):
+    text = described(person, title="Mi\x1b[31mlk \u202eevil\u0085")
+    page = person.get(f"/annotate/task/{text}", headers=HTML).text
+    assert "lk evil" in page and not set(page) & set("\x1b\u202e\u0085")
 
 
 def program_of(server, person):

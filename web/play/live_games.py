@@ -22,6 +22,7 @@ from hearth.web.play.games import HELPER, Game
 from hearth.web.play.play_trials import PROGRAM
 from hearth.web.play.player_presence import AWAITED, HERE, presence, signs
 from hearth.web.play.program_door import ProgramDoor, program_door
+from hearth.web.sessions import check_tab
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
 
@@ -160,10 +161,15 @@ class LiveGame:
             self.store.write(lambda connection: game_store.over(connection, self.stored.id, success, ticks, at))
             self.close()
 
-    def leave(self, number: int) -> None:
-        """End the game before its goal and time."""
+    def leave(self, session: str, tab: str, number: int) -> None:
+        """End the game before its goal and time.
+
+        Raises:
+            WebError: LOCKED: the tab is not the one that may act.
+        """
         with self.lock:
             if not self.sync().over:
+                self.store.read(lambda connection: check_tab(connection, session, tab))
                 self._stop(number, Code.FINISHED, "the person finished it")
 
     def _stop(self, number: int, code: Code, message: str) -> None:

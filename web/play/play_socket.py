@@ -131,7 +131,7 @@ class Page:
 
     def _finish(self) -> dict[str, Any] | None:
         with self.live.lock:
-            self.live.leave(self.number)
+            self.live.leave(self.link.session.id, self.tab, self.number)
             return self._new()
 
     def _state(self) -> tuple[Any, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from ipaddress import ip_address
+from ipaddress import ip_network
 
 from hearth.schemas.failures import Code
 from hearth.web.web_errors import WebError
@@ -58,8 +58,10 @@ HELD = PlacesHeld()
 
 
 def is_stranger(address: str, public: bool) -> bool:
-    """Return whether strangers differ by their address; without a public name all come from this machine."""
-    try:
-        return public or not ip_address(address).is_loopback
-    except ValueError:
-        return False
+    """Return whether strangers differ by their address; without a public name all come from this machine.
+
+    Args:
+        address: as `sender_of` has it.
+        public: whether the server has a public name.
+    """
+    return public or (bool(address) and not ip_network(address).is_loopback)

@@ -31,6 +31,7 @@ from hearth.studies.study_progress import (
 )  # fmt: skip
 from hearth.web import play
 from hearth.web.room_request import Visit, Web, by_browser
+from hearth.web.sender_addresses import sender_of
 from hearth.web.study.places_held import HELD, is_stranger
 from hearth.web.study.study_store import FOLDER, conducted
 from hearth.web.study.study_trial_games import begun, gone_on
@@ -155,7 +156,7 @@ def _joined(visit: Visit, conduct: Conduct) -> Standing:
     Raises:
         WebError: TOO_FAST: others of the same address hold as many places as it may.
     """
-    address = visit.request.client.host if visit.request.client else ""
+    address = sender_of(visit.request)
     if _standing(conduct, visit.person) is not None or not is_stranger(address, visit.web.secure):
         return conduct.join(visit.person)
 

@@ -1,0 +1,40 @@
+"""Addresses of senders: every spelling of one is the same sender, and a network of IPv6 is one sender."""
+
+from __future__ import annotations
+
+from ipaddress import IPv4Address, IPv6Network, ip_address
+
+from starlette.requests import HTTPConnection
+
+from hearth.schemas.failures import Code
+from hearth.web.web_errors import WebError
+
+ONE_SENDER = 64
+"""Bits of an IPv6 address that name a network: a sender with one address of it has all."""
+
+
+def sender_of(asked: HTTPConnection) -> str:
+    """Return the sender that limits count: an IPv4 address, or the network of an IPv6 one; "" where there is none.
+
+    Raises:
+        WebError: BAD_ARGUMENT: the address that a proxy names is not one.
+    """
+    return one_sender(asked.client.host) if asked.client and asked.client.host else ""
+
+
+def one_sender(address: str) -> str:
+    """Return the sender of an address, in whichever way it is written.
+
+    Raises:
+        WebError: BAD_ARGUMENT: it is not an address.
+    """
+    try:
+        found = ip_address(address.partition("%")[0])
+    except ValueError:
+        raise WebError(Code.BAD_ARGUMENT, "X-Forwarded-For", "an IP address", address[:60]) from None
+    if isinstance(found, IPv4Address):
+        return str(found)
+    inside = found.ipv4_mapped
+    if inside is not None or found.is_loopback:
+        return str(inside or found)
+    return str(IPv6Network((int(found), ONE_SENDER), strict=False))
