@@ -39,6 +39,7 @@ def read_instruction(text: str, home: Home | Knowledge, doer: str = AGENT, names
         HearthError: SYNTAX: no wording fits, or the nearest part that is not understood.
 
     Examples:
+        >>> from hearth.challenges.instruction_reader import read_instruction
         >>> str(read_instruction("Please put two plates on the dining table.", known))
         'ON(plate, dining_table): 2'
     """

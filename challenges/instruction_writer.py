@@ -75,9 +75,10 @@ def instruction(
         terse: whether the wording is terse; drawn where None.
 
     Examples:
+        >>> from hearth.challenges.instruction_writer import instruction
         >>> goal = hearth.Goal.of((hearth.Literal.of("ON", "plate", "dining_table"), 2))
         >>> instruction(goal, known, seed=3)
-        'Please put two plates on the dining table.'
+        'Two plates on the dining table'
     """
     chooser = rng(seed, "instruction", pool)
     kind = "terse" if terse or (terse is None and chooser.random() < 0.25) else "plain"
