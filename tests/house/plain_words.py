@@ -76,6 +76,7 @@ ALLOWED: dict[tuple[str, str], str] = {
     ("analysis/synthesis.py", "told"): "a key of grammars of 0.1",
     ("analysis/synthesis.yaml", "what as a noun"): _PHRASE,
     ("commands/film_output.py", "beside"): "the name of a published file",
+    ("commands/home.py", "beside"): "a published key of `home stats --json`",
     ("docs/tables.md", "beside"): _COMMENTS,
     ("docs/tables.md", "what as a noun"): _COMMENTS,
     ("schemas/published_rows.py", "what as a noun"): _COMMENTS,
