@@ -109,7 +109,7 @@ def publish(
 
 
 def _sql(root: str) -> str:
-    """The views of a folder, whose path is `root`; relative to it where that is empty."""
+    """Return the views of a folder, whose path is `root`; relative to it where that is empty."""
     lines = [f"CREATE VIEW {table} AS FROM read_parquet({quoted(f'{root}{table}.parquet')});" for table in TABLES]
     lines += [f"CREATE VIEW {name} AS {query};" for name, query in VIEWS.items()]
     for table, schema in TABLES.items():
@@ -123,7 +123,7 @@ class ChallengeData(Dataset):
 
     @classmethod
     def found(cls, path: Path) -> ChallengeData | None:
-        """The published challenge of a folder; None where there is none."""
+        """Return the published challenge of a folder; None where there is none."""
         content = read_json(path / NAME)
         published = isinstance(content, dict) and content.get("stage") == STAGE
         return cls(path, content) if published and isinstance(content, dict) else None
@@ -181,7 +181,7 @@ def _instruction(tick: int, text: str) -> challenge_rows.InstructionRow:
 
 
 def episode_id(found: Results, record: Record) -> str:
-    """The name of an episode: task, agents, seed."""
+    """Return the name of an episode: task, agents, seed."""
     lineup = found.header.lineup
     helper = f"{lineup.helper.rpartition('/')[2]}.{lineup.goal}" if record.helped else "alone"
     return f"{record.task}/{lineup.main}/{helper}/{record.seed}"

@@ -122,7 +122,10 @@ class Lineup:
         helped: bool,
         make: Callable[[], MainAgent] | None = None,
     ) -> list[Player]:
-        """New agents for one episode; without a helper where `helped` is False. `make` makes another main agent."""
+        """Return new agents for one episode.
+
+        Without a helper where `helped` is False. `make` makes another main agent.
+        """
         allowed = which.allowed(knowledge)
         known = HELPERS.get(self.helper)
         name = known.main if helped and known and known.main else self.main

@@ -88,7 +88,8 @@ class Task:
 
 
 def task(name: str = "wah", split: str = "train", number: int = 0, seed: int = 0, goal: str = "") -> Task:
-    """A task of a kind, drawn for itself: to try agents with. The published tasks are those of `published_tasks`.
+    """Return a task of a kind, drawn for itself: to try agents with. The published tasks are those of
+    `published_tasks`.
 
     Args:
         name: of the challenge.

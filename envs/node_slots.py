@@ -70,7 +70,7 @@ class Slots:
         return np.array(self.order, np.int64)
 
     def rows(self, masks: Sequence[int]) -> NDArray[np.int8]:
-        """Sets of nodes as int8 (sets, slots)."""
+        """Return sets of nodes as int8 (sets, slots)."""
         count = len(self.home)
         width = count + 7 >> 3
         whole = (1 << count) - 1

@@ -35,7 +35,7 @@ class Binding:
     __repr__ = brief
 
     def apply(self, program: Program) -> Program:
-        """The program bound; what has a node keeps it."""
+        """Return the program bound; what has a node keeps it."""
         return replace(program, steps=tuple(_bound(step, self.nodes, partly=True) for step in program.steps))
 
 
@@ -227,7 +227,7 @@ def _able(world: World, action: str, position: int) -> int:
 
 
 def _room(key: Key, world: World) -> str:
-    """The name of a room, "" of a thing: a room that serves as another may stand for both of their names."""
+    """Return the name of a room, "" of a thing: a room that serves as another may stand for both of their names."""
     return key[0] if world.home.knowledge.is_room(key[0]) else ""
 
 

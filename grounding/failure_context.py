@@ -37,5 +37,5 @@ class FailureContext:
         return self.world.home.index[self.failure.objects[position]]
 
     def group(self, name: str) -> frozenset[str]:
-        """The actions of a group (see `kb.action_groups`)."""
+        """Return the actions of a group (see `kb.action_groups`)."""
         return self.knowledge.group(name)

@@ -59,13 +59,15 @@ def read_ids(program: Program, home: Home, place: str = "") -> NodeIds:
 
 
 def _bound(step: Step, nodes: Mapping[Key, int | None], home: Home) -> Step:
-    """A step in which what names a node of the home keeps it, and other objects have that of `nodes`, or none."""
+    """Return a step in which what names a node of the home keeps it, and other objects have that of `nodes`, or
+    none.
+    """
     objects = (ref if ref.node in home.index else replace(ref, node=nodes.get(ref.key)) for ref in step.objects)
     return replace(step, objects=tuple(objects))
 
 
 def by_number(refs: Sequence[ObjectRef], classes: Mapping[int, str], knowledge: Knowledge) -> dict[Key, int]:
-    """The nodes that objects without a node name by their instance numbers, by the rule of this module.
+    """Return the nodes that objects without a node name by their instance numbers, by the rule of this module.
 
     Args:
         refs: all such objects of a program.
@@ -79,7 +81,7 @@ def by_number(refs: Sequence[ObjectRef], classes: Mapping[int, str], knowledge: 
 
 
 def classes_of(home: Home) -> dict[int, str]:
-    """The class of each node of a home."""
+    """Return the class of each node of a home."""
     return {node: home.classes[index] for node, index in home.index.items()}
 
 

@@ -27,7 +27,7 @@ DECLARED: dict[str, str] = {
 
 
 def _adds(action: Action) -> frozenset[str]:
-    """The effects that hold in every case."""
+    """Return the effects that hold in every case."""
     return frozenset(str(e.literal) for e in action.effects if not e.literal.negated and _always(e))
 
 
@@ -86,12 +86,12 @@ character is; it is put on or in another; the character sits or lies, gets up, t
 
 
 def state_of(action: Action) -> str:
-    """The state that its object enters, or ''."""
+    """Return the state that its object enters, or ''."""
     return next((text[len("state(o, ") : -1] for text in sorted(_adds(action)) if text.startswith("state(o, ")), "")
 
 
 def relation_of(action: Action) -> str:
-    """The relation into which it puts what is held with its second object (ON, INSIDE), or ''."""
+    """Return the relation into which it puts what is held with its second object (ON, INSIDE), or ''."""
     return next((name for name in ("ON", "INSIDE") if _frees_hand(action) and f"{name}(o, s)" in _adds(action)), "")
 
 

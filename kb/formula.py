@@ -143,7 +143,7 @@ class Effect:
 
 
 def free(formula: Formula) -> set[str]:
-    """The variables a formula mentions and does not bind itself; names (of states, classes) are none."""
+    """Return the variables a formula mentions and does not bind itself; names (of states, classes) are none."""
     if isinstance(formula, Literal):
         terms = () if formula.name == OPTION else formula.terms[:1] if formula.name in NAMED else formula.terms
         return {term.name for term in terms}
@@ -156,7 +156,7 @@ def free(formula: Formula) -> set[str]:
 
 
 def predicates(formula: Formula) -> set[str]:
-    """The names of the predicates it uses."""
+    """Return the names of the predicates it uses."""
     if isinstance(formula, Literal):
         return {formula.name}
     parts = formula.parts if isinstance(formula, And | Or) else (formula.part,)

@@ -28,7 +28,7 @@ V = TypeVar("V")
 
 
 def grouped(pairs: Iterable[tuple[K, V]]) -> dict[K, tuple[V, ...]]:
-    """The values of each key, in the order given."""
+    """Return the values of each key, in the order given."""
     found: dict[K, list[V]] = {}
     for key, value in pairs:
         found.setdefault(key, []).append(value)
@@ -82,7 +82,7 @@ class Knowledge:
     # Actions
 
     def action(self, text: str) -> Action | None:
-        """The action of that name or alias, in any case, with or without spaces; None when there is none."""
+        """Return the action of that name or alias, in any case, with or without spaces; None when there is none."""
         return self._action_names.get(text) or self._action_names.get(key_of(text))
 
     @cached_property
@@ -122,11 +122,11 @@ class Knowledge:
         )
 
     def achieving(self, *states: str) -> frozenset[str]:
-        """The names of the actions that bring their object, or the character, into one of these states."""
+        """Return the names of the actions that bring their object, or the character, into one of these states."""
         return frozenset().union(*(self._achieving.get(state, ()) for state in states))
 
     def achiever(self, state: str) -> str:
-        """The plainest action that brings something into a state, by name; '' when none does."""
+        """Return the plainest action that brings something into a state, by name; '' when none does."""
         names = self._achieving.get(state, ())
         return min(names, key=lambda name: name in self.group("variant"), default="")
 
@@ -139,7 +139,7 @@ class Knowledge:
         }
 
     def group(self, name: str) -> frozenset[str]:
-        """The names of the actions of a group (see `kb.action_groups`).
+        """Return the names of the actions of a group (see `kb.action_groups`).
 
         Raises:
             KeyError: the group does not exist.
@@ -151,7 +151,7 @@ class Knowledge:
         return groups(self.actions.values())
 
     def state_of(self, action: str) -> str:
-        """The state that the object of an action enters, or ''."""
+        """Return the state that the object of an action enters, or ''."""
         return self._states_made.get(action, "")
 
     @cached_property
@@ -159,7 +159,7 @@ class Knowledge:
         return {name: state_of(action) for name, action in self.actions.items() if state_of(action)}
 
     def relation_of(self, action: str) -> str:
-        """The relation into which an action puts what is held with its second object (ON, INSIDE), or ''."""
+        """Return the relation into which an action puts what is held with its second object (ON, INSIDE), or ''."""
         return relation_of(self.actions[action]) if action in self.actions else ""
 
     def tool_of(self, action: str) -> str | None:
@@ -180,7 +180,7 @@ class Knowledge:
     # Objects
 
     def object_class(self, name: str) -> ObjectClass | None:
-        """The class of that name or synonym, in any case, with or without spaces; None when there is none."""
+        """Return the class of that name or synonym, in any case, with or without spaces; None when there is none."""
         return self.objects.get(name) or self._object_names.get(key_of(name))
 
     def same_class(self, name: str) -> tuple[str, ...]:
@@ -201,7 +201,7 @@ class Knowledge:
         return {}
 
     def stand_ins(self, name: str) -> tuple[str, ...]:
-        """The classes whose things may take its place in a home, best first."""
+        """Return the classes whose things may take its place in a home, best first."""
         thing = self.object_class(name)
         return self._stand_ins.get(thing.name, ()) if thing else ()
 
@@ -223,7 +223,7 @@ class Knowledge:
         return known
 
     def _names_of(self, name: str) -> tuple[str, ...]:
-        """A class's own name, its twins' and the aliases of them all."""
+        """Return a class's own name, its twins' and the aliases of them all."""
         thing = self.objects.get(name)
         if thing is None:
             return (name,)
@@ -265,7 +265,7 @@ class Knowledge:
         return limits.get(name) or limits.get(thing.name if thing else name) or limits["default"]
 
     def default_states(self, name: str) -> tuple[str, ...]:
-        """The simulated states in which a home's thing of that class starts (thesis 5.5.2)."""
+        """Return the simulated states in which a home's thing of that class starts (thesis 5.5.2)."""
         known = self._default_states.get(name)
         if known is None:
             known = self._default_states[name] = self._defaults_of(name)
@@ -294,7 +294,7 @@ class Knowledge:
         return tuple(s for s in self.defaults["always"].get("states", ()) if self.group_of(s) not in replaced)
 
     def group_of(self, state: str) -> str:
-        """The group a state belongs to, or ''."""
+        """Return the group a state belongs to, or ''."""
         return self._group_names.get(state, "")
 
     @cached_property
@@ -302,7 +302,7 @@ class Knowledge:
         return {state: group.name for group in self.state_groups.values() for state in group.states}
 
     def excludes(self, state: str) -> tuple[str, ...]:
-        """The states that cannot hold together with this one."""
+        """Return the states that cannot hold together with this one."""
         group = self.state_groups.get(self.group_of(state))
         return tuple(other for other in group.states if other != state) if group and group.exclusive else ()
 
@@ -326,7 +326,7 @@ class Knowledge:
     # Names
 
     def suggest(self, name: str, kind: str = "object") -> tuple[str, ...]:
-        """The known names nearest to one that is not known, best first; `kind` is `object` or `action`."""
+        """Return the known names nearest to one that is not known, best first; `kind` is `object` or `action`."""
         return near_names(name, self.action_spellings if kind == "action" else self.object_spellings)
 
     @cached_property

@@ -14,7 +14,7 @@ from hearth.schemas.graph import Node
 
 
 def with_classes(knowledge: Knowledge, nodes: Iterable[Node]) -> Knowledge:
-    """The knowledge with the classes of these nodes; itself where it has all of them by these names.
+    """Return the knowledge with the classes of these nodes; itself where it has all of them by these names.
 
     A class that is known by another name becomes a class of its own that says `same_as`, as `sofa` does of `couch`; one
     that is not known has the category of its first node. Both have the properties of all their nodes, too.

@@ -57,10 +57,10 @@ def faults(step: Step, knowledge: Knowledge) -> Iterator[ModifierFault]:
 
 
 def value(step: Step, name: str) -> str:
-    """The value of a modifier, or ''."""
+    """Return the value of a modifier, or ''."""
     return next((given for each, given in step.modifiers if each == name), "")
 
 
 def numbers(step: Step, name: str) -> tuple[float, ...]:
-    """The numbers of a modifier; none where the step does not have it."""
+    """Return the numbers of a modifier; none where the step does not have it."""
     return tuple(map(float, value(step, name).split(","))) if value(step, name) else ()

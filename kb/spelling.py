@@ -13,12 +13,12 @@ _BEGINNING = 3
 
 
 def key_of(name: str) -> str:
-    """A name for comparison: case, spaces, hyphens and underscores left out."""
+    """Return a name for comparison: case, spaces, hyphens and underscores left out."""
     return name.lower().translate(_DROPPED)
 
 
 def near_names(name: str, spellings: Mapping[str, str]) -> tuple[str, ...]:
-    """The names that may be meant, most probable first: at most three.
+    """Return the names that may be meant, most probable first: at most three.
 
     Args:
         name: as it was written.

@@ -91,8 +91,8 @@ def _each(settings: Settings, plan: Plan) -> float:
 
 
 def process(record: CaseRow, context: Context) -> Iterator[Output]:
-    """A row for each repaired program, a reject for each environment that gave none, and a row for the original in each
-    environment in which it had to be repaired.
+    """Yield a row for each repaired program, a reject for each environment that gave none, and a row for the original
+    in each environment in which it had to be repaired.
 
     The program's sketch is added once, however many homes it is in, and each child's sketch is inherited from it.
     """
@@ -243,7 +243,7 @@ def _repairs(pair: Pair, ids: list[str]) -> list[RepairRow]:
 
 
 def _texts(steps: tuple[Step, ...]) -> list[str]:
-    """Steps as text, unbound; a step in the same tick as the one before begins with a bar."""
+    """Return steps as text, unbound; a step in the same tick as the one before begins with a bar."""
     return list(map(_text, steps))
 
 

@@ -56,7 +56,7 @@ class SplitCaseRow(CaseRow):
 
 
 def partitions(job: Job) -> Iterator[Partition]:
-    """The parts of the stages before, each with the parts of its programs."""
+    """Yield the parts of the stages before, each with the parts of its programs."""
     part_of = job.context.assignment.part_of
     for partition in input_partitions(job):
         mine = {name: part_of(name) for name in _programs(partition.payload)}
@@ -65,13 +65,13 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 
 def _programs(paths: Iterable[str]) -> list[str]:
-    """The ids of the programs of some files, in order."""
+    """Return the ids of the programs of some files, in order."""
     tables = (pq.read_table(path, columns=["program_id"])["program_id"].unique().to_pylist() for path in paths)
     return sorted({*chain.from_iterable(tables)})
 
 
 def records(job: Job, partition: Partition) -> Iterator[SplitCaseRow]:
-    """The cases of a partition."""
+    """Yield the cases of a partition."""
     paths, parts = partition.payload
     part_of = dict(zip(_programs(paths), parts, strict=True))
     cases: Iterator[CaseRow] = chain.from_iterable(read_rows(Path(path)) for path in paths)
@@ -80,7 +80,7 @@ def records(job: Job, partition: Partition) -> Iterator[SplitCaseRow]:
 
 
 def process(case: SplitCaseRow, context: Context) -> Iterable[tuple[str, Row]] | Reject:
-    """The rows of one case, if replaying it gives the same execution."""
+    """Return the rows of one case, if replaying it gives the same execution."""
     difference = difference_on_replay(case, context.homes)
     if difference:
         return Reject.of(Code.REPLAY_DIFFERS, difference, file=case["place"], found=case["execution_id"])
@@ -88,7 +88,7 @@ def process(case: SplitCaseRow, context: Context) -> Iterable[tuple[str, Row]] |
 
 
 def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
-    """The rows of a case; the run of an original in a perturbed environment is published if it fails there."""
+    """Yield the rows of a case; the run of an original in a perturbed environment is published if it fails there."""
     perturbed, part = case["parent_id"] is None and bool(case["perturbations"]), case["split"]
     if not perturbed and case["program_id"] != context.last:
         context.last = case["program_id"]
@@ -107,7 +107,7 @@ def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
 
 
 def program_row(case: SplitCaseRow) -> ProgramRow:
-    """The program of a case."""
+    """Return the program of a case."""
     place = case["place"] if case["line"] is None else f"{case['place']}:{case['line'] + 1}"
     return columns_of(ProgramRow, {**case, "place": place, "activity_id": activity_id(case["title"])})
 

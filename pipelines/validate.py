@@ -81,7 +81,7 @@ def process_as(record: IngestedRow, reading: Reading) -> list[ValidatedRow | Rej
 def checked(
     text: str, before: int, place: str, known: Knowledge
 ) -> tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """A program in canonical names, its faults, and its warnings.
+    """Return a program in canonical names, its faults, and its warnings.
 
     Args:
         text: the program as written.

@@ -29,7 +29,7 @@ def replaceable(knowledge: Knowledge) -> frozenset[str]:
 
 
 def meant(goal: Postconditions, program: Program, conditions: Preconditions, knowledge: Knowledge) -> Postconditions:
-    """The effects that a program is for, without those that are by the way.
+    """Return the effects that a program is for, without those that are by the way.
 
     Side effects are: the room where the character or a thing ends up; a container left open that was opened to take
     something out; a tool still in the hand, since its user has to hold it; and the content of a vessel after pouring,
@@ -127,7 +127,7 @@ def asked(program: Program, knowledge: Knowledge) -> tuple[bool, ...]:
 
 
 def clauses(program: Program) -> list[frozenset[str]]:
-    """The stems of each clause of title and description."""
+    """Return the stems of each clause of title and description."""
     text = f"{program.title}. {program.description}".lower()
     return [stems(part) for part in re.split(r"[.;!?\n]|,|\band\b|\bthen\b", text)]
 
@@ -149,7 +149,7 @@ def _says(step: Step, sentence: frozenset[str], knowledge: Knowledge) -> bool:
 
 @lru_cache(maxsize=1 << 12)
 def action_phrases(action: str, knowledge: Knowledge) -> tuple[frozenset[str], ...]:
-    """The words of each phrase of an action, objects left out."""
+    """Return the words of each phrase of an action, objects left out."""
     known = knowledge.actions.get(action)
     if known is None:
         return ()
@@ -159,7 +159,7 @@ def action_phrases(action: str, knowledge: Knowledge) -> tuple[frozenset[str], .
 
 @lru_cache(maxsize=1 << 12)
 def names_in_text(name: str, knowledge: Knowledge) -> frozenset[str]:
-    """The words by which a thing may go: those of its class's names, and of the kind above it."""
+    """Return the words by which a thing may go: those of its class's names, and of the kind above it."""
     thing = knowledge.object_class(name)
     names = {name, *knowledge.same_class(name)}
     if thing is not None:
@@ -174,7 +174,7 @@ def stems(text: str) -> frozenset[str]:
 
 
 def _stem(word: str) -> str:
-    """A word without plural, -ing and -ed: near enough to compare."""
+    """Return a word without plural, -ing and -ed: near enough to compare."""
     for ending in ("ching", "ing", "ied", "ed", "es", "s"):
         if word.endswith(ending) and len(word) - len(ending) >= 3:
             word = word[: -len(ending)] + ("ch" if ending == "ching" else "")

@@ -170,7 +170,7 @@ def _pair(
     aim: tuple[Postconditions, Sequence[Postconditions]],
     options: Options,
 ) -> Pair:
-    """A perturbed environment's program, repaired to reach a goal, its steps in their circumstances."""
+    """Return a perturbed environment's program, repaired to reach a goal, its steps in their circumstances."""
     if isinstance(drawn, tuple):
         environment, condition = drawn
         failure = unmet_failure(condition, environment.program.unbound(), DRAWS)
@@ -188,7 +188,7 @@ def _pair(
 
 
 def _judged(pair: Pair, seen: set[object]) -> Pair:
-    """The pair, refused when its program is the original's or one that came up before."""
+    """Return the pair, refused when its program is the original's or one that came up before."""
     if pair.failure is not None:
         return pair
     shape = _shape(pair.program)

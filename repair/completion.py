@@ -55,7 +55,7 @@ def complete(steps: Steps, world: World, knowledge: Knowledge, rules: Rules = DE
 
 
 def _source(sources: tuple[int, ...], failed: int, count: int) -> int:
-    """The step of the original that a failing step is, or that it was inserted for."""
+    """Return the step of the original that a failing step is, or that it was inserted for."""
     later = (source for source in sources[failed:] if source >= 0)
     earlier = (source for source in reversed(sources[:failed]) if source >= 0)
     return min(next(later, next(earlier, 0)), count - 1)

@@ -23,7 +23,7 @@ MATTERS: dict[Code, str] = {
 
 
 def cause(perturbations: Sequence[Perturbation], attempt: Attempt, program: Program) -> int | None:
-    """The number of the perturbation that a failure comes of.
+    """Return the number of the perturbation that a failure comes of.
 
     The only perturbation of a run caused all its failures, directly or by way of a repair. Of several, it is the one
     that settles what fails (a seat, a door, a posture) for an object of the failure or for the character; or else the

@@ -44,7 +44,7 @@ class Perturbation:
         return (self.dropped or self.added)[0]
 
     def claims(self) -> frozenset[tuple[str, Key]]:
-        """The (matter, object) pairs it determines; two perturbations that share one exclude each other."""
+        """Return the (matter, object) pairs it determines; two perturbations that share one exclude each other."""
         settled = ((_MATTER.get(c.name, "place"), c.objects[0]) for c in (*self.dropped, *self.added))
         off = (("switch", c.objects[0]) for c in self.added if c.name == "unplugged")
         return frozenset((*settled, *off))
@@ -123,7 +123,7 @@ def _drawn(case: Case, every: Sequence[Perturbation], chances: Chances, rng: Ran
 
 
 def _chosen(every: Sequence[Perturbation], chances: Chances, rng: Random) -> tuple[Perturbation, ...]:
-    """Some of the candidates, no two of which share a claim."""
+    """Return some of the candidates, no two of which share a claim."""
     (way,) = rng.choices(tuple(chances.draws), tuple(chances.draws.values()))
     weights = [chances.kinds.get(one.kind, 0.0) for one in every]
     if way == "each":
@@ -144,7 +144,10 @@ def _chosen(every: Sequence[Perturbation], chances: Chances, rng: Random) -> tup
 
 
 def applied(conditions: Preconditions, perturbations: Sequence[Perturbation]) -> Preconditions:
-    """The conditions after all perturbations: first those that move things, since the others depend on their places."""
+    """Return the conditions after all perturbations.
+
+    First those that move things, since the others depend on their places.
+    """
     left = conditions.without(*(c for one in perturbations for c in one.dropped))
     added = [c for one in perturbations for c in one.added]
     moving = Preconditions(tuple(c for c in added if _MATTER.get(c.name, "place") == "place"))
@@ -164,7 +167,7 @@ def _swap(kind: str, pairs: Mapping[str, str]) -> Perturber:
 
 
 def _plugged(case: Case) -> Iterator[Perturbation]:
-    """A device plugged in and off is unplugged, or the reverse, if it has a plug that can be put in."""
+    """Yield a device plugged in and off is unplugged, or the reverse, if it has a plug that can be put in."""
     for one in _swap("plugged", {"plugged": "unplugged", "unplugged": "plugged"})(case):
         home = case.base.home
         lacking = (i for i in case.base.instances(one.about.objects[0][0]) if not home.able("PlugIn") >> i & 1)
@@ -174,7 +177,10 @@ def _plugged(case: Case) -> Iterator[Perturbation]:
 
 
 def _at_reach(case: Case) -> Iterator[Perturbation]:
-    """An object at reach is where it belongs, but not at reach; what is used from a seat, if either can be carried."""
+    """Yield an object at reach is where it belongs, but not at reach.
+
+    What is used from a seat, if either can be carried.
+    """
     seats = _seats(case)
     for condition in case.conditions:
         used = (condition.objects[0][0], seats.get(condition.step, ""))
@@ -201,7 +207,7 @@ def _seats(case: Case) -> dict[int | None, str]:
 
 
 def _container(case: Case) -> Iterator[Perturbation]:
-    """An object on or in something is in another container, which is closed."""
+    """Yield an object on or in something is in another container, which is closed."""
     for condition in case.conditions:
         if condition.name in ("in", "inside") and _fits_closed_container(case, *condition.objects):
             yield _replaced(case, "container", condition, condition.instead("in_closed_container"))
@@ -218,7 +224,7 @@ def _fits_closed_container(case: Case, key: Key, now: Key) -> bool:
 
 
 def _location(case: Case) -> Iterator[Perturbation]:
-    """An object in one room is in another."""
+    """Yield an object in one room is in another."""
     for condition in case.conditions:
         if condition.name == "location" and _is_portable(case, condition.objects[0]):
             yield _replaced(case, "location", condition, condition.instead("other_room"))
@@ -230,7 +236,7 @@ def _replaced(case: Case, kind: str, old: Condition, new: Condition) -> Perturba
 
 
 def _placing(case: Case, key: Key) -> list[Condition]:
-    """The conditions by which an object is placed."""
+    """Return the conditions by which an object is placed."""
     return [c for c in case.conditions if c.name in _BY_OTHERS and c.objects[0] == key and CHARACTER not in c.objects]
 
 
@@ -241,7 +247,7 @@ def _is_portable(case: Case, key: Key) -> bool:
 
 
 def _full_hands(case: Case) -> Iterator[Perturbation]:
-    """The character comes with both hands full."""
+    """Yield the character comes with both hands full."""
     for number, step in enumerate(case.program.steps):
         action = case.knowledge.actions.get(step.action)
         if action is not None and any(check.code == "NO_FREE_HAND" for check in action.preconditions):
@@ -250,7 +256,7 @@ def _full_hands(case: Case) -> Iterator[Perturbation]:
 
 
 def _door(case: Case) -> Iterator[Perturbation]:
-    """The doors of the room in which the program begins are closed; the character is in another."""
+    """Yield the doors of the room in which the program begins are closed; the character is in another."""
     resting = any(c.name in ("sitting", "lying", "nearby", "holds") for c in case.conditions)
     number, first = next(((n, s) for n, s in enumerate(case.program.steps) if s.objects), (0, None))
     walks = case.knowledge.group("walks")
@@ -268,7 +274,7 @@ def _has_door(case: Case, room: str) -> bool:
 
 
 def _pet(case: Case) -> Iterator[Perturbation]:
-    """A cat or a dog is on the seat, and enough other things to leave no room."""
+    """Yield a cat or a dog is on the seat, and enough other things to leave no room."""
     for condition in case.conditions:
         if condition.name == "free":
             added = tuple(condition.instead(name) for name in ("pet", "occupied"))
@@ -276,7 +282,7 @@ def _pet(case: Case) -> Iterator[Perturbation]:
 
 
 def _dirty(case: Case) -> Iterator[Perturbation]:
-    """An object that the program cleans is dirty."""
+    """Yield an object that the program cleans is dirty."""
     seen: set[Key] = set()
     cleaning = case.knowledge.achieving("CLEAN")
     for number, step in enumerate(case.program.steps):
@@ -288,7 +294,7 @@ def _dirty(case: Case) -> Iterator[Perturbation]:
 
 
 def _seated(case: Case) -> Iterator[Perturbation]:
-    """The character sits somewhere."""
+    """Yield the character sits somewhere."""
     if not any(c.name in ("sitting", "lying", "nearby", "holds") for c in case.conditions) and case.program.steps:
         yield Perturbation("seated", (), (Condition(Literal("sitting", (CHARACTER,))),))
 

@@ -45,7 +45,7 @@ class Strength:
 
 
 def strength(name: str) -> Strength:
-    """A strength of perturbations.yaml, by its name.
+    """Return a strength of perturbations.yaml, by its name.
 
     Raises:
         HearthError: UNKNOWN_ID, with the known names.

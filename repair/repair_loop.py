@@ -75,7 +75,7 @@ class Repaired:
 
 
 def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[bool, ...]:
-    """The successful attempts of one program: the program changed, and the failure did not come back at once.
+    """Return the successful attempts of one program: the program changed, and the failure did not come back at once.
 
     Args:
         attempts: in order.
@@ -97,7 +97,7 @@ class _Task(NamedTuple):
     wanted: Sequence[Postconditions]
 
     def lost(self, execution: Execution, sources: Sequence[int]) -> Lost | None:
-        """The first step done in other circumstances, if they are known."""
+        """Return the first step done in other circumstances, if they are known."""
         return lost(self.original, self.wanted, sources, execution) if self.wanted else None
 
     def keeps(self, execution: Execution, sources: Sequence[int]) -> bool:
@@ -181,7 +181,10 @@ _MISSED = frozenset({Code.GOAL_LOST, Code.CIRCUMSTANCES_LOST})
 
 
 def _context(revision: _Revision, task: _Task) -> RepairContext | None:
-    """The first thing wrong with a program: a step that fails or is done in other circumstances, or a missed goal."""
+    """Return the first thing wrong with a program.
+
+    A step that fails or is done in other circumstances, or a missed goal.
+    """
     execution = revision.execution
     if execution.failure is not None:
         at = step_number(revision.program, execution.failure) - 1
@@ -227,7 +230,7 @@ def _consult(handlers: Mapping[Code, Handler], context: RepairContext) -> tuple[
 
 
 def _edited(revision: _Revision, edit: Edit, rules: Rules) -> _Revision:
-    """The program after an edit, run on from the last world that the edit does not touch."""
+    """Return the program after an edit, run on from the last world that the edit does not touch."""
     steps, sources = list(revision.program.steps), list(revision.sources)
     known = {id(step): source for step, source in zip(steps, sources, strict=True)}
     for splice in reversed(edit.splices):
@@ -250,7 +253,7 @@ def _attempt(attempts: Sequence[Attempt], context: RepairContext, name: str, aft
 
 
 def _given_up(revision: _Revision, attempts: list[Attempt], context: RepairContext, code: Code, why: str) -> Repaired:
-    """The failure keeps the code and text of the one that could not be repaired."""
+    """Return the failure keeps the code and text of the one that could not be repaired."""
     last = context.failure
     reason = why or UNREPAIRABLE.get(last.code, "nothing in this environment helps")
     expected = f"{last.code}: {last.expected}" if last.expected else str(last.code)

@@ -83,7 +83,9 @@ def _smaller(
     suffices: Callable[[Execution, tuple[int, ...]], bool],
     rules: Rules,
 ) -> Iterator[tuple[Execution, tuple[int, ...]]]:
-    """The program without one step, or without a pair of steps that undo each other, where it still does its work."""
+    """Yield the program without one step, or without a pair of steps that undo each other, where it still does its
+    work.
+    """
     for start, end in _candidates(original, execution.program.steps, sources, execution.final.home.knowledge):
         steps = execution.program.steps
         program = execution.program.with_steps(steps[:start] + steps[end:])

@@ -51,7 +51,8 @@ def sketch(
     record_id: str = "",
     original: tuple[Preconditions, Execution] | None = None,
 ) -> Keep:
-    """The smallest part of a program from which repairing reaches the effects meant, with the steps its text names.
+    """Return the smallest part of a program from which repairing reaches the effects meant, with the steps its text
+    names.
 
     Steps are left out one by one, from the first; one stays out if in every environment the rest can still be
     repaired so that it reaches the effects meant. Actions that no repair inserts stay. What is left out comes back
@@ -89,7 +90,7 @@ def sketch(
 
 
 def inherited(keep: Sequence[bool], sources: Sequence[int]) -> Keep:
-    """The sketch of a program made from another: the same steps, wherever they now stand.
+    """Return the sketch of a program made from another: the same steps, wherever they now stand.
 
     Args:
         keep: the parent's sketch.

@@ -31,7 +31,7 @@ RATED = ("action", "instruction", "object", "then", "after", "used_in", "used_by
 
 
 def features(program: Program, ruled: Sequence[bool], knowledge: Knowledge) -> list[StepFeatures]:
-    """The features of every step.
+    """Return the features of every step.
 
     Args:
         program: with instances as counters.
@@ -54,7 +54,7 @@ class _Seen:
         self.acting = [number for number, step in enumerate(self.steps) if step.action not in preparing]
 
     def step(self, number: int, ruled: float, wanted: float) -> StepFeatures:
-        """The features of one step; `ruled` and `wanted`: what repairs and the text's words say of it."""
+        """Return the features of one step; `ruled` and `wanted`: what repairs and the text's words say of it."""
         step = self.steps[number]
         numbers = {"ruled": ruled, "asked": wanted, **self._place(number), **self._object(number), **self._words(step)}
         numbers["takes_back"] = float(takes_back(self.program, number, self.known))
@@ -118,7 +118,7 @@ class _Seen:
         }
 
     def _names(self, number: int, numbers: Mapping[str, float]) -> list[str]:
-        """The action, alone and with its objects, its neighbours and each of the numbers."""
+        """Return the action, alone and with its objects, its neighbours and each of the numbers."""
         step = self.steps[number]
         names = [ref.name for ref in step.objects]
         after = next((n for n in self.acting if n > number), None)

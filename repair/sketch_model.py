@@ -49,7 +49,7 @@ class Tree(NamedTuple):
     value: tuple[float, ...]
 
     def score(self, values: Sequence[float]) -> float:
-        """The value of the leaf that these numbers reach."""
+        """Return the value of the leaf that these numbers reach."""
         node = 0
         while self.number[node] >= 0:
             below = values[self.number[node]] <= self.threshold[node]
@@ -89,7 +89,7 @@ class SketchModel:
     forest: tuple[Tree, ...] = ()
 
     def probability(self, step: StepFeatures) -> float:
-        """The probability that people keep a step."""
+        """Return the probability that people keep a step."""
         below = logit(self.base.probability(step)) if self.base else 0.0
         linear = self.bias + self.base_weight * below + sum(self.weights.get(name, 0.0) for name in step.names)
         values = self.values(step, below)
@@ -101,7 +101,7 @@ class SketchModel:
         return sum(found) / len(found)
 
     def values(self, step: StepFeatures, below: float) -> dict[str, float]:
-        """The numbers that the trees may see of a step; `below`: the base's logit."""
+        """Return the numbers that the trees may see of a step; `below`: the base's logit."""
         return {
             **step.numbers,
             BASE: below,
@@ -114,13 +114,13 @@ class SketchModel:
         }
 
     def keep(self, steps: Sequence[StepFeatures]) -> Keep:
-        """The steps kept: those that are probable enough, and always the most probable one."""
+        """Return the steps kept: those that are probable enough, and always the most probable one."""
         found = [self.probability(step) for step in steps]
         best = max(range(len(found)), key=found.__getitem__, default=0)
         return tuple(each >= self.least or number == best for number, each in enumerate(found))
 
     def to_json(self) -> dict[str, Any]:
-        """The stored form; the base is not stored, since it is the shipped model."""
+        """Return the stored form; the base is not stored, since it is the shipped model."""
         return {
             "form": FORM,
             "fitted_on": dict(self.fitted_on),
@@ -140,7 +140,7 @@ class SketchModel:
 def shares(
     step: StepFeatures, counts: Mapping[str, tuple[int, int]], without: Mapping[str, tuple[int, int]] | None = None
 ) -> list[float]:
-    """The share of steps kept among those with each of the `RATED` names, smoothed towards that of the action.
+    """Return the share of steps kept among those with each of the `RATED` names, smoothed towards that of the action.
 
     Args:
         step: the step.
@@ -160,7 +160,7 @@ def shares(
 
 
 def logit(probability: float) -> float:
-    """The log-odds of a probability, cut at 1e-6 from 0 and 1 and rounded, so that stored trees agree."""
+    """Return the log-odds of a probability, cut at 1e-6 from 0 and 1 and rounded, so that stored trees agree."""
     cut = min(max(probability, 1e-6), 1 - 1e-6)
     return round(log(cut / (1 - cut)), 6)
 
@@ -170,7 +170,7 @@ def _logistic(value: float) -> float:
 
 
 def learned_sketch(program: Program, ruled: Keep, knowledge: Knowledge, model: SketchModel) -> Keep:
-    """The steps that a model keeps, given those that repairs can't do without.
+    """Return the steps that a model keeps, given those that repairs can't do without.
 
     Args:
         program: with instances as counters.
@@ -182,13 +182,13 @@ def learned_sketch(program: Program, ruled: Keep, knowledge: Knowledge, model: S
 
 
 def model_of(name: str) -> SketchModel:
-    """The model of a name: `ours` for the shipped one, else a file."""
+    """Return the model of a name: `ours` for the shipped one, else a file."""
     return shipped() if name == "ours" else load_model(Path(name))
 
 
 @cache
 def shipped() -> SketchModel:
-    """The model fitted on our own annotations."""
+    """Return the model fitted on our own annotations."""
     return load_model(FILE)
 
 
@@ -225,7 +225,7 @@ def load_model(path: Path) -> SketchModel:
 
 
 def _number(given: Any) -> float:
-    """A number that sums and products of the model's stay finite with."""
+    """Return a number that sums and products of the model's stay finite with."""
     number = float(given)
     if not abs(number) <= LARGEST_NUMBER:
         raise ValueError(f"the number {str(given)[:20]}")
@@ -247,13 +247,13 @@ def _known(numbers: tuple[str, ...], base: SketchModel | None) -> tuple[str, ...
 
 
 def inputs(based: bool) -> tuple[str, ...]:
-    """The names of all numbers that trees may see, in order."""
+    """Return the names of all numbers that trees may see, in order."""
     own = (*sorted(NUMBERS), BASE, *(f"share {name}" for name in RATED))
     return (*own, *(f"base share {name}" for name in RATED)) if based else own
 
 
 def _tree(data: Mapping[str, Any], count: int) -> Tree:
-    """A tree whose children come after their parents, so that every walk ends."""
+    """Return a tree whose children come after their parents, so that every walk ends."""
     tree = Tree(
         tuple(int(each) for each in data["number"]),
         tuple(map(_number, data["threshold"])),

@@ -22,18 +22,21 @@ class Planned(NamedTuple):
 
 
 def bound_to_nearest(sketch: Sequence[Step], world: World) -> Steps:
-    """A sketch with its objects bound to the nearest nodes of their classes; steps whose objects the home lacks go."""
+    """Return a sketch with its objects bound to the nearest nodes of their classes.
+
+    Steps whose objects the home lacks go.
+    """
     program = Program(steps=tuple(sketch))
     return complete_steps(nearest(program, world).apply(program).steps)
 
 
 def complete_steps(steps: Sequence[Step]) -> Steps:
-    """The steps of which every object has a node."""
+    """Return the steps of which every object has a node."""
     return tuple(step for step in steps if all(ref.node is not None for ref in step.objects))
 
 
 def plan(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> tuple[Planned, ...]:
-    """A plan in which the steps can be done one after the other; it always runs.
+    """Return a plan in which the steps can be done one after the other; it always runs.
 
     A step that no repair makes possible is left out.
 
@@ -47,5 +50,5 @@ def plan(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> tuple[P
 
 
 def planned_program(sketch: Sequence[Step], world: World, rules: Rules = DEFAULT) -> Steps:
-    """The program that the planner writes for a sketch without nodes."""
+    """Return the program that the planner writes for a sketch without nodes."""
     return tuple(each.step for each in plan(bound_to_nearest(sketch, world), world, rules))

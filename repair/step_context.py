@@ -72,7 +72,7 @@ def _posture(character: Key, now: frozenset[Literal[Key]]) -> Iterator[Literal[K
 def lost(
     original: Program, wanted: Sequence[Postconditions], sources: Sequence[int], execution: Execution
 ) -> Lost | None:
-    """The first of the original's steps that a repaired program does in other circumstances.
+    """Return the first of the original's steps that a repaired program does in other circumstances.
 
     Args:
         original: the program before any repair, bound.
@@ -89,5 +89,5 @@ def lost(
 
 
 def _ticks(program: Program) -> list[int]:
-    """The tick of each step."""
+    """Return the tick of each step."""
     return [tick for tick, together in enumerate(program.ticks()) for _ in together]

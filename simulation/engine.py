@@ -48,7 +48,7 @@ class Execution:
         return self.worlds[-1]
 
     def changes(self) -> tuple[Change, ...]:
-        """The changes of each tick."""
+        """Return the changes of each tick."""
         return tuple(now.changes(before) for before, now in zip(self.worlds, self.worlds[1:], strict=False))
 
 
@@ -85,8 +85,8 @@ def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Fai
 
 
 def ready(world: World, program: Program, rules: Rules = DEFAULT) -> World:
-    """The world with its characters at places if a program moves them by metres or says where they stand, and by action
-    set 3 with its further states.
+    """Return the world with its characters at places if a program moves them by metres or says where they stand, and by
+    action set 3 with its further states.
     """
     if rules.consequences:
         world = widened(world)
@@ -107,7 +107,7 @@ def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = D
 
 
 def alone(world: World, instruction: Step, rules: Rules) -> World | Failure:
-    """A tick in which one agent does something: the instruction, and by action set 3 what comes by itself."""
+    """Return a tick in which one agent does something: the instruction, and by action set 3 what comes by itself."""
     result = act(world, instruction, rules)
     return advanced(world, result) if rules.consequences and type(result) is World else result
 

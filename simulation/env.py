@@ -223,7 +223,7 @@ class Env:
 
 
 def with_agents(world: World, count: int, seed: int = 0) -> World:
-    """A world with at least that many characters: those it lacks are added, standing in random rooms.
+    """Return a world with at least that many characters: those it lacks are added, standing in random rooms.
 
     Raises:
         HearthError: NO_ROOM, when there is no room to put them in.

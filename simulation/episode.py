@@ -73,7 +73,7 @@ class Episode:
             yield world, last
 
     def verify(self) -> Diagnostic | None:
-        """The first tick (from 1; 0 is the start) that is not as recorded; None if all are."""
+        """Return the first tick (from 1; 0 is the start) that is not as recorded; None if all are."""
         for number, ((_, found), recorded) in enumerate(zip(self.again(), self.digests, strict=True)):
             if found != recorded:
                 message = f"tick {number} is not as recorded: its digest is {found}, and {recorded} was stored"

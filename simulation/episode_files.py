@@ -84,7 +84,7 @@ def _row(episode: Episode, key: str, base: EnvironmentGraph) -> dict[str, Any]:
 
 
 def read(path: Path, knowledge: Knowledge) -> Iterator[Episode]:
-    """The episodes of a file, one after the other.
+    """Yield the episodes of a file, one after the other.
 
     Raises:
         HearthError: MISSING_FILE; FILE_TOO_LARGE; BAD_ARCHIVE; BAD_JSON, with the line, of anything but episodes and
@@ -145,7 +145,7 @@ def _agent(number: str) -> int:
 
 
 def _read_step(text: Any, agent: int) -> Step:
-    """An instruction as it was tried: it need not be one that makes sense."""
+    """Return an instruction as it was tried: it need not be one that makes sense."""
     found = parse_steps(word(text))
     if isinstance(found, Diagnostic) or len(found) != 1:
         raise ValueError(f"`{text[:60]}` is not an instruction")

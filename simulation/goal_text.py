@@ -41,7 +41,8 @@ MOST = 1_000
 
 
 def read_goal(given: str | Mapping[str, Any], home: Home, file: str = "goal") -> Goal:
-    """A goal from text, or from a record of the Embodied Agent Interface: `vh_goal`, or a task with it or `tl_goal`.
+    """Return a goal from text, or from a record of the Embodied Agent Interface: `vh_goal`, or a task with it or
+    `tl_goal`.
 
     Of a `vh_goal`, the actions are done in their order, and its states and relations hold at the end. One with neither
     is a goal that holds at once, as 4 of the interface's 342 are; a text that is empty is a fault.
@@ -68,7 +69,7 @@ def read_goal(given: str | Mapping[str, Any], home: Home, file: str = "goal") ->
 
 
 def _release_text(record: Any, file: str) -> str:
-    """A `vh_goal` as text."""
+    """Return a `vh_goal` as text."""
     try:
         if not {"actions", "goal"} & record.keys():
             raise KeyError("actions")
@@ -175,7 +176,7 @@ class _Parser(Tokens):
         return Goal.of((literal, number))
 
     def _named(self, word: str, terms: int, bracketed: bool) -> str:
-        """The name of a state or relation, of an action, or the word itself."""
+        """Return the name of a state or relation, of an action, or the word itself."""
         name = OTHER_NAMES.get(word.upper(), word.upper())
         action = self.home.knowledge.action(word)
         if not bracketed and ((terms == 1 and name in EVERY_STATE_ID) or (terms == 2 and name in RELATED)):

@@ -70,7 +70,10 @@ class Trace(NamedTuple):
         return any(found) if part.join == "exists" else all(found)
 
     def _things(self, part: Joined) -> Iterable[int]:
-        """The nodes that a variable may stand for; to make an action's literal hold, only those that were used."""
+        """Return the nodes that a variable may stand for.
+
+        To make an action's literal hold, only those that were used.
+        """
         home = self.worlds[0].home
         about = [literal for literal, _ in part.goals[0].literals() if part.variable in literal.terms]
         if part.join == "exists" and about and _positive(part.goals[0]) and all(acts(each, home) for each in about):

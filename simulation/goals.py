@@ -86,7 +86,7 @@ class Progress:
 
     @classmethod
     def at(cls, goal: Goal, world: World) -> Progress:
-        """The same unchecked: a literal about absent things never holds."""
+        """Return the same unchecked: a literal about absent things never holds."""
         if goal.parts or any(acts(literal, world.home) for literal, _ in goal):
             return cls(goal, (), Trace((world,)))
         found = ((literal, wanted, candidates(literal, world.home)) for literal, wanted in goal)
@@ -94,7 +94,7 @@ class Progress:
 
     @classmethod
     def of(cls, goal: Goal, execution: Execution) -> Progress:
-        """The progress at the end of a run."""
+        """Return the progress at the end of a run."""
         found = cls.start(goal, execution.final)
         return replace(found, trace=Trace.of(execution)) if found.trace else found
 
@@ -119,7 +119,7 @@ class Progress:
         )
 
     def then(self, before: World, world: World, done: Sequence[Step] = ()) -> Progress:
-        """The same as `after`, from the world before instead of a change; faster, where both are of one home.
+        """Return the same as `after`, from the world before instead of a change; faster, where both are of one home.
 
         Args:
             before: the world that this is the progress in.
@@ -184,7 +184,7 @@ def _updated(watch: Watch, world: World, touched: int) -> Watch:
 
 
 def _touched(change: Change, home: Home) -> defaultdict[str, int]:
-    """The nodes that a change is about by relation or state; both ends of an edge."""
+    """Return the nodes that a change is about by relation or state; both ends of an edge."""
     found: defaultdict[str, int] = defaultdict(int)
     index = home.index
     for source, relation, target in (*change.added, *change.removed):

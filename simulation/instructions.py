@@ -12,7 +12,8 @@ from hearth.simulation.world.home import Home
 
 
 def instruction_of(text: str, home: Home) -> Step:
-    """The one instruction of a line, bound to nodes: `(1.41)` names node 41, `(2)` the second of its class by id.
+    """Return the one instruction of a line, bound to nodes: `(1.41)` names node 41, `(2)` the second of its class by
+    id.
 
     Raises:
         HearthError: every fault of syntax and grammar; UNBOUND where the home has fewer of the class.

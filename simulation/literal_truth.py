@@ -86,7 +86,7 @@ class Candidates(NamedTuple):
         return self.subjects.bit_count() * (self.targets.bit_count() if self.by_target else 1)
 
     def met(self, world: World) -> tuple[int, ...]:
-        """The candidates for which the literal holds in a world: subjects, or for each character targets."""
+        """Return the candidates for which the literal holds in a world: subjects, or for each character targets."""
         name, _, negated = self.literal
         if self.by_target:
             related, targets = binary(name), self.targets
@@ -110,7 +110,7 @@ class Candidates(NamedTuple):
 
 
 def candidates(literal: Literal[Name], home: Home) -> Candidates:
-    """The nodes of a home that may make a literal hold."""
+    """Return the nodes of a home that may make a literal hold."""
     subjects = nodes(literal.terms[0], home)
     if len(literal.terms) == 1:
         return Candidates(literal, subjects, 0, by_target=False)
@@ -118,8 +118,8 @@ def candidates(literal: Literal[Name], home: Home) -> Candidates:
 
 
 def nodes(term: T, home: Home, binding: Mapping[T, int] = UNBOUND) -> int:
-    """The nodes that a term stands for: a program's object or a variable for the one it is bound to, a class, and a
-    room that a program does not name, for its instances (see `Home.instances`).
+    """Return the nodes that a term stands for: a program's object or a variable for the one it is bound to, a class,
+    and a room that a program does not name, for its instances (see `Home.instances`).
     """
     if isinstance(term, tuple):
         if term[0] == CHARACTER_CLASS and 0 < term[1] <= len(home.agents):
@@ -153,7 +153,7 @@ _DIGITS = 9
 
 
 def unary(name: str) -> Unary:
-    """The predicate of one term; a state that the world does not simulate holds where the graph stores it."""
+    """Return the predicate of one term; a state that the world does not simulate holds where the graph stores it."""
     return UNARY.get(name) or partial(_kept, name)
 
 
@@ -165,7 +165,7 @@ def _kept(name: str, world: World, i: int) -> bool:
 
 
 def binary(name: str) -> Binary:
-    """The predicate of two terms; a relation that is not simulated holds where the graph stores it."""
+    """Return the predicate of two terms; a relation that is not simulated holds where the graph stores it."""
     return BINARY.get(name) or (lambda world, i, targets: _stored(world, i, name) & targets)
 
 
@@ -176,7 +176,7 @@ def _stored(world: World, i: int, *relations: str) -> int:
 
 
 def _mirrored(row: Callable[[World, int], int], out: Callable[[Agent], int], into: Callable[[Agent], int]) -> Binary:
-    """A relation that the rows of things hold together with the characters' own edges, `out` and `into` them."""
+    """Return a relation that the rows of things hold together with the characters' own edges, `out` and `into` them."""
 
     def related(world: World, i: int, targets: int) -> int:
         characters = world.home.characters
@@ -226,14 +226,14 @@ def _full_hands(world: World, i: int) -> bool:
 
 
 def _doors_closed(world: World, i: int) -> bool:
-    """A way into its room leads through a closed door."""
+    """Return a way into its room leads through a closed door."""
     room = rows.room_of(world, i)
     closed = world.home.doors & world.states[STATE_ID["CLOSED"]]
     return room >= 0 and any(world.home.between[door] >> room & 1 for door in indices(closed))
 
 
 def _pet(world: World, i: int) -> bool:
-    """A pet is on it."""
+    """Return a pet is on it."""
     pets = (world.home.by_class.get(name, 0) for name in PETS)
     return any(mask & rows.bearing(world, i) for mask in pets)
 
@@ -255,12 +255,12 @@ def _together(world: World, i: int, targets: int) -> int:
 
 
 def _is_held(world: World, i: int, targets: int) -> int:
-    """The target, a character, holds it."""
+    """Return the target, a character, holds it."""
     return mask_of(agent.index for agent in world.agents if agent.held >> i & 1) & targets
 
 
 def _not_near(world: World, i: int, targets: int) -> int:
-    """A character that has walked to the target is not close to it."""
+    """Return a character that has walked to the target is not close to it."""
     home = world.home
     mine = (1 << i | rows.close(world, i) | rows.on(world, i)) & ~home.properties["BODY_PART"]
     return mask_of(j for j in indices(targets) if not mine & home.reach[j])

@@ -34,7 +34,7 @@ class _Kind(NamedTuple):
     lacks: tuple[int, ...]
 
     def mask(self, home: Home, states: tuple[int, ...]) -> int:
-        """The nodes that are so."""
+        """Return the nodes that are so."""
         found = kind_of(home, self.formula)
         for number in self.has:
             found &= states[number]
@@ -43,7 +43,7 @@ class _Kind(NamedTuple):
         return found
 
     def without(self, number: int) -> _Kind:
-        """The same, whether or not it is in a state."""
+        """Return the same, whether or not it is in a state."""
         return self._replace(lacks=tuple(each for each in self.lacks if each != number))
 
 
@@ -73,7 +73,7 @@ class Running(NamedTuple):
     kept: tuple[_Part, ...] = ()
 
     def now(self, world: World) -> int:
-        """The things that are in it."""
+        """Return the things that are in it."""
         found = _taking_part(world, self.thing, self.device, self.beside)
         for each in self.kept if found else ():
             found &= ~_taking_part(world, *each)
@@ -88,7 +88,7 @@ def _taking_part(world: World, thing: _Kind, device: _Kind | None, beside: _Besi
 
 @lru_cache(maxsize=8)
 def running(knowledge: Knowledge) -> tuple[Running, ...]:
-    """The processes of the knowledge."""
+    """Return the processes of the knowledge."""
     found: list[Running] = []
     first = 0
     for process in knowledge.processes.values():
@@ -130,7 +130,7 @@ def _keeping(ending: Running, every: Iterable[Running]) -> Iterable[_Part]:
 
 
 def widened(world: World) -> World:
-    """The world with the further states, and counts at 0."""
+    """Return the world with the further states, and counts at 0."""
     if len(world.states) > len(STATES):
         return world
     processes = running(world.home.knowledge)
@@ -214,7 +214,7 @@ def _counted(counts: list[int], process: Running, now: int) -> int:
 
 
 def _ended(world: World, ready: Iterable[tuple[Running, int]]) -> World:
-    """The world in which the processes that are done for some things have made true what they do."""
+    """Return the world in which the processes that are done for some things have made true what they do."""
     changes = [
         (effect.literal, (i,)) for each, things in ready for effect in each.process.effects for i in indices(things)
     ]

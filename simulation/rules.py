@@ -110,7 +110,7 @@ def read(given: Mapping[str, Any]) -> Rules:
 
 
 def suited(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Rules:
-    """The rules by which a program says what its author meant.
+    """Return the rules by which a program says what its author meant.
 
     A person who switches something on only after watching it, or off before, watches a dark screen: the release has
     such programs, and by the thesis's rule (5.5.2) they contradict themselves.

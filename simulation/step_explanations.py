@@ -51,7 +51,7 @@ class _Cast:
 
 
 def checks(world: World, step: Step, rules: Rules) -> Iterator[Check]:
-    """The checks of a step that can be done in this world, in the order they are made.
+    """Yield the checks of a step that can be done in this world, in the order they are made.
 
     Examples:
         >>> from hearth.simulation.step_explanations import checks
@@ -119,7 +119,7 @@ MOST_NAMED = 4
 
 
 def _conditions(world: World, step: Step, rules: Rules) -> Iterator[Condition]:
-    """The checks of an action that these rules make."""
+    """Yield the checks of an action that these rules make."""
     action = world.home.knowledge.actions.get(step.action)
     for condition in action.preconditions if action is not None else ():
         if not condition.option or getattr(rules, condition.option, False):

@@ -117,7 +117,7 @@ def _occupied(partial: PartialEnvironment, condition: Condition) -> None:
 
 
 def _takeable(knowledge: Knowledge, seat: str, is_bed: bool) -> list[str]:
-    """The classes that belong on a seat, can be taken off it and take room there; on a bed, bedding does not."""
+    """Return the classes that belong on a seat, can be taken off it and take room there; on a bed, bedding does not."""
     belongs = [p.object for p in knowledge.holds(seat) if p.relation == "ON"] or ["book", "cat", "pillow"]
     found = [name for name in belongs if knowledge.has(name, "GRABBABLE")]
     return [name for name in found if not (is_bed and is_of_kind(name, "bedding", knowledge))] or ["book"]

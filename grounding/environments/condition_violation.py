@@ -123,7 +123,7 @@ def _beside(partial: PartialEnvironment, node_id: int) -> set[int]:
 
 
 def _bearing(partial: PartialEnvironment, place: int) -> set[int]:
-    """A place and all that stands on or in it: what a thing put there is CLOSE to."""
+    """Return a place and all that stands on or in it: what a thing put there is CLOSE to."""
     home = partial.base.home
     found = {home.ids[i] for i in indices(1 << place | home.bears[place] | home.contents[place])}
     found.update(other for other, (_, where) in partial.where.items() if where == home.ids[place])
@@ -173,7 +173,7 @@ def _to_floor(partial: PartialEnvironment, key: Key, fits: Callable[[int], bool]
 
 
 def _movable(partial: PartialEnvironment, key: Key, room: int) -> int:
-    """The object's node, taken out of where it is and now in a room; another node where it can't be taken."""
+    """Return the object's node, taken out of where it is and now in a room; another node where it can't be taken."""
     node_id = partial.binding[key]
     if not _is_movable(partial, node_id):
         node_id = partial.add(key[0], room)

@@ -73,7 +73,7 @@ class Base:
         self._thinned = cache(self._without_many)
 
     def thinned(self, most: int) -> Base:
-        """The home thinned to at most `most` nodes, if possible, by removing small movable things."""
+        """Return the home thinned to at most `most` nodes, if possible, by removing small movable things."""
         return self if len(self.home) <= most else self._thinned(most)
 
     def _without_many(self, most: int) -> Base:
@@ -86,11 +86,11 @@ class Base:
         return self.home.properties["SITTABLE"] | self.home.properties["LIEABLE"]
 
     def rooms(self, name: str) -> tuple[int, ...]:
-        """Indices of the rooms that serve as the named one; of all rooms where none does."""
+        """Return indices of the rooms that serve as the named one; of all rooms where none does."""
         return self.instances(name) or tuple(indices(self.home.rooms))
 
     def _instances(self, name: str) -> tuple[int, ...]:
-        """Indices of the instances of a class, under the first of its names that occurs in the home."""
+        """Return indices of the instances of a class, under the first of its names that occurs in the home."""
         return tuple(indices(self.home.instances(name)))
 
     def _kind(self, name: str) -> Kind:
@@ -101,7 +101,7 @@ class Base:
         return Kind(category, properties, self.knowledge.default_states(name))
 
     def _homeless(self, name: str) -> Homeless | None:
-        """The failure of any sampling that needs a thing of a class; None if the home can hold one."""
+        """Return the failure of any sampling that needs a thing of a class; None if the home can hold one."""
         knowledge, home = self.knowledge, self.home
         if knowledge.is_room(name):
             if self.instances(name):
@@ -150,7 +150,7 @@ class Base:
 
 
 def prepared(home: Home) -> Base:
-    """The home prepared for sampling, once for each home."""
+    """Return the home prepared for sampling, once for each home."""
     known: dict[str, Base] = home.worked_out
     base = known.get("prepared")
     if base is None:
@@ -176,7 +176,7 @@ def need_somebody(home: Home) -> None:
 
 
 def _in_default_state(home: Home) -> Home:
-    """The home with default states, its (first) character standing in the room it is in, if it has rooms.
+    """Return the home with default states, its (first) character standing in the room it is in, if it has rooms.
 
     Raises:
         HearthError: BAD_GRAPH: nobody is in it.

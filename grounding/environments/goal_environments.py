@@ -76,7 +76,7 @@ def _failure(code: Code, literal: Literal[Name] | None, expected: str, actual: s
 
 
 def _class(literal: Literal[Name]) -> str:
-    """The class of things that a literal counts, or "" where it names nodes, agents or variables alone."""
+    """Return the class of things that a literal counts, or "" where it names nodes, agents or variables alone."""
     if not literal.terms:
         return ""
     counted = literal.target if _is_agent(literal.subject) else literal.subject

@@ -27,7 +27,7 @@ def superfluous(home: Home, most: int) -> tuple[int, ...]:
 
 
 def without(home: Home, removed: tuple[int, ...]) -> Home:
-    """A home without those nodes, and without their edges."""
+    """Return a home without those nodes, and without their edges."""
     missing = frozenset(removed)
     graph = World.start(home).graph()
     nodes = tuple(node for node in graph.nodes if node.id not in missing)

@@ -43,7 +43,7 @@ class Requirements:
         self.keys = self._ordered()
 
     def _holders(self, key: Key) -> list[Key]:
-        """The support or container of an object, which is placed before it."""
+        """Return the support or container of an object, which is placed before it."""
         return [_anchor(c) for c in self.links.get(key, ()) if c.name in ("in", "inside")]
 
     def _ordered(self) -> tuple[Key, ...]:
@@ -66,7 +66,7 @@ _LAST: list[tuple[Program, Preconditions, Requirements]] = []
 
 
 def requirements_of(program: Program, conditions: Preconditions, knowledge: Knowledge) -> Requirements:
-    """The requirements, kept for the next draw: one program is sampled in many homes in turn."""
+    """Return the requirements, kept for the next draw: one program is sampled in many homes in turn."""
     if _LAST and _LAST[0][0] is program and _LAST[0][1] is conditions:
         return _LAST[0][2]
     requirements = Requirements(program, conditions, knowledge)
@@ -143,7 +143,7 @@ def _wanted_room(partial: PartialEnvironment, requirements: Requirements, key: K
 def _candidates(
     partial: PartialEnvironment, requirements: Requirements, key: Key, room: int, in_sight: bool
 ) -> list[int]:
-    """Indices of the home's own things that could be the object: unused, affording its uses, in the room."""
+    """Return indices of the home's own things that could be the object: unused, affording its uses, in the room."""
     home = partial.base.home
     able = reduce(and_, (home.able(action, position) for action, position in requirements.uses[key]), home.everything)
     ids, rooms, start = home.ids, partial.base.room, partial.base.start
@@ -183,7 +183,7 @@ def _linked(partial: PartialEnvironment, i: int, condition: Condition) -> bool:
 
 
 def _any_room(partial: PartialEnvironment, key: Key) -> int:
-    """A room where things of the class belong, else any."""
+    """Return a room where things of the class belong, else any."""
     home = partial.base.home
     thing = partial.base.knowledge.object_class(key[0])
     usual = [i for name in (thing.rooms if thing else ()) for i in indices(home.by_class.get(name, 0) & home.rooms)]

@@ -48,7 +48,7 @@ class PartialEnvironment:
         self.first_id = max(FIRST_ADDED_ID, base.whole.ids[-1] + 1)
 
     def home(self) -> Home:
-        """The home with all changes."""
+        """Return the home with all changes."""
         return extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.movable)
 
     def room_of(self, node_id: int) -> int:
@@ -61,7 +61,7 @@ class PartialEnvironment:
         return self.base.home.ids[room] if room >= 0 else -1
 
     def add(self, name: str, room: int) -> int:
-        """A new node of a class in a room, in its default states; gives its id."""
+        """Return a new node of a class in a room, in its default states; gives its id."""
         node_id = self.first_id + len(self.nodes)
         category, properties, states = self.base.kind(name)
         node = Node(node_id, name, category, properties, states)
@@ -108,7 +108,7 @@ class PartialEnvironment:
         self.states[node_id] = (*(name for name in now if name not in (state, OPPOSITE[state])), state)
 
     def states_now(self, node_id: int) -> tuple[str, ...]:
-        """The states of a node so far."""
+        """Return the states of a node so far."""
         known = self.states.get(node_id)
         if known is not None:
             return known

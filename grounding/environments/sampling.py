@@ -68,7 +68,7 @@ class Environment:
 
 
 def of_partial(partial: PartialEnvironment, seed: int, program: Program, conditions: Preconditions) -> Environment:
-    """The environment made of a partial one."""
+    """Return the environment made of a partial one."""
     return Environment(
         partial.base.whole,
         seed,
@@ -105,7 +105,7 @@ class Size:
         return cls(nodes - AROUND, nodes + AROUND, 0, thin=True)
 
     def base(self, home: Home) -> Base:
-        """A home prepared for environments of this size, with room for the objects of a program."""
+        """Return a home prepared for environments of this size, with room for the objects of a program."""
         base = prepared(home)
         return base.thinned(self.least - ROOM_FOR_MORE) if self.thin else base
 
@@ -166,7 +166,10 @@ def sample(
 
 
 def unplaceable(program: Program, base: Base) -> Failure | None:
-    """The failure of any sampling where the home lacks a room, or all, or an object has no placement; else None."""
+    """Return the failure of any sampling where the home lacks a room, or all, or an object has no placement.
+
+    Else None.
+    """
     for tick, steps in enumerate(program.ticks()):
         for step in steps:
             for ref in step.objects:
@@ -235,7 +238,7 @@ def _bring(partial: PartialEnvironment, me: int, room: int) -> None:
 def _with_abduced(
     conditions: Preconditions, environment: Environment, execution: Execution, base: Base
 ) -> Preconditions:
-    """The conditions with the abduced precondition of the failed run."""
+    """Return the conditions with the abduced precondition of the failed run."""
     failure = execution.failure
     assert failure is not None
     keys = {node: key for key, node in _nodes(environment.program).items()}

@@ -11,7 +11,7 @@ NEEDED = (("CAN_OPEN", "OPEN", "CLOSED"), ("HAS_SWITCH", "ON", "OFF"))
 
 
 def unsound(world: World) -> Failure | None:
-    """The first fault of a start that was derived from a sound home; None when it is sound as well.
+    """Return the first fault of a start that was derived from a sound home; None when it is sound as well.
 
     Args:
         world: of a home made by `edit.extended`; only its changes are checked.

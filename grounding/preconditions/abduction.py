@@ -29,11 +29,11 @@ class StartContext(FailureContext):
     keys: dict[int, Key]
 
     def key(self, position: int = 0) -> Key | None:
-        """The program's object that the failure names at this position."""
+        """Return the program's object that the failure names at this position."""
         return self.keys.get(self.failure.objects[position])
 
     def needs(self, name: str, *objects: Key) -> Condition:
-        """The condition, needed by this step."""
+        """Return the condition, needed by this step."""
         return Condition(Literal(name, objects), self.at)
 
 
@@ -41,13 +41,13 @@ Abduction = Callable[[StartContext], Iterator[Condition]]
 
 
 def conditions_for(context: StartContext) -> Iterator[Condition]:
-    """The conditions that could have prevented a failure."""
+    """Return the conditions that could have prevented a failure."""
     abduced = ABDUCTIONS.get(context.failure.code)
     return abduced(context) if abduced is not None else iter(())
 
 
 def state(wanted: str) -> Abduction:
-    """The object is in a state from the start; none if the program itself has put it in the opposite."""
+    """Yield the object is in a state from the start; none if the program itself has put it in the opposite."""
 
     def abduced(context: StartContext) -> Iterator[Condition]:
         key = context.key()
@@ -77,8 +77,8 @@ def _at_reach(context: StartContext) -> Iterator[Condition]:
 
 
 def _had_not_left(context: StartContext) -> Iterator[Condition]:
-    """An object that the program has put down is only near while the character stays: so the object found next was near
-    there, and finding it took no walk.
+    """Yield an object that the program has put down is only near while the character stays: so the object found next
+    was near there, and finding it took no walk.
     """
     index = context.index()
     places = (rows.on(context.world, index) | rows.inside(context.world, index)) & ~context.world.home.rooms
@@ -97,7 +97,7 @@ def _had_not_left(context: StartContext) -> Iterator[Condition]:
 
 
 def anchors(context: StartContext) -> Iterator[Key]:
-    """The nodes that the character is CLOSE to at that moment, the last mentioned first.
+    """Yield the nodes that the character is CLOSE to at that moment, the last mentioned first.
 
     Furniture, portable objects, held objects (for the place of their origin), parts of the body, rooms.
     """
@@ -114,7 +114,7 @@ def anchors(context: StartContext) -> Iterator[Key]:
 
 
 def _beside_anchors(context: StartContext, name: str, key: Key) -> Iterator[Condition]:
-    """An object stands in a relation to each of the anchors but itself."""
+    """Yield an object stands in a relation to each of the anchors but itself."""
     yield from (context.needs(name, key, anchor) for anchor in anchors(context) if anchor != key)
 
 
@@ -130,7 +130,7 @@ def _rank(context: StartContext, node: int) -> int:
 
 
 def _put_back_place(context: StartContext) -> Iterator[Condition]:
-    """An object to be put back stood, from the start, on or in the thing where the character is now."""
+    """Yield an object to be put back stood, from the start, on or in the thing where the character is now."""
     step = context.program.steps[context.at]
     if step.action != "PutObjBack" or context.key() is not None:
         return
@@ -143,7 +143,7 @@ def _not_close(context: StartContext) -> Iterator[Condition]:
 
 
 def _facing(context: StartContext) -> Iterator[Condition]:
-    """The character's seat, or the thing it has turned to, faces the object."""
+    """Yield the character's seat, or the thing it has turned to, faces the object."""
     key = context.key()
     if key is None:
         return
@@ -187,7 +187,7 @@ def _holding(context: StartContext) -> Iterator[Condition]:
 
 
 def _plainly(name: str, *others: Key) -> Abduction:
-    """The condition of that name holds of the object."""
+    """Yield the condition of that name holds of the object."""
 
     def abduced(context: StartContext) -> Iterator[Condition]:
         key = context.key()

@@ -12,12 +12,12 @@ from hearth.simulation.world.world import World
 
 
 def unmet(conditions: Preconditions, world: World, nodes: Mapping[Key, int]) -> tuple[Condition, ...]:
-    """The conditions that do not hold; one about an object that is bound to nothing does not."""
+    """Return the conditions that do not hold; one about an object that is bound to nothing does not."""
     return tuple(condition for condition in conditions if not holds(condition.literal, world, nodes))
 
 
 def unmet_failure(condition: Condition, program: Program, draws: int) -> Failure:
-    """The failure of sampling in which a condition of a program held in no environment drawn."""
+    """Return the failure of sampling in which a condition of a program held in no environment drawn."""
     names = tuple(name for name, _ in condition.objects)
     expected, actual = condition.in_words(), f"it so in none of {draws} environments drawn"
     if condition.step >= len(program.steps):

@@ -80,7 +80,7 @@ class Preconditions:
         return any(c.literal == wanted for c in self.conditions)
 
     def about(self, key: Key) -> tuple[Condition, ...]:
-        """The conditions in which an object occurs."""
+        """Return the conditions in which an object occurs."""
         return tuple(c for c in self.conditions if key in c.objects)
 
     def plus(self, *new: Condition) -> Preconditions:

@@ -12,7 +12,7 @@ from hearth.schemas.program import Program
 
 
 def default_conditions(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """The soft conditions of a program, in step order."""
+    """Yield the soft conditions of a program, in step order."""
     yield from _locations(program, knowledge)
     yield from _contents(program, knowledge)
     yield from _supports(program, knowledge)

@@ -74,7 +74,10 @@ def _node(node_id: int, key: Key, conditions: Preconditions, knowledge: Knowledg
 def _rooms(
     keys: dict[Key, None], ids: dict[Key, int], conditions: Preconditions, knowledge: Knowledge
 ) -> dict[Key, int]:
-    """The room of every object: itself, where its location says, where what it is linked to is, or one of its own."""
+    """Return the room of every object.
+
+    Itself, where its location says, where what it is linked to is, or one of its own.
+    """
     rooms: dict[Key, int] = {}
     leads: dict[Key, list[Key]] = {}
     for condition in conditions:
@@ -124,7 +127,7 @@ def _edges(ids: dict[Key, int], rooms: dict[Key, int], conditions: Preconditions
 
 
 def _beside(ids: dict[Key, int], stands: dict[int, int], conditions: Preconditions) -> list[Edge]:
-    """A node within reach of a thing is also within reach of the thing's support or container."""
+    """Return a node within reach of a thing is also within reach of the thing's support or container."""
     places = dict(stands)
     places.update(
         {ids[c.objects[0]]: ids[c.objects[1]] for c in conditions if c.name in ("in", "inside") and c.objects[1] in ids}

@@ -51,7 +51,7 @@ def achieved(execution: Execution) -> Postconditions:
 
 
 def missing(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> Postconditions:
-    """The facts that do not hold in a world; `nodes` says which node each object is."""
+    """Return the facts that do not hold in a world; `nodes` says which node each object is."""
     return tuple(fact for fact in wanted if not holds(fact, world, nodes))
 
 
@@ -61,7 +61,7 @@ def reached(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> b
 
 
 def nodes_of(program: Program, world: World) -> dict[Key, int]:
-    """The node of each object of a bound program, and of each character."""
+    """Return the node of each object of a bound program, and of each character."""
     home = world.home
     nodes = {ref.key: ref.node for ref in program.objects() if ref.node is not None and ref.node in home.index}
     for number, agent in enumerate(world.agents, 1):

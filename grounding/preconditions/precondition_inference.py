@@ -29,7 +29,7 @@ CAUSED_BY_START = frozenset(
 
 
 def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Preconditions | Failure:
-    """The conditions under which a program runs, or the failure that no start prevents (thesis 5.5.2).
+    """Return the conditions under which a program runs, or the failure that no start prevents (thesis 5.5.2).
 
     A failure of a program that contradicts itself has code CONTRADICTION; its `expected` names the condition and the
     step that needs it, its `actual` the step that violates it.
@@ -44,7 +44,7 @@ def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Pre
 
 
 def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> tuple[int, ...]:
-    """The steps of a contradiction: one, or the one that violates another's condition and that other."""
+    """Return the steps of a contradiction: one, or the one that violates another's condition and that other."""
     program = program.numbered()
     conditions, execution, step = _inferred(program, knowledge, rules)
     if execution.failure is None:
@@ -54,7 +54,7 @@ def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> t
 
 
 def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> tuple[Preconditions, Execution, int]:
-    """The conditions found, the last try with them, and the step it failed at, if it did."""
+    """Return the conditions found, the last try with them, and the step it failed at, if it did."""
     conditions = Preconditions(tuple(default_conditions(program, knowledge)))
     rules = suited(program, knowledge, rules)
     tried: dict[int, set[Literal[Key]]] = {}
@@ -79,7 +79,7 @@ def _next(
     tried: set[Literal[Key]],
     knowledge: Knowledge,
 ) -> Preconditions | None:
-    """The conditions with one more that may help at this step, or without a default that conflicts."""
+    """Return the conditions with one more that may help at this step, or without a default that conflicts."""
     failure = execution.failure
     assert failure is not None
     if failure.code in CAUSED_BY_START:
@@ -101,7 +101,10 @@ def _against(new: Condition, conditions: Preconditions) -> bool:
 
 
 def _settled(conditions: Preconditions, new: Condition) -> Preconditions:
-    """The new condition instead of soft ones it excludes: two places for one thing, or a thing's opposite state."""
+    """Return the new condition instead of soft ones it excludes.
+
+    Two places for one thing, or a thing's opposite state.
+    """
     rivals = [
         c
         for c in conditions
@@ -123,7 +126,7 @@ _OPPOSITES = {
 
 
 def _step_of(program: Program, tick: int) -> int:
-    """The first step of a tick."""
+    """Return the first step of a tick."""
     number = -1
     for index, step in enumerate(program.steps):
         number += not step.joins
@@ -148,7 +151,7 @@ def _contradiction(
 
 
 def _culprit(program: Program, conditions: Preconditions, step: int, knowledge: Knowledge) -> int | None:
-    """The step that needed or did the opposite: the one a condition on the same object stems from, else the last
+    """Return the step that needed or did the opposite: the one a condition on the same object stems from, else the last
     earlier step about that object, else the last that moved the character.
     """
     keys = {ref.key for ref in program.steps[step].objects}

@@ -34,7 +34,10 @@ class Compared(NamedTuple):
 
 
 def by_rules(program: Program, knowledge: Knowledge) -> Preconditions:
-    """The conditions that the release's rules name, each once, in step order; contradictions are left standing."""
+    """Return the conditions that the release's rules name, each once, in step order.
+
+    Contradictions are left standing.
+    """
     found = sorted(_by_rules(program, knowledge), key=lambda condition: condition.step)
     return Preconditions().plus(*found)
 

@@ -84,7 +84,7 @@ def _is_name(words: str) -> bool:
 
 
 def _steps(known: Knowledge, parse: Parse) -> Iterator[Parse]:
-    """The step with each thing that an unknown name of it may mean, where the thing affords it."""
+    """Yield the step with each thing that an unknown name of it may mean, where the thing affords it."""
     action, names = parse
     choices = [_meant(known, name.replace("_", " ")) for name in names]
     for chosen in product(*choices):
@@ -94,7 +94,10 @@ def _steps(known: Knowledge, parse: Parse) -> Iterator[Parse]:
 
 @lru_cache(maxsize=4096)
 def _meant(known: Knowledge, words: str) -> tuple[str, ...]:
-    """The class that words name; else those spelt alike, that which their last words name, and those of their kind."""
+    """Return the class that words name.
+
+    Else those spelt alike, that which their last words name, and those of their kind.
+    """
     thing = thing_of(known, words)
     if thing:
         return (thing,)

@@ -77,7 +77,7 @@ TRANSLATE = "translate it into English"
 
 
 def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
-    """The faults; those of lines name the language where most are not understood, as they are not English."""
+    """Return the faults; those of lines name the language where most are not understood, as they are not English."""
     lines = [fault for fault in faults if fault.code == Code.NOT_UNDERSTOOD]
     if len(lines) <= understood or not (language := foreign_language([fault.found for fault in lines])):
         return faults
@@ -220,7 +220,7 @@ class _StepParser:
             self.warnings.append(self._fuzzy(asked, raw, words, number))
 
     def _asked(self, shorter: str, said: tuple[Mentioned, ...], fuzzy: Fuzzy = Fuzzy.OFF) -> tuple[Asked, ...]:
-        """The steps of a line before its explanation, which is left out."""
+        """Return the steps of a line before its explanation, which is left out."""
         first, *others = asked_steps(self.known, shorter, said, fuzzy) or (None,)
         left_out = f"{first.left_out}, the explanation".lstrip(", ") if first else ""
         return (first._replace(left_out=left_out), *others) if first else ()
@@ -311,7 +311,7 @@ def _mentioned(step: Step) -> Mentioned:
 
 @lru_cache(maxsize=65_536)
 def _step(action: str, names: tuple[str, ...], instance: int, second: int) -> Step:
-    """A step whose things are counted."""
+    """Return a step whose things are counted."""
     return Step(action, tuple(map(ObjectRef, names, (instance, second))))
 
 
@@ -327,5 +327,5 @@ def _remedy(whole: Understood) -> str:
 
 
 def phrase(candidate: Candidate) -> str:
-    """A candidate as a phrase."""
+    """Return a candidate as a phrase."""
     return say(candidate.action, candidate.names)

@@ -53,7 +53,7 @@ def with_place(known: Knowledge, words: str, said: Sequence[Mentioned]) -> str:
 
 
 def _place(known: Knowledge, said: Sequence[Mentioned], *, is_in: bool) -> str | None:
-    """The last place of a thing in steps, with `in` or `on` before it; what is open holds things as well."""
+    """Return the last place of a thing in steps, with `in` or `on` before it; what is open holds things as well."""
     for each in said:
         relation = known.relation_of(each.action)
         if relation == "INSIDE" or each.action == "Pour" or (each.action == "Open" and is_in):
@@ -106,7 +106,10 @@ def referred(known: Knowledge, words: str, said: Sequence[Mentioned]) -> Iterato
 
 
 def _spoken_of(said: Sequence[Mentioned], *, is_closed: bool) -> tuple[str, ...]:
-    """The things of steps, the last first; what was opened, or holds another, comes first where something is closed."""
+    """Return the things of steps, the last first.
+
+    What was opened, or holds another, comes first where something is closed.
+    """
     opened = [name for each in said if is_closed and each.action == "Open" for name in each.names]
     places = [each.names[1] for each in said if is_closed and len(each.names) > 1]
     return tuple(dict.fromkeys((*opened, *places, *(name for each in said for name in each.names))))

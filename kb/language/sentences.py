@@ -104,7 +104,9 @@ def plain_step(known: Knowledge, words: str) -> tuple[Asked, ...]:
 
 
 def _plurals_of_said(known: Knowledge, words: str, said: Sequence[Mentioned]) -> str:
-    """A line in which a plural that has a meaning of its own is many of a thing said before, as two `glasses` are."""
+    """Return a line in which a plural that has a meaning of its own is many of a thing said before, as two
+    `glasses` are.
+    """
     for plural, own, singular, many in _double_plurals(known, words) if said else ():
         if _is_said(many, said) and not _is_said(own, said):
             words = re.sub(rf"\b{plural}\b", singular, words, flags=re.IGNORECASE)
@@ -112,7 +114,7 @@ def _plurals_of_said(known: Knowledge, words: str, said: Sequence[Mentioned]) ->
 
 
 def _double_plurals(known: Knowledge, words: str) -> list[tuple[str, str, str, str]]:
-    """The plurals in a line that are classes of their own, with their class, their singular, and its class."""
+    """Return the plurals in a line that are classes of their own, with their class, their singular, and its class."""
     found = []
     for plural in _PLURAL.findall(words.lower()):
         singular = plural.removesuffix("es")
@@ -149,7 +151,10 @@ def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
 def _longest(
     known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy
 ) -> tuple[tuple[Asked, ...], int]:
-    """The steps of the most clauses from the first on that are read together, and how many they are; at least 1."""
+    """Return the steps of the most clauses from the first on that are read together, and how many they are.
+
+    At least 1.
+    """
     for size in range(len(clauses), 1, -1):
         if read := _listed(known, clauses[:size], said):
             return read, size
@@ -168,7 +173,10 @@ def nearest_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
 
 
 def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
-    """The steps of clauses one after another; what shares a verb, as `grab a cup and a plate`, is read together."""
+    """Return the steps of clauses one after another.
+
+    What shares a verb, as `grab a cup and a plate`, is read together.
+    """
     if fuzzy is not Fuzzy.OFF and len(clauses) > 1 and is_subordinate(known, clauses[0].lower()):
         spoken = (Mentioned("", (thing,)) for thing in things_in(known, clauses[0].lower()))
         return _without_first(clauses[0], _joined(known, clauses[1:], (*spoken, *said), fuzzy))
@@ -184,12 +192,12 @@ def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuz
 
 
 def _without_first(clause: str, read: tuple[Asked, ...]) -> tuple[Asked, ...]:
-    """The steps of a line without the clause before them, which says when or how they are done."""
+    """Return the steps of a line without the clause before them, which says when or how they are done."""
     return (read[0]._replace(left_out=f"{clause} {read[0].left_out}".rstrip()), *read[1:]) if read else ()
 
 
 def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """The steps of one verb for several things: `put the cup`, `the plate on the table`."""
+    """Return the steps of one verb for several things: `put the cup`, `the plate on the table`."""
     first, last = parts[0].split(), parts[-1].split()
     middle = [part for part in parts[1:-1] if thing_of(known, part.lower())]
     if len(middle) != len(parts) - 2:
@@ -226,7 +234,7 @@ def _uncounted(words: Sequence[str]) -> str:
 
 
 def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
-    """The steps of one clause: exact, else with words left out, else with misspelled words corrected."""
+    """Return the steps of one clause: exact, else with words left out, else with misspelled words corrected."""
     if read := _exact(known, words, said):
         return read
     words = verb_phrase(words)
@@ -245,7 +253,7 @@ def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzz
 
 
 def _corrected(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """The step of a clause with misspelled words, of which others are left out; none where it may be several."""
+    """Return the step of a clause with misspelled words, of which others are left out; none where it may be several."""
     sentences = next(iter(corrected(known, words)), ())
     read = {found for each in sentences if each != words and (found := _shortened(known, each, said, ""))}
     found = read.pop() if len(read) == 1 else ()
@@ -266,7 +274,7 @@ def _shortened(
 
 
 def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """The exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
+    """Return the exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
     words = with_place(known, words, said)
     if many := several(known, words, said):
         meant = [(understand_exactly(known, clause).meant, number) for clause, number in many]
@@ -286,7 +294,7 @@ def _number(meant: Candidate, said: Sequence[Mentioned]) -> int:
 
 
 def _counted(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """The steps of a clause that counts its things, as `two forks` and `another cup`."""
+    """Return the steps of a clause that counts its things, as `two forks` and `another cup`."""
     count = _COUNT.search(words) or _ANOTHER.search(words)
     if not count or not count.start() or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
         return ()
@@ -307,7 +315,7 @@ def _other(said: Sequence[int]) -> int:
 
 
 def _ordered(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """The step of a clause with one of several things: `the second cup`, `the other cup`."""
+    """Return the step of a clause with one of several things: `the second cup`, `the other cup`."""
     found = _ORDINAL.search(words)
     if not found or not found.start() or len(_ORDINAL.findall(words)) > 1:
         return ()
@@ -328,7 +336,10 @@ def _ordered(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[A
 
 
 def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:
-    """The step for one of the things that are counted: two `glasses` are glasses to drink from, not spectacles."""
+    """Return the step for one of the things that are counted.
+
+    Two `glasses` are glasses to drink from, not spectacles.
+    """
     noun, space, after = counted.partition(" ")
     singular = (lemma for lemma in noun_lemmas(noun.lower()) if lemma != noun and thing_of(known, lemma))
     sentences = (f"{before}{one}{space}{after}" for one in (*singular, noun))

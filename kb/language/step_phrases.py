@@ -12,12 +12,12 @@ Parse = tuple[Action, tuple[str, ...]]
 
 
 def say(action: Action, names: Sequence[str]) -> str:
-    """The step as a phrase, names with spaces: `Pour milk into coffee cup`."""
+    """Return the step as a phrase, names with spaces: `Pour milk into coffee cup`."""
     return action.template.format(*(name.replace("_", " ") for name in names))
 
 
 def parses(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
-    """The steps that a sentence may mean, the likeliest first: those whose objects are all known come first.
+    """Return the steps that a sentence may mean, the likeliest first: those whose objects are all known come first.
 
     An article before an object and a full stop are skipped; `go to the kitchen.` is a Walk to `kitchen`.
     """
@@ -33,19 +33,19 @@ def parses(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
 
 
 def first_words(knowledge: Knowledge) -> frozenset[str]:
-    """The words with which phrases of actions begin."""
+    """Return the words with which phrases of actions begin."""
     return frozenset(_templates(knowledge))
 
 
 def _named(knowledge: Knowledge, words: str) -> str:
-    """The class the words mean, or the words joined by underscores when they mean none."""
+    """Return the class the words mean, or the words joined by underscores when they mean none."""
     thing = knowledge.object_class(words)
     return thing.name if thing else words.replace(" ", "_")
 
 
 @lru_cache(maxsize=8)
 def _templates(knowledge: Knowledge) -> dict[str, tuple[tuple[int, str, Action], ...]]:
-    """The paraphrases of all actions by their first words: rank, template, action.
+    """Return the paraphrases of all actions by their first words: rank, template, action.
 
     Templates come before other words, longer ones first.
     """

@@ -73,7 +73,7 @@ class Understood(NamedTuple):
 
 @lru_cache(maxsize=65_536)
 def understand(knowledge: Knowledge, sentence: str, fuzzy: Fuzzy = Fuzzy.TYPOS) -> Understood:
-    """The instruction a sentence means.
+    """Return the instruction a sentence means.
 
     Templates, synonyms, inflections and usual phrasings score 1. Then misspelled words are corrected, unless `fuzzy` is
     off; a word that is English is never taken for another. With `loose`, the valid instruction whose spelling is
@@ -115,7 +115,10 @@ def understand_exactly(knowledge: Knowledge, sentence: str) -> Understood:
 
 
 def _exact_otherwise(knowledge: Knowledge, text: str, *, is_inflected: bool = True) -> Understood:
-    """The reading of a sentence by its inflections and usual phrasings; several where its places may be either's."""
+    """Return the reading of a sentence by its inflections and usual phrasings.
+
+    Several where its places may be either's.
+    """
     read = _readings(knowledge, text, is_inflected=is_inflected)
     sure = [parse for parse in read if _afforded(knowledge, parse)]
     found = tuple(Candidate(1.0, *parse) for parse in sure or read)[:_SHOWN]
@@ -124,7 +127,7 @@ def _exact_otherwise(knowledge: Knowledge, text: str, *, is_inflected: bool = Tr
 
 
 def _readings(knowledge: Knowledge, text: str, *, is_inflected: bool = True) -> tuple[Parse, ...]:
-    """The steps that some words mean when the things in them are read as `thing_of` does, the likeliest first.
+    """Return the steps that some words mean when the things in them are read as `thing_of` does, the likeliest first.
 
     Where no wording is of things that afford the act, the first with the same verb counts, as in exact readings, and
     that of a verb which means no other act.
@@ -154,7 +157,7 @@ def _with_things(knowledge: Knowledge, parse: Parse) -> Parse | None:
 
 
 def _without_typos(knowledge: Knowledge, text: str) -> Understood:
-    """The readings of the sentence with the fewest letters corrected."""
+    """Return the readings of the sentence with the fewest letters corrected."""
     for sentences in corrected(knowledge, text):
         found: dict[tuple[str, tuple[str, ...]], Candidate] = {}
         unlikely = dict(found)
@@ -184,14 +187,14 @@ def _cleaned(sentence: str) -> str:
 
 
 def _exact(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
-    """The exact paraphrases about known objects; those that afford the action first."""
+    """Return the exact paraphrases about known objects; those that afford the action first."""
     known = [parse for parse in _acts(knowledge, text) if all(map(knowledge.object_class, parse[1]))]
     known.sort(key=lambda parse: not _afforded(knowledge, parse))
     return tuple(Candidate(1.0, *parse) for parse in known[:_SHOWN])
 
 
 def _acts(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
-    """The steps that some words mean; what an idiom takes, as in `take a shower`, is not grabbed."""
+    """Return the steps that some words mean; what an idiom takes, as in `take a shower`, is not grabbed."""
     if _POINTED.fullmatch(text) or is_exchange(text):
         return ()
     found = (parse for parse in parses(knowledge, text) if parse[0].name != _GRAB or not is_idiom(text))
@@ -241,7 +244,7 @@ def _near(knowledge: Knowledge, text: str) -> Iterator[Candidate]:
 
 
 def _filled(knowledge: Knowledge, text: str, paraphrase: _Paraphrase, rest: str) -> Iterator[Candidate]:
-    """A paraphrase with the known objects nearest to the words that follow."""
+    """Yield a paraphrase with the known objects nearest to the words that follow."""
     if paraphrase.action.arity == 0:
         yield Candidate(_similar(text, paraphrase.head), paraphrase.action, ())
         return
@@ -269,7 +272,7 @@ def _similar(text: str, phrase: str) -> float:
 
 @lru_cache(maxsize=65_536)
 def _objects(knowledge: Knowledge, words: str) -> tuple[tuple[str, str], ...]:
-    """The known objects whose names are spelt most like the words, as (spelling, class)."""
+    """Return the known objects whose names are spelt most like the words, as (spelling, class)."""
     from rapidfuzz import process
     from rapidfuzz.distance import Levenshtein
 

@@ -48,7 +48,7 @@ def near_words(known: Knowledge, word: str) -> tuple[str, ...]:
 
 @lru_cache(maxsize=65_536)
 def _choices(known: Knowledge, word: str) -> tuple[tuple[int, str], ...]:
-    """The words that one may be, with the number of edits; itself if it is right."""
+    """Return the words that one may be, with the number of edits; itself if it is right."""
     from rapidfuzz import process
     from rapidfuzz.distance import OSA
 

@@ -83,7 +83,7 @@ def _is_ours(word: str) -> bool:
 
 @lru_cache(maxsize=8)
 def _beginnings(known: Knowledge) -> frozenset[str]:
-    """The words with which actions begin."""
+    """Return the words with which actions begin."""
     said = (words for action in known.actions.values() for words in (action.template, *action.words))
     return frozenset(words.split()[0].lower() for words in said)
 

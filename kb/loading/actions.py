@@ -245,7 +245,7 @@ def _effects(
 
 
 def _under(condition: Formula, effect: Effect) -> Effect:
-    """The effect, made to depend on one more condition."""
+    """Return the effect, made to depend on one more condition."""
     if condition == TRUE:
         return effect
     both = condition if effect.condition == TRUE else And((condition, effect.condition))
@@ -265,7 +265,7 @@ def load_derived(layers: Layers, faults: Faults) -> dict[str, tuple[Literal[Term
 
 
 def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) -> dict[str, Repair]:
-    """The repairs by name, in the order of the file: the first that fits is the one to try."""
+    """Return the repairs by name, in the order of the file: the first that fits is the one to try."""
     result = {}
     for name, entry in yaml_entries(layers, "repairs.yaml", faults).items():
         fields = parts(entry.value, _REPAIR_SHAPES, name, entry, faults)

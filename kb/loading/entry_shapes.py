@@ -62,7 +62,7 @@ def fits(value: Any, shape: Shape, name: str, at: Entry, faults: Faults) -> bool
 
 
 def parts(value: Any, shapes: Mapping[str, Shape], name: str, at: Entry, faults: Faults) -> dict[str, Any]:
-    """The parts of a mapping but those of a wrong shape, which are faults; parts without a shape stay."""
+    """Return the parts of a mapping but those of a wrong shape, which are faults; parts without a shape stay."""
     if not fits(value, MAPPING, name, at, faults):
         return {}
     return {

@@ -87,7 +87,7 @@ def check_formula(
 
 
 def _parts(formula: Formula) -> Iterator[Formula]:
-    """A formula and all parts of it."""
+    """Yield a formula and all parts of it."""
     yield formula
     if not isinstance(formula, Literal):
         for part in formula.parts if isinstance(formula, And | Or) else (formula.part,):

@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 def yaml_entries(layers: Layers, name: str, faults: Faults, inherited: tuple[str, ...] = ()) -> dict[str, Entry]:
-    """The top-level entries of a YAML file, over all layers.
+    """Return the top-level entries of a YAML file, over all layers.
 
     An entry replaces the one below it, but for the parts `inherited`, which it takes over where it does not name them.
     """
@@ -39,7 +39,10 @@ def yaml_entries(layers: Layers, name: str, faults: Faults, inherited: tuple[str
 def csv_rows(
     layers: Layers, names: Iterable[str], columns: tuple[str, ...], key: tuple[int, ...], faults: Faults
 ) -> Keyed:
-    """The rows of some CSV files by the cells that identify them, over all layers; two of one layer are a fault."""
+    """Return the rows of some CSV files by the cells that identify them, over all layers.
+
+    Two of one layer are a fault.
+    """
     result: dict[tuple[str, ...], Entry] = {}
     for layer in layers:
         own: dict[tuple[str, ...], Entry] = {}
@@ -58,7 +61,7 @@ def csv_rows(
 
 
 def parsed(parser: Callable[[str], T], text: object, at: Entry, faults: Faults) -> T | None:
-    """The parser's value for the text; None when it fails, its faults noted with their place."""
+    """Return the parser's value for the text; None when it fails, its faults noted with their place."""
     try:
         return parser(str(text))
     except HearthError as error:
@@ -67,7 +70,7 @@ def parsed(parser: Callable[[str], T], text: object, at: Entry, faults: Faults) 
 
 
 def check_properties(names: Iterable[str], at: Entry, faults: Faults) -> frozenset[str]:
-    """The names as a set, noting each that the vocabulary does not have with the nearest that it has."""
+    """Return the names as a set, noting each that the vocabulary does not have with the nearest that it has."""
     given = frozenset(names)
     for name in sorted(given - _KNOWN_PROPERTIES):
         near = get_close_matches(name.upper(), PROPERTIES, 1, 0.5)
@@ -87,7 +90,7 @@ def check_ids(owners: Mapping[str, tuple[int, Entry]], faults: Faults) -> None:
 
 
 def cycles(links: Mapping[str, str]) -> list[str]:
-    """The names from which following the links never ends."""
+    """Return the names from which following the links never ends."""
     endless = []
     for name in links:
         seen = {name}

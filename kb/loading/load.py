@@ -88,7 +88,7 @@ def _overlaid(overlay: Path, _: str) -> Knowledge:
 
 
 def files_of(directory: Path) -> list[Path]:
-    """The files of knowledge in a directory, by name."""
+    """Return the files of knowledge in a directory, by name."""
     return [path for name in sorted(FILES) if (path := directory / name).is_file()]
 
 
@@ -162,7 +162,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
 
 
 def _serving(name: str, stand_in: Mapping[str, str]) -> tuple[str, ...]:
-    """The rooms that serve as a room where a home lacks it, nearest first."""
+    """Return the rooms that serve as a room where a home lacks it, nearest first."""
     found = [name]
     while (other := stand_in[found[-1]] or name) not in found:
         found.append(other)

@@ -33,7 +33,7 @@ _STATE_SHAPES = dict.fromkeys(("states", "table", "needs", "given_by"), NAMES)
 
 
 def load_state_groups(layers: Layers, faults: Faults) -> dict[str, StateGroup]:
-    """The groups of states, by name."""
+    """Return the groups of states, by name."""
     result = {}
     for name, entry in yaml_entries(layers, "states.yaml", faults).items():
         fields = parts(entry.value, _STATE_SHAPES, name, entry, faults)
@@ -51,7 +51,7 @@ def load_state_groups(layers: Layers, faults: Faults) -> dict[str, StateGroup]:
 
 
 def load_kinds(layers: Layers, faults: Faults) -> dict[str, Kind]:
-    """The kinds above the classes, by name; parents must be kinds and end at one that has none."""
+    """Return the kinds above the classes, by name; parents must be kinds and end at one that has none."""
     rows = csv_rows(layers, ("kinds.csv",), ("name", "parent", "gloss"), (0,), faults)
     kinds = {name: Kind(*entry.value) for (name,), entry in rows.items()}
     for name in cycles({name: kind.parent for name, kind in kinds.items() if kind.parent}):
@@ -133,7 +133,7 @@ def _size(text: str, at: Entry, faults: Faults) -> tuple[float, float, float]:
 
 
 def _twin(thing: ObjectClass, known: Mapping[str, ObjectClass]) -> ObjectClass:
-    """A second name with the facts of the class it names; other classes as they are."""
+    """Return a second name with the facts of the class it names; other classes as they are."""
     original = thing
     while original.same_as:
         original = known[original.same_as]

@@ -27,7 +27,7 @@ ABOUT = ("state", "property", "class", "class_contains")
 
 
 def load_processes(layers: Layers, derived: Derived, groups: Groups, faults: Faults) -> dict[str, Process]:
-    """The processes by name, in the order of the file."""
+    """Return the processes by name, in the order of the file."""
     found: dict[str, Process] = {}
     entries = yaml_entries(layers, "processes.yaml", faults)
     for number, (name, entry) in enumerate(entries.items()):
@@ -90,7 +90,7 @@ def _check(
 
 
 def literals(condition: Formula) -> Iterator[Literal[Term]]:
-    """The literals of a condition."""
+    """Return the literals of a condition."""
     return (part for part in _parts(condition) if isinstance(part, Literal))
 
 
@@ -117,7 +117,7 @@ def ended_by(condition: Formula, effects: tuple[Effect, ...], groups: Groups) ->
 
 
 def excluded(state: str, groups: Groups) -> set[str]:
-    """The states that cannot hold together with one."""
+    """Return the states that cannot hold together with one."""
     return {other for each in groups.values() if each.exclusive and state in each.states for other in each.states} - {
         state
     }
@@ -154,7 +154,7 @@ def _exclusive(one: Process, other: Process) -> bool:
 
 
 def _kind(process: Process, thing: str) -> frozenset[str]:
-    """The class of a thing that a process asks for, else what it is used for."""
+    """Return the class of a thing that a process asks for, else what it is used for."""
     asked = [each for each in literals(process.condition) if each.terms[0].name == thing and not each.negated]
     classes = frozenset(each.terms[1].name for each in asked if each.name == "class")
     of_device = (each.terms[1].name for each in asked if each.name == "property" and thing == "d")

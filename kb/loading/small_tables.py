@@ -20,7 +20,7 @@ class Tables(NamedTuple):
 
 
 def load_rooms(layers: Layers, faults: Faults) -> dict[str, str]:
-    """The rooms that a program may name, each with the one that serves where a home lacks it, or ''."""
+    """Return the rooms that a program may name, each with the one that serves where a home lacks it, or ''."""
     entries = yaml_entries(layers, "rooms.yaml", faults)
     found = {}
     for name, entry in entries.items():
@@ -41,7 +41,7 @@ def load_limits(layers: Layers, faults: Faults) -> dict[str, Mapping[str, int]]:
 
 
 def load_tables(layers: Layers, faults: Faults) -> Tables:
-    """The tables that stages share."""
+    """Return the tables that stages share."""
     entries = _entries(layers, "tables.yaml", Tables._fields, faults)
     like, states = entries.get("table_like"), entries.get("default_states")
     names = like.value if like and fits(like.value, NAME_LIST, "table_like", like, faults) else ()
@@ -60,7 +60,7 @@ def load_tables(layers: Layers, faults: Faults) -> Tables:
 
 
 def _entries(layers: Layers, file: str, wanted: Collection[str], faults: Faults) -> dict[str, Entry]:
-    """The entries of a file that are wanted; those that are in no layer are faults, and so are other entries."""
+    """Return the entries of a file that are wanted; those that are in no layer are faults, and so are other entries."""
     found = yaml_entries(layers, file, faults)
     for name in wanted:
         if name not in found:

@@ -53,7 +53,7 @@ def check_extent(path: Path, faults: Faults) -> None:
 
 
 def read_yaml(path: Path, faults: Faults) -> dict[str, Entry]:
-    """The top-level entries of a YAML mapping, each with its line. Duplicate keys at any depth are faults."""
+    """Return the top-level entries of a YAML mapping, each with its line. Duplicate keys at any depth are faults."""
     text = _text(path, faults)
     if text is None:
         return {}
@@ -81,7 +81,7 @@ def read_yaml(path: Path, faults: Faults) -> dict[str, Entry]:
 
 
 def _items(loader: Any, node: yaml.MappingNode, file: str, faults: Faults) -> Iterator[tuple[str, Any, int]]:
-    """The (key, value, line) of a mapping, refusing keys that stand twice."""
+    """Yield the (key, value, line) of a mapping, refusing keys that stand twice."""
     first: dict[str, int] = {}
     for key_node, value_node in node.value:
         line = key_node.start_mark.line + 1
@@ -132,7 +132,7 @@ _SCALARS: dict[str, Any] = {
 
 
 def read_csv(path: Path, columns: tuple[str, ...], faults: Faults) -> list[tuple[tuple[str, ...], int]]:
-    """The rows of a CSV file with a header line, as (cells in the order of `columns`, line).
+    """Return the rows of a CSV file with a header line, as (cells in the order of `columns`, line).
 
     Lines that begin with `#` are comments. A missing column or a row of another length is a fault.
     """
@@ -176,7 +176,7 @@ def _text(path: Path, faults: Faults) -> str | None:
 
 
 def strings(value: Any) -> tuple[str, ...]:
-    """A list of names from a YAML value: a list, a single name, or nothing."""
+    """Return a list of names from a YAML value: a list, a single name, or nothing."""
     if value is None:
         return ()
     if isinstance(value, str):
@@ -189,5 +189,5 @@ DIGITS = 9
 
 
 def whole_number(text: str) -> int:
-    """The whole number that a cell says, or -1."""
+    """Return the whole number that a cell says, or -1."""
     return int(text) if text.isdecimal() and len(text) <= DIGITS else -1

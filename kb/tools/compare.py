@@ -84,7 +84,7 @@ def compare(knowledge: Knowledge, other: Path) -> Comparison:
 
 
 def rejection(knowledge: Knowledge) -> float:
-    """The share of random steps that the grammar rejects: any action that takes objects, with any objects."""
+    """Return the share of random steps that the grammar rejects: any action that takes objects, with any objects."""
     size = len(knowledge.objects)
     shares = []
     for action in knowledge.actions.values():
@@ -116,7 +116,7 @@ def facts_of(knowledge: Knowledge) -> dict[str, set[Fact]]:
 
 
 def _ours(knowledge: Knowledge, reasons: Reasons, table: str, fact: Fact) -> Fact:
-    """The other's fact in our words: our names of classes, actions and states."""
+    """Return the other's fact in our words: our names of classes, actions and states."""
     if table == "affordances":
         action, thing = knowledge.action(fact[0]), knowledge.object_class(fact[2])
         return (action.name if action else fact[0], fact[1], thing.name if thing else fact[2])

@@ -19,7 +19,7 @@ FIELDS: dict[str, tuple[str, ...]] = {
 
 
 def root_of(knowledge: Knowledge, name: str) -> str:
-    """The class a name means, by the first of its names; the name itself when nothing has it."""
+    """Return the class a name means, by the first of its names; the name itself when nothing has it."""
     thing = knowledge.object_class(name)
     return (thing.same_as or thing.name) if thing else name
 
@@ -89,7 +89,7 @@ class Reasons:
         return why or ("ours" if table == "synonyms" else "")
 
     def cell(self, action: str, position: int, name: str) -> str:
-        """The evidence that the grammar accepts a class there: the release's matrix, or ours with the reason."""
+        """Return the evidence that the grammar accepts a class there: the release's matrix, or ours with the reason."""
         if self.knowledge.objects[name].source != "release":
             return f"ours: {name} is not among the release's objects"
         if self.knowledge.actions[action].source != "release":

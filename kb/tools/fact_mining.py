@@ -71,7 +71,7 @@ def mine(
 
 
 def as_lines(proposals: Iterable[Proposal]) -> dict[str, list[str]]:
-    """The unknown ones as rows to add, by file: a review takes lines out, then pastes the rest.
+    """Return the unknown ones as rows to add, by file: a review takes lines out, then pastes the rest.
 
     Orders and rooms have no rows of their own: they are for the reviewer's eyes.
     """
@@ -90,7 +90,7 @@ def as_lines(proposals: Iterable[Proposal]) -> dict[str, list[str]]:
 
 
 def _known_steps(program: ProgramSteps, knowledge: Knowledge) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The steps in our words, second names resolved to first ones."""
+    """Yield the steps in our words, second names resolved to first ones."""
     for action_name, object_names in program:
         action = knowledge.action(action_name)
         things = [knowledge.object_class(name) for name in object_names]

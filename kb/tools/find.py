@@ -37,7 +37,7 @@ class Query:
 
 
 def find(knowledge: Knowledge, query: Query) -> tuple[ObjectClass, ...]:
-    """The classes that meet the query; those placed there first when a place is asked for, most usual first.
+    """Return the classes that meet the query; those placed there first when a place is asked for, most usual first.
 
     Raises:
         HearthError: every name of the query that is unknown, with the nearest known ones.
@@ -115,7 +115,7 @@ def _faults(knowledge: Knowledge, query: Query) -> list[Diagnostic]:
 
 
 def unknown(knowledge: Knowledge, name: str, kind: str) -> Diagnostic:
-    """The fault that nobody knows an action or object of that name, with the nearest names."""
+    """Return the fault that nobody knows an action or object of that name, with the nearest names."""
     code = Code.UNKNOWN_ACTION if kind == "action" else Code.UNKNOWN_OBJECT
     near = knowledge.suggest(name, kind)
     suggestion = f"did you mean {' or '.join(f'`{other}`' for other in near)}?" if near else ""

@@ -48,7 +48,7 @@ def graph(knowledge: Knowledge) -> networkx.MultiDiGraph[str]:
 
 
 def edges(knowledge: Knowledge) -> Iterator[Edge]:
-    """The edges of the graph, affordances aside, in a fixed order."""
+    """Yield the edges of the graph, affordances aside, in a fixed order."""
     yield from _object_edges(knowledge)
     for kind in knowledge.kinds.values():
         if kind.parent:
@@ -109,7 +109,7 @@ def tables(knowledge: Knowledge) -> dict[str, list[Row]]:
 
 
 def connect(knowledge: Knowledge) -> duckdb.DuckDBPyConnection:
-    """A DuckDB database in memory with one table for each of `tables`."""
+    """Return a DuckDB database in memory with one table for each of `tables`."""
     connection = open_database()
     fill(connection, knowledge)
     return connection

@@ -38,12 +38,15 @@ def predicate(name: str, word: str) -> str:
 
 
 def limit_predicate(kind: str, limit: int) -> str:
-    """A seat or bed that takes `limit` things -> `seat-limit-4`."""
+    """Return a seat or bed that takes `limit` things -> `seat-limit-4`."""
     return f"{dashed(kind)}-{limit}"
 
 
 def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> list[str]:
-    """The predicates of one thing, sorted: these properties and all that executed actions need, and its states."""
+    """Return the predicates of one thing, sorted.
+
+    These properties and all that executed actions need, and its states.
+    """
     words = {("state", state) for state in STATES} | {("property", name) for name in properties}
     formulas = [body for _, body in knowledge.derived.values()]
     for action in knowledge.actions.values():
@@ -65,7 +68,7 @@ def option_predicate(name: str) -> str:
 
 
 def options(knowledge: Knowledge) -> list[str]:
-    """The names of the rules that derived predicates and effects ask for, sorted."""
+    """Return the names of the rules that derived predicates and effects ask for, sorted."""
     formulas = [body for _, body in knowledge.derived.values()]
     formulas += [effect.condition for action in knowledge.actions.values() for effect in action.effects]
     return sorted({name for formula in formulas for name in _asked(formula)})
@@ -81,7 +84,7 @@ def _asked(formula: Formula) -> Iterator[str]:
 
 
 def _named(formula: Formula) -> Iterator[tuple[str, str]]:
-    """The properties and classes that a formula names."""
+    """Yield the properties and classes that a formula names."""
     if isinstance(formula, Literal):
         if formula.name in ("property", "class", "class_contains"):
             yield formula.name, formula.terms[1].name
@@ -111,7 +114,7 @@ class Writer(ABC):
         self._needs: dict[str, Requirement] = {}
 
     def fresh(self, name: str, number: object = "") -> str:
-        """A variable that a formula binds."""
+        """Return a variable that a formula binds."""
         return f"?{name}{number}"
 
     def both(self, parts: list[str]) -> str:
@@ -120,18 +123,18 @@ class Writer(ABC):
 
     @abstractmethod
     def found(self, term: Term, names: Names, variable: str) -> str:
-        """The condition under which a variable is the thing that a function finds."""
+        """Return the condition under which a variable is the thing that a function finds."""
 
     @abstractmethod
     def derived(self, literal: Literal[Term], names: Names) -> str:
-        """A derived predicate of some terms."""
+        """Return a derived predicate of some terms."""
 
     def relation(self, name: str) -> str:
         """`HOLDS_RH` -> `holds-rh`."""
         return dashed(name)
 
     def action(self, action: Action, name: str = "", more: Iterable[str] = ()) -> Iterator[str]:
-        """The lines of one action, the acting character first.
+        """Yield the lines of one action, the acting character first.
 
         Args:
             action: to write. Preconditions that depend on an option are left out.
@@ -150,7 +153,7 @@ class Writer(ABC):
         yield "    ))"
 
     def formula(self, formula: Formula, names: Names) -> str:
-        """A formula whose free variables have these names."""
+        """Return a formula whose free variables have these names."""
         if isinstance(formula, Literal):
             text = self._literal(formula, names)
             return f"(not {text})" if formula.negated else text
@@ -181,7 +184,10 @@ class Writer(ABC):
         return f"(or {' '.join(cases)})"
 
     def _literal(self, literal: Literal[Term], names: Names) -> str:
-        """A literal, whether or not it is negated; one about a found thing holds of some thing that is found so."""
+        """Return a literal, whether or not it is negated.
+
+        One about a found thing holds of some thing that is found so.
+        """
         for position, term in enumerate(literal.terms):
             if term.function:
                 fresh = self.fresh(term.function[0], position)
@@ -196,7 +202,7 @@ class Writer(ABC):
         return self.plain(literal, names)
 
     def plain(self, literal: Literal[Term], names: Names) -> str:
-        """A literal about things that have names."""
+        """Return a literal about things that have names."""
         first, *second = literal.terms
         if literal.name == OPTION:
             return f"({option_predicate(first.name)})"
@@ -223,7 +229,7 @@ class Writer(ABC):
         return both([allowed, *(f"(not {each})" for each in never)])
 
     def changes(self, effect: Effect) -> Iterator[Effect]:
-        """An effect as one or more: CLOSE both ways, a state with the end of its opposite."""
+        """Yield an effect as one or more: CLOSE both ways, a state with the end of its opposite."""
         literal = effect.literal
         yield effect
         if literal.name == "CLOSE":
@@ -252,7 +258,7 @@ class Writer(ABC):
 
 
 def domain(knowledge: Knowledge, name: str = "hearth") -> str:
-    """The domain as text: predicates, axioms, and one action for each that is executed."""
+    """Return the domain as text: predicates, axioms, and one action for each that is executed."""
     writer, axioms = _AxiomWriter(knowledge), {}
     for head, body in knowledge.derived.values():
         names = {term.name: f"?{term.name}" for term in head.terms}
@@ -295,7 +301,7 @@ class _AxiomWriter(Writer):
         return f"(and {' '.join(parts)})" if parts else "(and)"
 
     def found(self, term: Term, names: Names, variable: str) -> str:
-        """The condition under which a variable is the thing that a function finds."""
+        """Return the condition under which a variable is the thing that a function finds."""
         name = {"room": "in-room", "origin": "remembers", "place": "place"}[term.function]
         return f"({name} {names[term.name]} {variable})"
 
@@ -305,7 +311,7 @@ class _AxiomWriter(Writer):
         return f"({' '.join([name, *(names[term.name] for term in literal.terms)])})"
 
     def changes(self, effect: Effect) -> Iterator[Effect]:
-        """An effect as one or more; Grab remembers the place and how the thing was there, Drop forgets both."""
+        """Yield an effect as one or more; Grab remembers the place and how the thing was there, Drop forgets both."""
         literal = effect.literal
         if literal.name != "REMEMBERS":
             yield from super().changes(effect)
@@ -320,6 +326,6 @@ class _AxiomWriter(Writer):
 
 
 def _somewhere(thing: Term, relation: str) -> Formula:
-    """A thing is ON or INSIDE something that is not a room."""
+    """Return a thing is ON or INSIDE something that is not a room."""
     place = Term("q")
     return Some("q", And((Literal(relation, (thing, place)), Literal("is_room", (place,), True))))

@@ -50,7 +50,8 @@ COSTS = {
 
 
 def path(knowledge: Knowledge, first: str, second: str) -> tuple[Link, ...]:
-    """The cheapest chain of facts between two things, actions or kinds; empty when there is none, or they are one.
+    """Return the cheapest chain of facts between two things, actions or kinds; empty when there is none, or they are
+    one.
 
     A usual placement and a strong association cost less than a rare one.
 
@@ -69,7 +70,7 @@ def path(knowledge: Knowledge, first: str, second: str) -> tuple[Link, ...]:
 
 
 def node_of(knowledge: Knowledge, name: str) -> str:
-    """The graph's node for a name: a class, else an action, else a kind.
+    """Return the graph's node for a name: a class, else an action, else a kind.
 
     Raises:
         KeyError: there is none.

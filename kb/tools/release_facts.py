@@ -20,7 +20,7 @@ def is_release(directory: Path) -> bool:
 
 
 def read_release(directory: Path) -> dict[str, set[Fact]]:
-    """The facts of the files there, by table: properties, states, placements, synonyms, affordances.
+    """Return the facts of the files there, by table: properties, states, placements, synonyms, affordances.
 
     Raises:
         HearthError: a file is not JSON or not of its form, or larger than any.
@@ -48,7 +48,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _texts(fact: Fact) -> Fact:
-    """The fact, whose parts may be anything that JSON has.
+    """Return the fact, whose parts may be anything that JSON has.
 
     Raises:
         TypeError: one is not a text.

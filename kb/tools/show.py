@@ -83,7 +83,7 @@ def _set_3(later: Consequence | None) -> list[dict[str, str]]:
 
 
 def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[dict[str, str]]:
-    """The affordances that the release's matrix does not hold, each with the reason; of its own classes only."""
+    """Return the affordances that the release's matrix does not hold, each with the reason; of its own classes only."""
     if knowledge.objects[name].source != "release":
         return []
     reasons = Reasons(knowledge)
@@ -93,7 +93,7 @@ def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[di
 
 
 def _placed(placement: Placement, *ends: str) -> dict[str, Any]:
-    """A placement, of which only one end needs to be said."""
+    """Return a placement, of which only one end needs to be said."""
     columns = (*ends, "room", "weight", "evidence")
     return {("place" if name == "destination" else name): getattr(placement, name) for name in columns}
 

@@ -22,7 +22,7 @@ _MADE = {"ON": "switched on", "OFF": "switched off", "OPEN": "opened", "CLOSED":
 
 
 def contradictions(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """Steps that set a state which the program has already set: switched on twice, opened while open."""
+    """Yield steps that set a state which the program has already set: switched on twice, opened while open."""
     made: dict[tuple[tuple[str, int], str], str] = {}
     for number, step in enumerate(program.steps):
         if step.action in known.group("operates") and step.objects:
@@ -39,7 +39,7 @@ def contradictions(program: Program, known: Knowledge) -> Iterator[Finding]:
 def met_at_start(
     program: Program, groundings: Iterable[GroundingRow], conditions: Iterable[ConditionRow], known: Knowledge
 ) -> Iterator[Finding]:
-    """Steps whose state already holds at the start, by a stored start graph or by the program's own conditions.
+    """Yield steps whose state already holds at the start, by a stored start graph or by the program's own conditions.
 
     Args:
         program: in canonical names.
@@ -141,7 +141,7 @@ def without_effect(program: Program, known: Knowledge) -> Iterator[Finding]:
 
 
 def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> Iterator[Finding]:
-    """Declared rooms and props that are not used, and those used but not declared (thesis figure 3-3)."""
+    """Yield declared rooms and props that are not used, and those used but not declared (thesis figure 3-3)."""
     rooms, props = ({one["name"]: one["quantity"] for one in row.get(part) or ()} for part in ("rooms", "props"))
     if not props and not rooms:
         return
@@ -164,7 +164,9 @@ def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> It
 
 
 def _used(program: Program, known: Knowledge) -> dict[str, int]:
-    """The number of objects of each class in a program, without rooms and parts of the body, which are not props."""
+    """Return the number of objects of each class in a program, without rooms and parts of the body, which are not
+    props.
+    """
     instances: dict[str, set[int]] = {}
     for ref in program.objects():
         thing = known.object_class(ref.name)
@@ -174,7 +176,7 @@ def _used(program: Program, known: Knowledge) -> dict[str, int]:
 
 
 def never_executed(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """Steps whose action no simulation runs: they can be written, and the program fails there."""
+    """Yield steps whose action no simulation runs: they can be written, and the program fails there."""
     for number, step in enumerate(program.steps):
         if not known.actions[step.action].executed:
             message = f"[{step.action}] can be written, but the simulator does not execute it"

@@ -89,7 +89,10 @@ def _text_key(item: Item) -> int | None:
 
 
 def _answer(item: Item) -> Any:
-    """The content by which copies are found: a crowd worker's answer without its id, or natural-language steps."""
+    """Return the content by which copies are found.
+
+    A crowd worker's answer without its id, or natural-language steps.
+    """
     if item.reader == plans.NAME:
         return [plans.NAME, item.value["text"]]
     if item.reader != crowd.NAME:

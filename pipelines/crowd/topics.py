@@ -73,7 +73,9 @@ def mentioned(text: str, known: Knowledge) -> set[str]:
 
 
 def no_activity(text: str) -> tuple[str, list[str]] | None:
-    """The kind of a text that is not a description (advertising, a message to the requester), and its phrases."""
+    """Return the kind of a text that is not a description (advertising, a message to the requester), and its
+    phrases.
+    """
     plain = " ".join(re.findall(r"[a-z0-9%']+|[.:/@]", text.lower()))
     for kind, phrases in _kinds().items():
         matches = [match[0] for pattern in phrases if (match := pattern.search(plain))]

@@ -106,7 +106,8 @@ class Activities:
 
 
 def _descriptions(ingested: Iterable[IngestedRow]) -> tuple[Texts, NDArray[np.int64]]:
-    """The ids of descriptions in order, and the number of the ingested row of each: the first that is its own, or, if
+    """Return the ids of descriptions in order, and the number of the ingested row of each: the first that is its own,
+    or, if
     none is, the first copy that came with a program."""
     ids, own, numbers = Texts(), array("b"), array("q")
     for number, row in enumerate(ingested):

@@ -103,7 +103,7 @@ def _write_activities(job: Job) -> None:
 
 
 def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
-    """The programs that are published."""
+    """Yield the programs that are published."""
     for path in sorted((job.folder / "programs").glob("part-*.parquet")):
         yield from read_rows(path, columns)
 
@@ -142,7 +142,7 @@ def _steps_of(job: Job, names: list[str]) -> dict[str, int]:
 
 
 def strength_used(job: Job) -> str:
-    """The strength by which programs were augmented."""
+    """Return the strength by which programs were augmented."""
     return str(_manifest(job, "augment").content["settings"]["strength"])
 
 
@@ -153,7 +153,7 @@ def _manifest(job: Job, stage: str) -> Manifest:
 
 
 def _rows(job: Job, stage: str, table: str = "", columns: list[str] | None = None) -> Iterator[Any]:
-    """The rows of one table of a stage."""
+    """Yield the rows of one table of a stage."""
     folder = job.settings.folder(stage)
     for path in (folder / file for part in _manifest(job, stage).parts for file in part["files"]):
         if path.parent == folder / table:
@@ -228,7 +228,7 @@ def _runs(job: Job) -> Iterator[Run]:
 
 
 def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:
-    """The parts of originals in splits of their sources' own; many have the same, and share them."""
+    """Return the parts of originals in splits of their sources' own; many have the same, and share them."""
     found: dict[str, dict[str, str | None]] = {}
     different: dict[tuple[tuple[str, str | None], ...], dict[str, str | None]] = {}
     for row in _rows(job, "ingest", columns=["program_id", "parts"]):

@@ -46,7 +46,8 @@ def source_digests(paths: Iterable[str]) -> dict[str, str]:
 
 
 def salt(settings: Settings) -> str:
-    """The salt of worker ids: the given one, or else one derived from the sources' bytes, which are not published.
+    """Return the salt of worker ids: the given one, or else one derived from the sources' bytes, which are not
+    published.
 
     Its digest of the bytes is another than that of manifests, from which the salt cannot be computed.
     """

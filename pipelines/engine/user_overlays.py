@@ -16,7 +16,10 @@ def keep_homes(job: Job) -> None:
 
 
 def kept_overlays(settings: Settings, only: str) -> Settings:
-    """The settings of a stage run alone: knowledge that they do not name is `validate`'s, homes are `sample`'s."""
+    """Return the settings of a stage run alone.
+
+    Knowledge that they do not name is `validate`'s, homes are `sample`'s.
+    """
     known = settings.folder("validate") / dataset_knowledge.FOLDER
     homes = settings.folder("sample") / dataset_homes.FOLDER
     if only != "validate" and not settings.kb_folder and known.is_dir():

@@ -16,7 +16,8 @@ from hearth.storage.rejects import Reject, as_text
 
 
 def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tuple[str, Any]]:
-    """The records of a JSON value with their places in it: itself, or those in the lists and objects that it holds.
+    """Yield the records of a JSON value with their places in it: itself, or those in the lists and objects that it
+    holds.
 
     An object of programs by their titles holds a record for each.
     """

@@ -60,7 +60,7 @@ def is_only_action(value: Any) -> bool:
 
 
 def step_of(value: dict[str, Any]) -> str:
-    """The text of a step: as in programs if the action's name is known, else a sentence."""
+    """Return the text of a step: as in programs if the action's name is known, else a sentence."""
     if is_tool_use(value):
         return _step(value["name"], _arguments(next(value[key] for key in _INPUTS if key in value)))
     call = value.get("function")
@@ -88,7 +88,7 @@ def _action(value: dict[str, Any]) -> str | None:
 
 
 def _arguments(given: Any) -> list[str]:
-    """The names among the arguments of a call, which are an object or its JSON."""
+    """Return the names among the arguments of a call, which are an object or its JSON."""
     source = given
     if isinstance(given, str):
         try:
@@ -100,7 +100,7 @@ def _arguments(given: Any) -> list[str]:
 
 
 def _names(value: Any) -> Iterator[str]:
-    """The names in a value: itself, or those in a list or an object."""
+    """Yield the names in a value: itself, or those in a list or an object."""
     if isinstance(value, str):
         yield from [value] if value.strip() else []
     elif isinstance(value, int) and not isinstance(value, bool):
@@ -173,7 +173,7 @@ def _is_name(value: Any) -> bool:
 
 
 def steps_of_mapping(value: dict[str, Any], source: str = "") -> list[str]:
-    """The steps of a mapping, in the order of the file. A number after a name is the node of it.
+    """Return the steps of a mapping, in the order of the file. A number after a name is the node of it.
 
     Args:
         value: as `is_mapping` takes it.
@@ -207,7 +207,7 @@ def looks_like_mapping(text: str) -> bool:
 
 
 def mapping_in(text: str) -> dict[str, Any] | None:
-    """The mapping of a text, as JSON or as Python writes it; None if it is cut off or is something else."""
+    """Return the mapping of a text, as JSON or as Python writes it; None if it is cut off or is something else."""
     start = _FENCE.match(text)
     end = text.rfind("}") + 1
     inner = text[start.end() : end] if start else ""
@@ -221,7 +221,7 @@ def mapping_in(text: str) -> dict[str, Any] | None:
 
 
 def mapped_steps(text: str) -> list[str]:
-    """The steps of a mapping in a text.
+    """Return the steps of a mapping in a text.
 
     Raises:
         HearthError: BAD_JSON, it is cut off or is something else.
@@ -236,7 +236,7 @@ def mapped_steps(text: str) -> list[str]:
 
 
 def _of_python(text: str) -> Any:
-    """A dict of constants as Python writes it, with repeated keys."""
+    """Return a dict of constants as Python writes it, with repeated keys."""
     try:
         tree = ast.parse(text, mode="eval").body
         if isinstance(tree, ast.Dict):

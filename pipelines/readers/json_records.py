@@ -223,8 +223,8 @@ def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Rejec
 
 
 def _placed(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow | Reject]:
-    """The row with its parts in splits of its source, as `{"pairs": "test", "tasks": null}`; faulty ones are refused
-    alone.
+    """Yield the row with its parts in splits of its source, as `{"pairs": "test", "tasks": null}`; faulty ones are
+    refused alone.
     """
     given = value.get("splits")
     if row["kind"] != "program" or not isinstance(given, Mapping) or not given:

@@ -27,14 +27,14 @@ class Text(str):
     unit: str
 
     def part(self, start: int, length: int) -> Text:
-        """A piece of the text, with its place."""
+        """Return a piece of the text, with its place."""
         offsets = self._offsets()
         first, end = offsets[start], offsets[start + length]
         line, column = self._at(first)
         return text_at(str(self)[start : start + length], line, column, self.raw[first:end], self.unit)
 
     def places(self, skip: int = 0) -> list[list[int]]:
-        """The place of each line; see `hearth.schemas.text_places`.
+        """Return the place of each line; see `hearth.schemas.text_places`.
 
         Args:
             skip: characters that a reader has put before the first line.
@@ -64,7 +64,7 @@ class Text(str):
         return found
 
     def _jumps(self, ends: Sequence[int], skip: int) -> Iterator[tuple[int, int, int]]:
-        """The first character of a line, and each that does not stand right after the one before it."""
+        """Yield the first character of a line, and each that does not stand right after the one before it."""
         before = -1
         for index, offset in enumerate(ends):
             if offset != before + 1 or not index:
@@ -93,7 +93,7 @@ def _unit(name: str) -> re.Pattern[str]:
 
 
 def text_at(value: str, line: int, column: int, raw: str, unit: str = "") -> Text:
-    """A text with its place."""
+    """Return a text with its place."""
     found = Text(value)
     found.line, found.column, found.raw, found.unit = line, column, raw, unit
     return found
@@ -106,11 +106,11 @@ class Composed(Text):
     parts: list[tuple[int, Text]]
 
     def places(self, skip: int = 0) -> list[list[int]]:
-        """The place of the line, which goes on at another place with each text."""
+        """Return the place of the line, which goes on at another place with each text."""
         return [[each for at, text in self.parts for each in text.places(at + skip)[0]]]
 
     def part(self, start: int, length: int) -> Text:
-        """A piece of the line: of the texts in it, those that begin in it."""
+        """Return a piece of the line: of the texts in it, those that begin in it."""
         inside = [(at - start, text) for at, text in self.parts if start <= at < start + length]
         return _composed(str(self)[start : start + length], inside or [(0, self.parts[0][1])])
 
@@ -148,7 +148,7 @@ class Located:
         self.value = self._text(value, alone) if alone else self._walk(value)
 
     def line_of(self, value: Any) -> int:
-        """The line on which an object of the value, or a text in it, begins; else that of the whole value."""
+        """Return the line on which an object of the value, or a text in it, begins; else that of the whole value."""
         first = self._lines.get(id(value))
         if first is None:
             inside = next(texts_in(value), None)
@@ -200,7 +200,7 @@ class Pairs(dict[str, Any]):
 
 
 def pairs_of(value: dict[str, Any]) -> list[tuple[str, Any]]:
-    """The keys of an object with their values, in the order of the file, repeated ones too."""
+    """Return the keys of an object with their values, in the order of the file, repeated ones too."""
     return [(key, part) for key, part in value.pairs] if isinstance(value, Pairs) else list(value.items())
 
 
@@ -225,7 +225,7 @@ class _Repeated:
 
 
 def texts_in(value: Any) -> Iterator[Text]:
-    """The texts of a value that is not deep, in order."""
+    """Yield the texts of a value that is not deep, in order."""
     if isinstance(value, Text):
         yield value
     elif isinstance(value, (dict, list)):
@@ -250,7 +250,10 @@ def pieces_of(text: str, pieces: Sequence[str]) -> list[str]:
 
 
 def _words_in(text: Text, piece: str) -> Text:
-    """A piece whose words follow each other in a text, whatever stands between them; else at the text's place."""
+    """Return a piece whose words follow each other in a text, whatever stands between them.
+
+    Else at the text's place.
+    """
     parts: list[str] = []
     at = 0
     for word in piece.split(" "):

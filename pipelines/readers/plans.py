@@ -54,7 +54,7 @@ def scan_list(path: Place, place: str) -> Iterator[Item]:
 
 
 def checked(text: str, first: int, record_id: str, place: str) -> Item:
-    """The item of a text that begins at line `first`, refused if it is not text or too long."""
+    """Return the item of a text that begins at line `first`, refused if it is not text or too long."""
     fault = fault_of(text, place, first)
     if fault:
         return refused(place, Reject((fault,)), record_id, first)
@@ -71,7 +71,7 @@ def checked(text: str, first: int, record_id: str, place: str) -> Item:
 
 
 def read(item: Item) -> IngestedRow:
-    """The record of an item with its text unchanged; `validate` maps it to steps."""
+    """Return the record of an item with its text unchanged; `validate` maps it to steps."""
     top = header(item.value["text"])
     line, places = item.value["line"], item.value.get("places")
     return record(item, "program", top.title, top.description, text=item.value["text"], line=line, places=places)

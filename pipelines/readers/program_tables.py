@@ -63,7 +63,7 @@ _BY_CELLS = "No name says which column holds the programs: its cells read as ste
 
 
 def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
-    """The column of each field that a table has."""
+    """Return the column of each field that a table has."""
     return table_of(path, given).columns
 
 
@@ -117,7 +117,10 @@ _FEW = 12
 
 
 def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns, counts: Sequence[str]) -> str:
-    """The column that counts steps: one whose name says so, else one that goes up by one while the task stays."""
+    """Return the column that counts steps.
+
+    One whose name says so, else one that goes up by one while the task stays.
+    """
     names = dict.fromkeys(counts, "1")
     sure, may = number_of(names), number_of(names, any_number=True)
     if sure or not may or not ("title" in found or _row_is_step(layout, found) or _are_single(sample, may, layout)):
@@ -239,14 +242,17 @@ def _rows(path: Place, place: str, table: Table, given: FieldColumns) -> Iterato
 
 
 def _record(row: Row, table: Table) -> dict[str, Any]:
-    """A row as a record, by our names of the fields."""
+    """Return a row as a record, by our names of the fields."""
     fields = {field: name for field, name in table.columns.items() if not (table.steps and field == "program")}
     steps = {"steps": [row[name] for name in table.steps if row[name].strip()]} if table.steps else {}
     return {**{field: row[name] for field, name in fields.items()}, **steps}
 
 
 def _unnamed(rows: Rows, line: int, layout: Layout, place: str, given: FieldColumns) -> Reject:
-    """The fault of a table none of whose columns is known; the longest cell of its first row may be a program."""
+    """Return the fault of a table none of whose columns is known.
+
+    The longest cell of its first row may be a program.
+    """
     lacking = [name for field, name in given.items() if field in ("program", "description")]
     message = "a table without a column of programs or descriptions that is known by its name"
     if lacking:

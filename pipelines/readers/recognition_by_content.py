@@ -151,7 +151,7 @@ def _folder(path: Path, label: str, names: list[str]) -> Iterator[Recognised]:
 
 
 def _named_file(path: Path, label: str) -> Iterator[Recognised]:
-    """A source that is a file: if nothing in it can be read, that is an error, not a reject."""
+    """Yield a source that is a file: if nothing in it can be read, that is an error, not a reject."""
     found = list(_file(path, label))
     refused = [entry.refusal for entry in found if entry.refusal]
     if len(refused) == len(found) and path.stat().st_size:
@@ -170,7 +170,7 @@ def _file(path: Path, place: str) -> Iterator[Recognised]:
 
 
 def _text(path: Place, place: str) -> Recognised:
-    """The form of a text, packed or not, by its first lines."""
+    """Return the form of a text, packed or not, by its first lines."""
     try:
         return _by_first_lines(path, place)
     except DamagedError as error:
@@ -211,13 +211,16 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
 
 
 def _suffix(path: Place) -> str:
-    """The ending of a file's name, without that of a packed file."""
+    """Return the ending of a file's name, without that of a packed file."""
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     return next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
 
 
 def _json(path: Place, place: str, first: list[str]) -> Recognised:
-    """The form of a JSON file: JSON Lines if the first line is a whole value and others follow, else a document."""
+    """Return the form of a JSON file.
+
+    JSON Lines if the first line is a whole value and others follow, else a document.
+    """
     is_value = not isinstance(parsed(first[0], place, 1), Reject)
     if is_value and (len(first) > 1 or size_of(path) > LARGEST_FILE):
         return Recognised(path, place, json_records.NAME)
@@ -234,7 +237,7 @@ def _json(path: Place, place: str, first: list[str]) -> Recognised:
 
 
 def _form_of_list(path: Place, place: str) -> str:
-    """The reader of a list, by its first entry that can be read; an empty list is a list of records.
+    """Return the reader of a list, by its first entry that can be read; an empty list is a list of records.
 
     Texts of one line and actions are the steps of one program, other texts a plan each.
     """

@@ -65,7 +65,7 @@ def _quoted(text: str, listed: str) -> list[str]:
 
 
 def numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[str, Places]:
-    """Steps in words as a text with a title, and the places of its lines."""
+    """Return steps in words as a text with a title, and the places of its lines."""
     top = f"Task: {words['title'] or 'Untitled'}\n{words['description'] or ''}".split("\n")
     found: list[str] = []
     places: list[list[int]] = []

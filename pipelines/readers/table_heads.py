@@ -13,7 +13,7 @@ NUMBERED = "Its first line is a row: its columns are known by their numbers."
 
 
 def begun(rows: Rows, given: FieldColumns) -> tuple[int, Layout, bool]:
-    """The number and layout of the first line with text, and whether it is a row; the row is read again.
+    """Return the number and layout of the first line with text, and whether it is a row; the row is read again.
 
     Excel's `sep=;` before it names the delimiter.
     """

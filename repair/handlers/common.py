@@ -48,7 +48,7 @@ class RepairContext(FailureContext):
         return bool((states[SITTING] | states[LYING]) & self.agent.bit)
 
     def object(self, position: int = 0) -> ObjectRef:
-        """A node that the failure names, as an object of the program."""
+        """Return a node that the failure names, as an object of the program."""
         return self.ref(self.index(position))
 
     def refs(self, indices: Iterable[int]) -> tuple[ObjectRef, ...]:
@@ -85,12 +85,12 @@ class RepairContext(FailureContext):
         return sorted(things, key=lambda i: (not self.is_close(i), rows.room_of(self.world, i) != room, i))
 
     def nearest(self, things: Iterable[int]) -> int | None:
-        """The nearest of some things, out of something closed only where there is no other; None of none."""
+        """Return the nearest of some things, out of something closed only where there is no other; None of none."""
         ordered = self.by_distance(things)
         return min(ordered, key=lambda i: rows.closed_container(self.world, i) >= 0, default=None)
 
     def does(self, action: str, *objects: ObjectRef) -> Step:
-        """A new step of the same character."""
+        """Return a new step of the same character."""
         return Step(action, objects, self.failure.agent)
 
     @property
@@ -111,7 +111,7 @@ class RepairContext(FailureContext):
         return None if known is None else any(f.name in RESTING and not f.negated for f in known)
 
     def world_before(self, number: int) -> World:
-        """The world before the tick of a step that was done, or before the failing one."""
+        """Return the world before the tick of a step that was done, or before the failing one."""
         ticks = sum(not step.joins for step in self.program.steps[1 : number + 1])
         return self.worlds[ticks] if number < self.at else self.world
 
@@ -167,7 +167,7 @@ def removed(context: RepairContext, name: str) -> Edit:
 
 
 def leaving_out(name: str) -> Handler:
-    """The handler whose repair has that name."""
+    """Return the handler whose repair has that name."""
 
     def handler(context: RepairContext) -> Edit | None:
         """Leave the step out."""
@@ -194,14 +194,14 @@ def replaced(context: RepairContext, name: str, *steps: Step) -> Edit:
 
 
 def tick_start(program: Program, at: int) -> int:
-    """Number of the first step of the tick that step `at` belongs to."""
+    """Return the number of the first step of the tick that step `at` belongs to."""
     while 0 < at < len(program.steps) and program.steps[at].joins:
         at -= 1
     return at
 
 
 def tick_end(program: Program, at: int) -> int:
-    """Number of the first step after the tick that step `at` belongs to."""
+    """Return the number of the first step after the tick that step `at` belongs to."""
     at += 1
     while at < len(program.steps) and program.steps[at].joins:
         at += 1

@@ -68,7 +68,7 @@ def _needed_in(context: RepairContext, thing: ObjectRef) -> int:
 
 
 def _hand_is_free(context: RepairContext, thing: ObjectRef) -> int | None:
-    """Number of the step after which the thing can be taken up again; None when it can't.
+    """Return the number of the step after which the thing can be taken up again; None when it can't.
 
     That is the failing step, unless it fills the hand; then the step that empties it if the thing is of use, else the
     last one if a hand is empty and the character on its feet by then.

@@ -96,7 +96,10 @@ def _can_fetch(context: RepairContext, number: int) -> bool:
 
 
 def _approach(context: RepairContext, seat: int) -> int:
-    """Number of the step that takes the character to where it then takes its seat; the latter's where there is none."""
+    """Return the number of the step that takes the character to where it then takes its seat.
+
+    The latter's where there is none.
+    """
     return next((number for number in range(seat - 1, -1, -1) if _walks(context, number)), seat)
 
 
@@ -112,7 +115,9 @@ def _walks(context: RepairContext, number: int) -> bool:
 
 
 def _stands_beside(context: RepairContext, taken: int) -> ObjectRef | None:
-    """The furniture that bears what is not close, if who comes from there is close to all that it uses in the seat."""
+    """Return the furniture that bears what is not close, if who comes from there is close to all that it uses in
+    the seat.
+    """
     world, home = context.world, context.world.home
     later = Program(steps=context.program.steps[taken:]).objects()
     used = [home.index[ref.node] for ref in later if ref.node is not None]
@@ -128,7 +133,7 @@ def _stands_beside(context: RepairContext, taken: int) -> ObjectRef | None:
 
 
 def _bed_for(context: RepairContext, thing: ObjectRef) -> int:
-    """The bed that is lain or sat on, where the thing is bedding that may stay on it; else nothing."""
+    """Return the bed that is lain or sat on, where the thing is bedding that may stay on it; else nothing."""
     home, seat = context.world.home, context.seat_taken()
     if not context.rules.made_bed or seat is None or seat[2].node is None or thing.node is None:
         return 0

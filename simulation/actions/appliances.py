@@ -18,7 +18,7 @@ from hearth.simulation.world.world import World
 
 
 def _of_pair(state: int, code: Code) -> Check:
-    """The object is in a state; `code` where it is in the opposite, another where it is in neither."""
+    """Return the object is in a state; `code` where it is in the opposite, another where it is in neither."""
 
     def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
         either = (world.states[OPEN] | world.states[CLOSED]) >> o & 1

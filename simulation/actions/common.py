@@ -56,7 +56,7 @@ class Check(NamedTuple):
 
 
 def becomes(state: int) -> Effect:
-    """The effect that the object enters a state."""
+    """Return the effect that the object enters a state."""
 
     def effect(world: World, number: int, o: int, rules: Rules) -> World:
         return World(world.home, with_state(world.states, state, 1 << o), world.agents, world.moved)
@@ -65,7 +65,7 @@ def becomes(state: int) -> Effect:
 
 
 def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
-    """The action of one object that makes these checks in order and then has this effect, or has none."""
+    """Return the action of one object that makes these checks in order and then has this effect, or has none."""
     refusals = tuple(check.refuse for check in checks)
     by_hands = tuple(_need_near if refusal is need_close else refusal for refusal in refusals)
     masks = tuple(check.mask for check in reversed(checks))  # the last are the cheapest and most often empty
@@ -90,7 +90,7 @@ def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
 
 
 def by_rule(name: str, on: Action, off: Action) -> Action:
-    """The action that is `on` where a rule is on, else `off`.
+    """Return the action that is `on` where a rule is on, else `off`.
 
     So a check need not know the rules: those that a rule replaces or adds stand in another list of checks.
 
@@ -110,7 +110,7 @@ def by_rule(name: str, on: Action, off: Action) -> Action:
 
 
 def refuse(world: World, code: Code, expected: str, actual: str, *objects: int) -> Failure:
-    """A failure about these indices; the engine fills in tick, agent and action."""
+    """Return a failure about these indices; the engine fills in tick, agent and action."""
     home = world.home
     ids = tuple(home.ids[i] for i in objects if i >= 0)
     names = tuple(home.classes[i] for i in objects if i >= 0)
@@ -118,7 +118,7 @@ def refuse(world: World, code: Code, expected: str, actual: str, *objects: int) 
 
 
 def some(mask: int) -> Masks:
-    """The masks of an action of one object; None when no object is left."""
+    """Return the masks of an action of one object; None when no object is left."""
     return (mask,) if mask else None
 
 
@@ -192,7 +192,7 @@ def need_reachable(world: World, agent: Agent, o: int, action: str = "") -> Fail
 
 
 def in_state(state: int, code: Code) -> Check:
-    """The object is in a state."""
+    """Return the object is in a state."""
 
     def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
         return None if world.states[state] >> o & 1 else need_state(world, code, state, o)
@@ -201,7 +201,7 @@ def in_state(state: int, code: Code) -> Check:
 
 
 def not_in_state(state: int, code: Code) -> Check:
-    """The object is not in a state; it may be in neither of a pair."""
+    """Return the object is not in a state; it may be in neither of a pair."""
 
     def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
         if not world.states[state] >> o & 1:

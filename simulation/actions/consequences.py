@@ -47,7 +47,7 @@ def actions(knowledge: Knowledge, placed: bool) -> Mapping[str, Action]:
 
 
 def _followed(action: Action, later: Consequence) -> Action:
-    """An action of set 2 with the additions of set 3."""
+    """Return an action of set 2 with the additions of set 3."""
     if not later.effects:
         return action
 
@@ -105,7 +105,7 @@ class _Check:
         return max(("os".index(name) for name in free(self.condition.formula) & {*"os"}), default=-1)
 
     def refusal(self, world: World, agent: Agent, objects: tuple[int, int], rules: Rules) -> Failure:
-        """The failure of a check that does not hold, in the words that set 2 has for it."""
+        """Return the failure of a check that does not hold, in the words that set 2 has for it."""
         code, at = self.condition.code, max(self.position, 0)
         o = objects[at]
         if code is Code.NOT_CLOSE and "close(a" in str(self.condition.formula) and self.position >= 0:
@@ -130,7 +130,7 @@ _REFUSALS = {
 
 
 def _wanted(words: str, world: World, o: int) -> tuple[str, str]:
-    """A formula as an expectation, with the act that would be needed, and how it is instead."""
+    """Return a formula as an expectation, with the act that would be needed, and how it is instead."""
     if not words.startswith("not state("):
         return words, "not so"
     name = words.rpartition(", ")[2].rstrip(")")
@@ -139,7 +139,7 @@ def _wanted(words: str, world: World, o: int) -> tuple[str, str]:
 
 
 def _undoing(state: str, world: World, o: int) -> Iterator[str]:
-    """The acts that bring a thing out of a state, if they can be done to it."""
+    """Yield the acts that bring a thing out of a state, if they can be done to it."""
     knowledge = world.home.knowledge
     others = {f"state(o, {other})" for other in knowledge.excludes(state)}
     for known in knowledge.actions.values():
@@ -149,7 +149,7 @@ def _undoing(state: str, world: World, o: int) -> Iterator[str]:
 
 
 def _masks(s: Situation, known: Known, checks: tuple[_Check, ...]) -> Masks:
-    """The objects for which the checks hold, each argument for itself."""
+    """Return the objects for which the checks hold, each argument for itself."""
     reading = Reading(s.world, s.me, s.rules, known.name)
     bound = {"a": s.me.index}
     if not all(reading.holds(check.condition.formula, bound) for check in checks if check.position < 0):
@@ -187,5 +187,5 @@ def _known_mask(s: Situation, action: str, formula: str, at: int) -> int | None:
 
 
 def executed(knowledge: Knowledge) -> Iterator[str]:
-    """The names of the actions that set 3 executes, those of characters at places among them."""
+    """Yield the names of the actions that set 3 executes, those of characters at places among them."""
     yield from sorted(actions(knowledge, placed=True))

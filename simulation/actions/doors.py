@@ -19,7 +19,7 @@ MOST_KNOWN = 1_000
 
 
 def blocking(world: World, agent: Agent, room: int) -> Failure | None:
-    """A DOOR_CLOSED failure when every way from the character's room to `room` leads through a closed door.
+    """Return a DOOR_CLOSED failure when every way from the character's room to `room` leads through a closed door.
 
     A home whose doors do not say what they part, or parts no one can walk between even with every door open, stops
     nobody: the graph does not have the way. Doorways without a door are always open.
@@ -46,7 +46,7 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
 
 
 def open_rooms(world: World, agent: Agent) -> int:
-    """The rooms that no closed door keeps from a character: those for which `blocking` finds nothing."""
+    """Return the rooms that no closed door keeps from a character: those for which `blocking` finds nothing."""
     home = world.home
     start = rows.agent_room(world, agent)
     closed = home.doors & world.states[CLOSED]

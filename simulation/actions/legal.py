@@ -87,7 +87,7 @@ def legal(
     only_reachable: bool = False,
     actions: Collection[str] | None = None,
 ) -> Legal:
-    """The legal instructions of an agent: exactly those that `engine.act` would not refuse.
+    """Return the legal instructions of an agent: exactly those that `engine.act` would not refuse.
 
     With `only_visible` it is the agent's knowledge of them: instructions about visible nodes, possible as far as the
     agent sees. Nothing out of its sight changes the answer. An unseen door therefore stops nobody here, and an
@@ -161,7 +161,7 @@ class _Masks(Mapping[str, tuple[int, ...]]):
         return masks
 
     def _kept(self, masks: tuple[int, ...]) -> tuple[int, ...] | None:
-        """The masks without what is out of reach; None where nothing is left, or only a thing with itself."""
+        """Return the masks without what is out of reach; None where nothing is left, or only a thing with itself."""
         if self._keep != -1:
             masks = tuple([mask & self._keep for mask in masks])
         single = len(masks) > 1 and masks[0] == masks[1] and masks[0].bit_count() == 1

@@ -21,7 +21,7 @@ Change = tuple[Literal[Term], tuple[int, ...]]
 
 
 def done(effects: Iterable[Effect], reading: Reading, bound: Bound, after: World) -> World:
-    """A world after effects whose conditions are read in the world before: what ends first, then what begins.
+    """Return a world after effects whose conditions are read in the world before: what ends first, then what begins.
 
     Args:
         effects: of an act.
@@ -41,7 +41,7 @@ def done(effects: Iterable[Effect], reading: Reading, bound: Bound, after: World
 
 
 def made(changes: Iterable[Change], world: World) -> World:
-    """A world after changes: what ends first, then what begins, then what is gone."""
+    """Return a world after changes: what ends first, then what begins, then what is gone."""
     every = list(changes)
     added = [change for change in every if not change[0].negated and change[0].name not in ("state", GONE)]
     removed = [change for change in every if change[0].negated and change[0].name not in ("state", "REMEMBERS")]
@@ -92,7 +92,10 @@ _ALL = (kinds.ON, kinds.BEARS, kinds.INSIDE, kinds.CONTENTS, kinds.CLOSE, kinds.
 
 
 def gone(world: World, i: int) -> World:
-    """A world in which a thing is used up: nowhere, in no hand, close to nothing, remembered by nobody, and GONE."""
+    """Return a world in which a thing is used up.
+
+    Nowhere, in no hand, close to nothing, remembered by nobody, and GONE.
+    """
     bit = 1 << i
     moved = world.moved
     extra = dict(moved.extra)

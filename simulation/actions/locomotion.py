@@ -85,7 +85,7 @@ def _attending(agent: Agent, close: int, facing: int) -> Agent:
 
 
 def arrived(world: World, number: int, o: int, room: int, pose: Pose | None, rules: Rules) -> World:
-    """The world once a character has walked to o in a room, and stands there if it is placed."""
+    """Return the world once a character has walked to o in a room, and stands there if it is placed."""
     home = world.home
     moved = world.moved
     if rules.near == "evolving_graph":

@@ -71,7 +71,7 @@ def walk_forward(world: World, number: int, _: int, __: int, rules: Rules) -> Wo
 
 
 def _ahead(world: World, number: int, here: Here | None, rules: Rules) -> tuple[Pose | None, float]:
-    """The place a stride ahead, or None with the metres that are free."""
+    """Return the place a stride ahead, or None with the metres that are free."""
     agent = world.agents[number]
     pose = agent.pose
     if here is None or pose is None:
@@ -118,7 +118,7 @@ def _in_the_way(world: World, number: int, leg: tuple[Pose, Pose]) -> bool:
 
 
 def turn(degrees: float) -> Action:
-    """A turn about oneself; one faces nothing named then."""
+    """Return a turn about oneself; one faces nothing named then."""
 
     def rule(world: World, number: int, _: int, __: int, rules: Rules) -> World | Failure:
         agent = world.agents[number]

@@ -16,7 +16,7 @@ PLACED = frozenset({"at", "facing"})
 
 
 def modified(before: World, after: World, step: Step, o: int, s: int) -> World | Failure:
-    """The world after a step that was done, as its modifiers ask, or why that can't be."""
+    """Return the world after a step that was done, as its modifiers ask, or why that can't be."""
     found: World | Failure = after
     for _, message, remedy in faults(step, before.home.knowledge):
         return refuse(before, Code.NOT_SIMULATED, remedy, message)
@@ -31,7 +31,7 @@ def modified(before: World, after: World, step: Step, o: int, s: int) -> World |
 
 
 def _by_hand(before: World, after: World, step: Step, o: int, hand: str) -> World | Failure:
-    """The hand holds what was taken, or gave what was held; an action on anything else needs it free."""
+    """Return the hand holds what was taken, or gave what was held; an action on anything else needs it free."""
     old, new = before.agents[step.agent], after.agents[step.agent]
     holding = getattr(old, hand)
     taken = new.held & ~old.held

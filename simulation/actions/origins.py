@@ -40,8 +40,8 @@ def remembered(world: World, agent: Agent, o: int, rules: Rules) -> tuple[int, i
 
 
 def _by_hash_order(world: World, places: int, row: int, kind: int) -> int:
-    """The first place in the order in which a Python set built from the ascending ids of the whole row iterates: the
-    accident by which the release was made.
+    """Return the first place in the order in which a Python set built from the ascending ids of the whole row iterates:
+    the accident by which the release was made.
     """
     if not places:
         return -1
@@ -56,7 +56,7 @@ def _by_hash_order(world: World, places: int, row: int, kind: int) -> int:
 
 
 def _nearest(world: World, places: int, row: int, kind: int) -> int:
-    """The lowest id; never a character, and among what it was merely close to only furniture."""
+    """Return the lowest id; never a character, and among what it was merely close to only furniture."""
     places &= ~world.home.characters
     if kind == kinds.CLOSE:
         places &= world.home.furniture

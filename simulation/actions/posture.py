@@ -12,7 +12,7 @@ from hearth.simulation.world.world import World
 
 
 def _sit(world: World, number: int, o: int, rules: Rules) -> World:
-    """The character then faces what the seat faces."""
+    """Return the character then faces what the seat faces."""
     ahead = rows.facing(world, o)
     for other in world.agents:
         if other.faced >> o & 1:
@@ -57,7 +57,7 @@ def _need_rest(world: World, agent: Agent) -> Failure | None:
 
 
 def _not_already(state: int, code: Code, name: str) -> Check:
-    """The character is not in the posture yet."""
+    """Return the character is not in the posture yet."""
 
     def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
         return refuse(world, code, f"not {name}", name, o) if world.states[state] & agent.bit else None

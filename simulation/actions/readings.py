@@ -64,7 +64,7 @@ class Reading(NamedTuple):
         return self.world.home.limit(bound[formula.limit.name], formula.limit.function == "bed_limit")
 
     def solutions(self, effect: Effect, bound: Bound) -> Iterator[Bound]:
-        """The bindings under which an effect takes place."""
+        """Yield the bindings under which an effect takes place."""
         parts = effect.condition.parts if isinstance(effect.condition, And) else (effect.condition,)
         helpful = (*parts, effect.literal.atom) if effect.literal.negated else parts
         yield from self._extended(effect.variables, parts, helpful, bound)
@@ -120,7 +120,10 @@ def _flat(parts: Iterable[Formula]) -> Iterator[Formula]:
 
 
 def kind_of(home: Home, formula: Formula) -> int:
-    """The nodes of a kind; found once for a home and a formula, which is kept with them, so that its identity is."""
+    """Return the nodes of a kind.
+
+    Found once for a home and a formula, which is kept with them, so that its identity is.
+    """
     known = home.kinds.get(id(formula))
     if known is not None:
         return int(known[1])
@@ -187,7 +190,7 @@ _ROWS: dict[str, tuple[_Row, _Row, str]] = {
 
 
 def _related(reading: Reading, part: Literal[Term], variable: str, bound: Bound) -> int:
-    """The nodes to which a relation may lead from, or to, what is bound."""
+    """Return the nodes to which a relation may lead from, or to, what is bound."""
     world, (first, second) = reading.world, part.terms
     outwards = second.name == variable and not second.function and first.name in bound
     known = first if outwards else second

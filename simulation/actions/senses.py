@@ -40,7 +40,7 @@ def watch(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fa
 
 
 def _need_view(world: World, agent: Agent, o: int) -> Failure | None:
-    """A sitting or lying character must face a thing itself; a computer may also be faced by one hop."""
+    """Return a sitting or lying character must face a thing itself; a computer may also be faced by one hop."""
     resting = (world.states[SITTING] | world.states[LYING]) & agent.bit
     if resting and world.home.classes[o] != "computer" and not agent.facing >> o & 1:
         return refuse(world, Code.NOT_FACING, "the seat facing it", "no direct FACING edge", o)

@@ -68,7 +68,7 @@ def _each(here: World, steps: tuple[Step, ...], rules: Rules) -> Iterator[HandAn
 
 
 def hand_of(step: Step, before: World, after: World) -> str | None:
-    """The hand of a step: the one that takes or gives, else a free one, else the right."""
+    """Return the hand of a step: the one that takes or gives, else a free one, else the right."""
     old, new = before.agents[step.agent], after.agents[step.agent]
     if asked := value(step, "hand"):
         return asked

@@ -62,11 +62,11 @@ class Ground:
         self.near = Memo(self._near)
 
     def box(self, node: int) -> Box | None:
-        """The box of a node at the start."""
+        """Return the box of a node at the start."""
         return self.home.node(node).box if node < len(self.home) else None
 
     def stands(self, node: int) -> tuple[int, ...]:
-        """The cells of the main region at which one stands for a node as it is at the start; none without a box.
+        """Return the cells of the main region at which one stands for a node as it is at the start; none without a box.
 
         For a thing with a front, the place nearest to it, else those next to it; for a room the one nearest to its
         middle; for a door one on either side. Cells in the node's room go before others; where none is within reach, it
@@ -79,7 +79,7 @@ class Ground:
             return found
 
     def every(self) -> list[tuple[int, ...]]:
-        """The standing places of all nodes that have any, each once."""
+        """Return the standing places of all nodes that have any, each once."""
         return sorted({self.stands(i) for i in indices(self.home.everything)} - {()})
 
     def _found_stands(self, node: int) -> list[int]:
@@ -102,19 +102,19 @@ class Ground:
         return list(map(int, cells[far <= max(BESIDE, far.min() + 1e-6)]))
 
     def _nearest(self, box: Box, room: int, doorway: tuple[int, ...]) -> int:
-        """The cell of a room nearest to a door, but not in its doorway, which is not free while it is closed."""
+        """Return the cell of a room nearest to a door, but not in its doorway, which is not free while it is closed."""
         cells = self._main(room)
         rest = cells[~np.isin(cells, doorway)]
         cells = rest if len(rest) else cells
         return int(cells[gaps(self.ways.points[cells], box).argmin()])
 
     def _main(self, room: int) -> np.ndarray:
-        """The cells of the main region in a room; all, where none is in it."""
+        """Return the cells of the main region in a room; all, where none is in it."""
         own = np.flatnonzero(self.ways.main & (np.asarray(self.rooms) == room))
         return own if len(own) else np.flatnonzero(self.ways.main)
 
     def shut(self, doors: int) -> tuple[int, ...]:
-        """The cells in the doorways of doors that are closed."""
+        """Return the cells in the doorways of doors that are closed."""
         try:
             return self._shut[doors]
         except KeyError:
@@ -123,7 +123,7 @@ class Ground:
             return found
 
     def reached(self, cell: int, doors: int) -> int:
-        """The nodes at whose standing places one arrives from a cell while these doors are closed."""
+        """Return the nodes at whose standing places one arrives from a cell while these doors are closed."""
         region = self._regions(doors)
         key = region[cell], doors
         if key not in self._reached:
@@ -165,7 +165,7 @@ class Ground:
 
 
 def _doorways(layout: Layout, home: Home, ways: Ways) -> list[tuple[int, tuple[int, ...]]]:
-    """The cells between the walls of the doorways by the index of their door."""
+    """Return the cells between the walls of the doorways by the index of their door."""
     found: dict[int, set[int]] = {}
     for hole in layout.shell.openings:
         if hole.door is not None:
@@ -196,7 +196,7 @@ _WAYS: dict[str, Ways] = {}
 
 
 def _shared(floor: Floor) -> Ways:
-    """The ways over a floor, the same for floors that are equal."""
+    """Return the ways over a floor, the same for floors that are equal."""
     key = digest_of(floor)
     if key not in _WAYS:
         if len(_WAYS) >= MOST_WAYS:
@@ -235,11 +235,11 @@ class Here:
         return found
 
     def standing(self, world: World) -> dict[int, int]:
-        """The known places of displaced nodes (see `positions`), for as long as nothing moves."""
+        """Return the known places of displaced nodes (see `positions`), for as long as nothing moves."""
         return self._known(world)[1]
 
     def among(self, world: World) -> dict[tuple[int, int], int]:
-        """The displaced nodes known to be at some places, for as long as nothing moves."""
+        """Return the displaced nodes known to be at some places, for as long as nothing moves."""
         return self._known(world)[2]
 
     def _known(self, world: World) -> tuple[Moved, dict[int, int], dict[tuple[int, int], int]]:
@@ -253,8 +253,8 @@ def _touched(moved: Moved) -> int:
 
 
 def ground_of(home: Home) -> Here | None:
-    """The ground of a home; None where its rooms have no boxes. A home derived from another shares its ground, unless
-    something that stood on the floor is gone.
+    """Return the ground of a home; None where its rooms have no boxes. A home derived from another shares its ground,
+    unless something that stood on the floor is gone.
     """
     known: dict[str, Here | None] = home.worked_out
     try:
@@ -270,7 +270,7 @@ def ground_of(home: Home) -> Here | None:
 
 
 def _found(home: Home) -> Here | None:
-    """The ground of a home; that of the home it was derived from is known."""
+    """Return the ground of a home; that of the home it was derived from is known."""
     base: Here | None = None if home.base is None else home.base[0].worked_out["ground"]
     if base is not None and not _gone(home, base.ground):
         return Here(base.ground, home)

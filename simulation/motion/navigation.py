@@ -97,8 +97,8 @@ class Ways:
         return csr_matrix((lengths, (sources, targets)), shape=(len(self.cells),) * 2)
 
     def field(self, ends: tuple[int, ...], without: tuple[int, ...] = ()) -> Field:
-        """The ways to the nearest of some cells; read from where they are stored or computed (some milliseconds) at the
-        first call, then kept.
+        """Return the ways to the nearest of some cells; read from where they are stored or computed (some milliseconds)
+        at the first call, then kept.
 
         Args:
             ends: numbers of cells.
@@ -115,7 +115,7 @@ class Ways:
         return found
 
     def detour(self, ends: tuple[int, ...], without: tuple[int, ...]) -> Field:
-        """The same, not kept: other characters seldom stand where they did."""
+        """Return the same, not kept: other characters seldom stand where they did."""
         return self._field(ends, without)
 
     def _field(self, ends: tuple[int, ...], without: tuple[int, ...]) -> Field:
@@ -149,14 +149,14 @@ class Ways:
         return [(x, z) for x, z in self.points.tolist()]
 
     def at(self, x: float, z: float) -> int:
-        """Number of the walkable cell that a point lies in, or -1."""
+        """Return the number of the walkable cell that a point lies in, or -1."""
         (x0, z0), cell, rows = self.floor.origin, self.floor.cell, self._rows
         i, j = math.floor((x - x0) / cell) + 1, math.floor((z - z0) / cell) + 1
         return rows[i][j] if 0 <= i < len(rows) and 0 <= j < len(rows[0]) else -1
 
     def ahead(self, point: Spot, step: Spot, without: tuple[int, ...] = ()) -> float:
-        """The share of a straight step from a point that leads over free cells of the main region, looked at every half
-        cell.
+        """Return the share of a straight step from a point that leads over free cells of the main region, looked at
+        every half cell.
         """
         (x0, z0), cell, rows, main = self.floor.origin, self.floor.cell, self._rows, self._main
         count = max(1, math.ceil(math.hypot(*step) / (cell / 2)))
@@ -175,8 +175,8 @@ class Ways:
         return found
 
     def around(self, x: float, z: float) -> list[int]:
-        """The cells to whose middles one can go straight from a point: its own, and of the three that it lies between
-        those that share a free side with it. Of a point on the line between two middles, only these two.
+        """Return the cells to whose middles one can go straight from a point: its own, and of the three that it lies
+        between those that share a free side with it. Of a point on the line between two middles, only these two.
         """
         (x0, z0), cell, rows = self.floor.origin, self.floor.cell, self._rows
         u, v = (x - x0) / cell + 0.5, (z - z0) / cell + 0.5
@@ -214,7 +214,7 @@ class Ways:
         return best, first
 
     def stepped(self, field: Field, x: float, z: float, stride: float) -> tuple[float, float, int]:
-        """The point `stride` metres along a field's way from a point, and the cell before or at it on the way.
+        """Return the point `stride` metres along a field's way from a point, and the cell before or at it on the way.
 
         Equal strides come to the end in as many steps as the way's length over the stride, rounded up.
 
@@ -240,7 +240,7 @@ class Ways:
         return there[0] + (here[0] - there[0]) * share, there[1] + (here[1] - there[1]) * share, cell
 
     def nearest(self, point: Spot, blocked: np.ndarray | None = None) -> int:
-        """Number of the walkable cell nearest to a point, or -1 when there is none."""
+        """Return the number of the walkable cell nearest to a point, or -1 when there is none."""
         distance = np.hypot(*(self.points - point).T)
         if blocked is not None:
             distance[blocked] = np.inf
@@ -255,7 +255,7 @@ class Ways:
         return taken
 
     def path(self, start: Spot, goal: Spot, others: Sequence[Spot] = ()) -> tuple[Spot, ...] | None:
-        """The shortest free path, as points a cell apart, from the cell of `start` to the one nearest to `goal`.
+        """Return the shortest free path, as points a cell apart, from the cell of `start` to the one nearest to `goal`.
 
         Args:
             start, goal: metres; each is taken to the nearest walkable cell.

@@ -19,7 +19,7 @@ from hearth.simulation.world.world import World
 
 
 def placed(world: World, chooser: Random | None = None) -> World:
-    """The world with all its characters at places of the main region; those that have one keep it.
+    """Return the world with all its characters at places of the main region; those that have one keep it.
 
     A character with a box stands at its place, or at the nearest place in its room. A character without one, because it
     was added, stands somewhere in its room, apart from the others. A home without geometry stays as it is.
@@ -75,7 +75,7 @@ def spot(world: World, node: int) -> Spot | None:
 
 
 def _standing(world: World, here: Here, node: int) -> int:
-    """The node that keeps its place, at which another is: itself, what it is on or in, or else its room."""
+    """Return the node that keeps its place, at which another is: itself, what it is on or in, or else its room."""
     moved = here.displaced(world)
     if not moved >> node & 1:
         return node
@@ -101,7 +101,7 @@ def _place(world: World, moved: int, node: int) -> tuple[int, bool]:
 
 
 def ends(world: World, here: Here, node: int) -> tuple[int, ...]:
-    """The cells at which one has arrived at a node; none where no place of it is known."""
+    """Return the cells at which one has arrived at a node; none where no place of it is known."""
     bit = 1 << node
     for agent in world.agents:
         if (agent.bit | agent.right | agent.left) & bit:
@@ -146,7 +146,7 @@ def beside(world: World, pose: Pose, node: int) -> Pose:
 
 
 def facing(world: World, pose: Pose, node: int) -> Pose:
-    """The same place, looking at a node."""
+    """Return the same place, looking at a node."""
     point = spot(world, node)
     return pose if point is None else pose.towards(point)
 
@@ -174,7 +174,7 @@ def near(world: World, number: int, pose: Pose) -> int:
 
 
 def around(world: World, number: int, here: Here, pose: Pose) -> tuple[int, int]:
-    """The same, with the index of the room that the pose is in, or -1."""
+    """Return the same, with the index of the room that the pose is in, or -1."""
     home, ground = world.home, here.ground
     found = home.properties["BODY_PART"]
     cell = ground.ways.at(pose.x, pose.z)
@@ -192,7 +192,7 @@ def around(world: World, number: int, here: Here, pose: Pose) -> tuple[int, int]
 
 
 def walked_to(world: World, number: int, doors: int) -> int:
-    """The nodes to which a character can walk by metres while some doors are closed."""
+    """Return the nodes to which a character can walk by metres while some doors are closed."""
     here = ground_of(world.home)
     pose = world.agents[number].pose
     if here is None or pose is None:

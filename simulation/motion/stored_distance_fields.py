@@ -33,7 +33,7 @@ def folder() -> Path:
 
 
 def file_of(ways: Ways, place: Path) -> Path:
-    """The file of a floor in a folder."""
+    """Return the file of a floor in a folder."""
     return inside(place, f"{ways.digest}.arrow")
 
 
@@ -96,7 +96,7 @@ class StoredWays:
         self._row: Mapping[Ends, int] = {tuple(each): row for row, each in enumerate(ends)}
 
     def field(self, ends: Ends) -> Field | None:
-        """The field to some ends; None where it is not stored, or is not true."""
+        """Return the field to some ends; None where it is not stored, or is not true."""
         row = self._row.get(ends)
         if row is None or self._columns is None:
             return None
@@ -110,7 +110,7 @@ class StoredWays:
 
 
 def _read(file: Path, cells: int) -> Any:
-    """The columns of a file, mapped into memory; None where it has other ones."""
+    """Return the columns of a file, mapped into memory; None where it has other ones."""
     import pyarrow as pa
 
     try:

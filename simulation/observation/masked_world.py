@@ -7,7 +7,7 @@ from hearth.simulation.world.world import World
 
 
 def as_seen(world: World, mask: int) -> World:
-    """The world as an agent sees it, for questions whose answers must not depend on the rest.
+    """Return the world as an agent sees it, for questions whose answers must not depend on the rest.
 
     Doors out of sight are neither open nor closed, so they stop nobody; characters out of sight are nowhere. Edges
     between things stay: a caller that asks about nodes of `mask` alone meets only those among them.

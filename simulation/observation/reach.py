@@ -39,7 +39,7 @@ def close_to(world: World, agent: Agent) -> int:
 
 
 def _around(world: World, places: int) -> int:
-    """The things CLOSE to, or ON, one of these things."""
+    """Return the things CLOSE to, or ON, one of these things."""
     home, moved = world.home, world.moved
     if moved is NOTHING:
         beside = 0
@@ -114,7 +114,7 @@ def out_of_sight(world: World) -> int:
 
 
 def in_room(world: World, room: int) -> int:
-    """The room, everything INSIDE it, directly or not, what is ON that, and the doors BETWEEN it and others."""
+    """Return the room, everything INSIDE it, directly or not, what is ON that, and the doors BETWEEN it and others."""
     found = frontier = 1 << room
     while frontier:
         frontier = (contained(world, frontier) | upon(world, frontier)) & ~found

@@ -15,7 +15,7 @@ from hearth.schemas.literals import Literal
 def allowed(
     needs: Requirement, properties: Mapping[str, int], classes: Mapping[str, int], rooms: int, every: int
 ) -> int:
-    """The nodes that meet a requirement.
+    """Return the nodes that meet a requirement.
 
     Args:
         needs: what is asked of the argument.
@@ -40,7 +40,7 @@ def allowed(
 
 
 def of_kind(formula: Formula, properties: Mapping[str, int], classes: Mapping[str, int], every: int) -> int:
-    """The nodes for which a formula of one variable holds that is about classes and properties alone.
+    """Return the nodes for which a formula of one variable holds that is about classes and properties alone.
 
     Args:
         formula: such as the definition of `bedding(x)`.

@@ -75,7 +75,7 @@ made: Callable[[tuple[Any, ...]], Agent] = partial(tuple.__new__, Agent)
 
 
 def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agent, ...]:
-    """The characters with one replaced, and the others CLOSE to it where it is CLOSE to them, and only there."""
+    """Return the characters with one replaced, and the others CLOSE to it where it is CLOSE to them, and only there."""
     return tuple(
         agent if i == number else _beside(other, agent.bit if agent.close & other.bit else 0, agent.bit)
         for i, other in enumerate(agents)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 
 def indices(mask: int) -> Iterator[int]:
-    """The members of a set, ascending."""
+    """Yield the members of a set, ascending."""
     while mask:
         lowest = mask & -mask
         yield lowest.bit_length() - 1
@@ -12,17 +12,17 @@ def indices(mask: int) -> Iterator[int]:
 
 
 def lowest(mask: int) -> int:
-    """The smallest member, or -1 of the empty set."""
+    """Return the smallest member, or -1 of the empty set."""
     return (mask & -mask).bit_length() - 1
 
 
 def cleared(mask: int, members: int) -> int:
-    """The set without some members."""
+    """Return the set without some members."""
     return mask & ~members
 
 
 def mask_of(members: Iterable[int]) -> int:
-    """The set with these members."""
+    """Return the set with these members."""
     mask = 0
     for index in members:
         mask |= 1 << index

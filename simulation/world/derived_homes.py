@@ -42,7 +42,7 @@ class Movable(NamedTuple):
         return brief(self)
 
     def edges(self, ids: Sequence[int]) -> Iterator[Edge]:
-        """The same as edges, CLOSE one way round."""
+        """Yield the same as edges, CLOSE one way round."""
         me = self.node.id
         if self.room >= 0:
             yield Edge(me, "INSIDE", ids[self.room])
@@ -62,7 +62,7 @@ def extended(
     states: Mapping[int, Iterable[str]] = _NO_STATES,
     movable: Sequence[Movable] = (),
 ) -> Home:
-    """A home with more nodes, more and fewer edges, and other states; the given home stays as it is.
+    """Return a home with more nodes, more and fewer edges, and other states; the given home stays as it is.
 
     Nothing is checked against the knowledge.
 
@@ -100,7 +100,7 @@ def extended(
 
 
 def changed(home: Home, change: Change) -> Home:
-    """A home after a change by which no nodes go, or none that it has.
+    """Return a home after a change by which no nodes go, or none that it has.
 
     Raises:
         HearthError: BAD_GRAPH, when an id is used twice or an edge names a node that there is not.
@@ -111,13 +111,13 @@ def changed(home: Home, change: Change) -> Home:
 
 
 def added_nodes(base: Home, home: Home) -> tuple[Node, ...]:
-    """The nodes that `home` has and `base` has not, in id order."""
+    """Return the nodes that `home` has and `base` has not, in id order."""
     known = base.index
     return tuple(home.node(i) for i in indices(home.everything) if home.ids[i] not in known)
 
 
 def without(home: Home, i: int) -> Home:
-    """A home without the node of that index; the other nodes keep theirs."""
+    """Return a home without the node of that index; the other nodes keep theirs."""
     new = home.copy()
     bit = 1 << i
     touched = bit
@@ -150,7 +150,7 @@ def _rebuilt(
     removed_edges: Sequence[Edge],
     states: Mapping[int, Iterable[str]],
 ) -> Home:
-    """The slow way, for ids that belong between the home's: everything anew, in id order."""
+    """Return the slow way, for ids that belong between the home's: everything anew, in id order."""
     every = sorted([*map(home.node, indices(home.everything)), *nodes], key=attrgetter("id"))
     for one, other in pairwise(every):
         if one.id == other.id:
@@ -202,7 +202,7 @@ def _append(home: Home, nodes: Sequence[Node]) -> None:
 
 
 def _repeated(home: Home, first: int) -> int:
-    """The first id from index `first` on that a node before it, which is not absent, has too."""
+    """Return the first id from index `first` on that a node before it, which is not absent, has too."""
     seen = {node_id for i, node_id in enumerate(home.ids[:first]) if not home.absent >> i & 1}
     for node_id in home.ids[first:]:
         if node_id in seen:

@@ -86,7 +86,7 @@ def edit(
 
 
 def apply(world: World, change: Change) -> World:
-    """The world after a change: what was there is taken away, what came is added.
+    """Return the world after a change: what was there is taken away, what came is added.
 
     Raises:
         HearthError: BAD_GRAPH, when it names a node that there is not.
@@ -101,7 +101,7 @@ def apply(world: World, change: Change) -> World:
 
 
 def free_id(home: Home, first: int = FIRST_ADDED_ID) -> int:
-    """The next id for a new node: `first` or more, and above all the home has, which is fast."""
+    """Return the next id for a new node: `first` or more, and above all the home has, which is fast."""
     return max(first, home.ids[-1] + 1) if home.ids else first
 
 
@@ -116,7 +116,7 @@ def _with_nodes(world: World, nodes: Sequence[Node]) -> World:
 
 
 def _moved_over(world: World, home: Home) -> World:
-    """The world in a home with other indices: edges and states anew, memories by id."""
+    """Return the world in a home with other indices: edges and states anew, memories by id."""
     start = World.start(home)
     before = World.start(world.home)
     there = apply(start, world.changes(before))

@@ -14,12 +14,12 @@ def is_wide(world: WorldState) -> bool:
 
 
 def rows_with_further(world: WorldState) -> tuple[int, ...]:
-    """The rows of all states: those that a world does not simulate are as the home has them."""
+    """Return the rows of all states: those that a world does not simulate are as the home has them."""
     return world.states if is_wide(world) else world.states + world.home.further
 
 
 def rows_at_start(world: WorldState) -> tuple[int, ...]:
-    """The rows of the states that a world has, as its home has them."""
+    """Return the rows of the states that a world has, as its home has them."""
     return world.home.states + world.home.further if is_wide(world) else world.home.states
 
 
@@ -28,5 +28,5 @@ WIDTH = len(EVERY_STATE)
 
 
 def counts_of(world: WorldState) -> tuple[int, ...]:
-    """The rows in which processes count (see `processes`); none of a world of another set."""
+    """Return the rows in which processes count (see `processes`); none of a world of another set."""
     return world.states[WIDTH] if is_wide(world) else ()  # type: ignore[return-value]

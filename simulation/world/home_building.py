@@ -99,7 +99,7 @@ def read_nodes(given: Iterable[Mapping[str, Any]] | Iterable[Node]) -> Nodes:
 
 
 def bad_graph(message: str) -> HearthError:
-    """The error of a graph that no world can be made of."""
+    """Return the error of a graph that no world can be made of."""
     return HearthError.of(Code.BAD_GRAPH, message, suggestion=REMEDY)
 
 
@@ -113,7 +113,7 @@ def _check_names(ids: Sequence[int], classes: Sequence[str]) -> None:
 
 
 def _getter(field: str, nodes: Sequence[Any]) -> Any:
-    """A function from a node to a field of it that may be missing."""
+    """Return a function from a node to a field of it that may be missing."""
     if nodes and isinstance(nodes[0], Node):
         return attrgetter(field)
     return lambda node: node.get(field) or ()
@@ -203,7 +203,7 @@ _FROM_BYTES: Callable[[bytes], int] = partial(int.from_bytes, byteorder="little"
 
 
 def _by_matrix(columns: Columns | EdgeColumns, nodes: Nodes) -> tuple[list[Rows], list[Raw]]:
-    """The ten tables: their rows that are not empty, scattered into one array of booleans and packed at once."""
+    """Return the ten tables: their rows that are not empty, scattered into one array of booleans and packed at once."""
     import numpy as np
 
     n = len(nodes.ids)
@@ -230,7 +230,7 @@ def _by_matrix(columns: Columns | EdgeColumns, nodes: Nodes) -> tuple[list[Rows]
 
 
 def _positions(ids: Sequence[Any], nodes: Nodes) -> Any:
-    """Indices of nodes by their ids as an array; -1 for those that there are not."""
+    """Return indices of nodes by their ids as an array; -1 for those that there are not."""
     import numpy as np
 
     count = len(ids)
@@ -246,7 +246,7 @@ def _positions(ids: Sequence[Any], nodes: Nodes) -> Any:
 
 
 def _one_by_one(columns: Columns, nodes: Nodes) -> tuple[list[Rows], list[Raw]]:
-    """The same, for homes of which a matrix would be too large."""
+    """Return the same, for homes of which a matrix would be too large."""
     n = len(nodes.ids)
     index = nodes.index
     tables = [[0] * n for _ in range(10)]

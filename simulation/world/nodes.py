@@ -13,7 +13,7 @@ def states_of(index: int, states: Sequence[int]) -> tuple[str, ...]:
 
 
 def with_states(node: Node, index: int, states: Sequence[int]) -> Node:
-    """The node as it is now; states that are not simulated stay as they were."""
+    """Return the node as it is now; states that are not simulated stay as they were."""
     now = states_of(index, states)
     known = STATE_ID if len(states) == len(STATES) else EVERY_STATE_ID
     kept = tuple(name for name in node.states if name in now or name not in known)

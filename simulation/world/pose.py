@@ -24,7 +24,7 @@ class Pose(NamedTuple):
         return (self.x, self.z)
 
     def towards(self, point: Spot) -> Pose:
-        """The same place, looking at a point."""
+        """Return the same place, looking at a point."""
         dx, dz = point[0] - self.x, point[1] - self.z
         if abs(dx) + abs(dz) < 1e-9:
             return self

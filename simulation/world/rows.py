@@ -17,37 +17,37 @@ Numbered = tuple[int, str, int]
 
 
 def on(world: WorldState, i: int) -> int:
-    """The things that i is ON."""
+    """Return the things that i is ON."""
     return _row(world.home.on[i], world.moved.on, world.moved.extra, i, ON)
 
 
 def bears(world: WorldState, i: int) -> int:
-    """The things ON i."""
+    """Return the things ON i."""
     return _row(world.home.bears[i], world.moved.on, world.moved.extra, i, BEARS)
 
 
 def inside(world: WorldState, i: int) -> int:
-    """The things and rooms that i is INSIDE."""
+    """Return the things and rooms that i is INSIDE."""
     return _row(world.home.inside[i], world.moved.inside, world.moved.extra, i, INSIDE)
 
 
 def contents(world: WorldState, i: int) -> int:
-    """The things INSIDE i."""
+    """Return the things INSIDE i."""
     return _row(world.home.contents[i], world.moved.inside, world.moved.extra, i, CONTENTS)
 
 
 def close(world: WorldState, i: int) -> int:
-    """The things that i is CLOSE to."""
+    """Return the things that i is CLOSE to."""
     return _row(world.home.close[i], world.moved.close, world.moved.extra, i, CLOSE)
 
 
 def facing(world: WorldState, i: int) -> int:
-    """The things that i is FACING."""
+    """Return the things that i is FACING."""
     return _row(world.home.facing[i], world.moved.facing, world.moved.extra, i, FACING)
 
 
 def faced(world: WorldState, i: int) -> int:
-    """The things that are FACING i."""
+    """Return the things that are FACING i."""
     return _row(world.home.faced[i], world.moved.facing, world.moved.extra, i, FACED)
 
 
@@ -154,7 +154,7 @@ def closed_container(world: WorldState, i: int) -> int:
 
 
 def character(world: WorldState, i: int) -> Agent:
-    """The character whose node has that index."""
+    """Return the character whose node has that index."""
     for agent in world.agents:
         if agent.index == i:
             return agent

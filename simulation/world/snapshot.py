@@ -22,7 +22,10 @@ _NUMBERS = {name: kind for kind, name in _KINDS.items()}
 
 
 def export(world: World) -> dict[str, Any]:
-    """The world as a JSON-able mapping: `home`, `graph`, `memories`, and `poses` where characters have places."""
+    """Return the world as a JSON-able mapping.
+
+    `home`, `graph`, `memories`, and `poses` where characters have places.
+    """
     graph = world.graph()
     moved = world.moved.on | world.moved.inside
     nodes = (replace(n, box=None) if moved >> world.home.index[n.id] & 1 else n for n in graph.nodes)
@@ -47,7 +50,7 @@ def private(world: World) -> dict[str, Any]:
 
 
 def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
-    """The world that was exported; a plain scene graph under `graph` will do.
+    """Return the world that was exported; a plain scene graph under `graph` will do.
 
     Raises:
         HearthError: BAD_GRAPH: it is not an exported world, or a memory names a node that the graph lacks.
@@ -63,7 +66,7 @@ def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
 
 
 def with_private(world: World, data: Mapping[str, Any]) -> World:
-    """The world with the memories and poses that `private` gave.
+    """Return the world with the memories and poses that `private` gave.
 
     Raises:
         KeyError, TypeError, AttributeError, ValueError: it is nothing of the kind, or names a node that there is not.

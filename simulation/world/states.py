@@ -6,7 +6,7 @@ CLOSED, OPEN, OFF, ON, DIRTY, CLEAN, PLUGGED_OUT, PLUGGED_IN, SITTING, LYING = r
 
 
 def with_state(states: tuple[int, ...], state: int, bit: int) -> tuple[int, ...]:
-    """The states after a node enters one; it leaves the opposite."""
+    """Return the states after a node enters one; it leaves the opposite."""
     new = list(states)
     new[state] |= bit
     new[state ^ 1] &= ~bit

@@ -41,11 +41,11 @@ class World(WorldState):
     @classmethod
     @explained
     def start(cls, home: Home) -> World:
-        """The home as it is given."""
+        """Return the home as it is given."""
         return cls(home, home.states, tuple(home.agent_rows), NOTHING)
 
     def agent(self, number: int) -> Agent:
-        """The character of a number.
+        """Return the character of a number.
 
         Raises:
             HearthError: UNKNOWN_AGENT, if the world has none of that number.
@@ -57,7 +57,7 @@ class World(WorldState):
         return self.agents[number]
 
     def with_agent(self, number: int, agent: Agent) -> World:
-        """The same world with one agent's edges replaced."""  # by every step, so not `explained`
+        """Return the same world with one agent's edges replaced."""  # by every step, so not `explained`
         agents = (agent,) if len(self.agents) == 1 else replaced(self.agents, number, agent)
         return World(self.home, self.states, agents, self.moved)
 
@@ -76,7 +76,7 @@ class World(WorldState):
 
     @explained
     def graph(self, among: int = -1) -> EnvironmentGraph:
-        """The graph, rebuilt, or the part of it among these nodes: nodes in id order, edges sorted."""
+        """Return the graph, rebuilt, or the part of it among these nodes: nodes in id order, edges sorted."""
         home = self.home
         nodes = tuple(with_states(home.node(i), i, self.states) for i in indices(among & home.everything))
         return EnvironmentGraph(nodes, tuple(sorted(self.edges(among))))
@@ -120,6 +120,6 @@ class World(WorldState):
         return f"World({self.home!r}, {len(self.agents)} agents)"
 
     def holding(self) -> Mapping[int, tuple[int, ...]]:
-        """The objects that each agent holds, by agent number: node ids, right hand first."""
+        """Return the objects that each agent holds, by agent number: node ids, right hand first."""
         ids = self.home.ids
         return {number: tuple(ids[i] for i in rows.held_indices(agent)) for number, agent in enumerate(self.agents)}

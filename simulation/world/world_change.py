@@ -17,7 +17,7 @@ EdgeTurn = tuple[int, str, int, bool]
 
 
 def encode(before: WorldState, after: WorldState) -> Change:
-    """The change from `before` to `after`.
+    """Return the change from `before` to `after`.
 
     Nodes that only one of them has are left out, but their edges and states are not. Cost follows what differs between
     worlds of one home and of homes derived from one another (see `edit`); other homes are compared whole.
@@ -42,7 +42,7 @@ def encode(before: WorldState, after: WorldState) -> Change:
 
 
 def encode_whole(before: WorldState, after: WorldState, edges: Set[Edge] | None = None) -> Change:
-    """The change from `before` to `after`, nodes included; both at their start, and their homes may be any.
+    """Return the change from `before` to `after`, nodes included; both at their start, and their homes may be any.
 
     Args:
         before, after: starts.
@@ -108,7 +108,7 @@ def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator
 
 
 def _agent_changes(old: Agent, new: Agent) -> Iterator[EdgeTurn]:
-    """The changes of a character's own edges, both ways."""
+    """Yield the changes of a character's own edges, both ways."""
     me = new.index
     for fields, outwards in ((AGENT_OUT, True), (AGENT_IN, False)):
         for relation, field in fields.items():
@@ -164,7 +164,7 @@ def _door_changes(before: Home, after: Home, i: int) -> Iterator[EdgeTurn]:
 
 
 def _came_and_went(past: int, now: int, i: int, relation: str, outwards: bool) -> Iterator[EdgeTurn]:
-    """The edges by which two rows of node i differ, each with whether it came."""
+    """Yield the edges by which two rows of node i differ, each with whether it came."""
     for came, mask in ((True, now & ~past), (False, past & ~now)):
         for j in indices(mask):
             yield (i, relation, j, came) if outwards else (j, relation, i, came)
