@@ -23,20 +23,30 @@ SPARE = 2**30
 """Bytes that a command may take besides those of its database."""
 
 
-def bound_memory(most: int) -> None:
-    """Bound the bytes that this process may take beyond what it has, where the system can hold it to that."""
+@contextmanager
+def bounded_memory(most: int) -> Iterator[None]:
+    """Bound the bytes that this process may take beyond what it has, where the system can hold it to that.
+
+    The former bound holds again afterwards: a command may be a part of a longer process.
+    """
     try:
         import resource
 
         with Path("/proc/self/status").open(encoding="ascii") as lines:
             taken = next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmData:"))
     except (ImportError, OSError, StopIteration):  # no Linux
+        yield
         return
-    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
     wanted = taken + most + SPARE
     if hard == resource.RLIM_INFINITY or wanted < hard:
         with suppress(OSError, ValueError):
             resource.setrlimit(resource.RLIMIT_DATA, (wanted, hard))
+    try:
+        yield
+    finally:
+        with suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))
 
 
 @contextmanager

@@ -47,7 +47,7 @@ def query(
       hearth query data_out "DESCRIBE programs"
     """
     from hearth.challenges.challenge_tables import ChallengeData
-    from hearth.commands.bounded_process import bound_memory, ended_within
+    from hearth.commands.bounded_process import bounded_memory, ended_within
     from hearth.datasets.dataset import Dataset
     from hearth.storage.databases import memory_limit
     from hearth.storage.query_time_limit import checked_seconds
@@ -63,8 +63,7 @@ def query(
     challenge = ChallengeData.found(dataset)
     opened = Dataset.open(dataset, remembers=False) if challenge is None else challenge
     opened.within = within
-    bound_memory(memory_limit())
-    with ended_within(within):
+    with bounded_memory(memory_limit()), ended_within(within):
         if _write(opened, text, (out, parquet), "," if csv else "\t" if tsv else ""):
             return
         if as_json:

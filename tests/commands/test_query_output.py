@@ -158,3 +158,10 @@ def test_a_formula_behind_unseen_characters_is_text_in_heads_too(dataset, name):
 def test_values_without_a_form_are_refused_without_a_trace(dataset):
     result = run(dataset, "FROM test_all_types()")
     assert result.exit_code == 1 and "BAD_ARGUMENT" in result.output and "Traceback" not in result.output
+
+
+def test_the_bound_on_memory_ends_with_the_command(dataset):
+    resource = pytest.importorskip("resource", reason="only systems with `resource` bound a process")
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    assert run(dataset, "SELECT 1").exit_code == 0
+    assert resource.getrlimit(resource.RLIMIT_DATA) == before
