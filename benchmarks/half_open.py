@@ -29,7 +29,7 @@ HALVES = (
     b"POST /begin HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/x-www-form-urlencoded\r\n"
     b"Content-Length: 999\r\n\r\na=",
 )
-"""What a stranger sends: nothing, a part of the headers, a part of a body."""
+"""Requests of strangers: none, a part of the headers, a part of a body."""
 
 WITHIN_MS = 100.0
 """Milliseconds within which 95 % of the decisions are to be answered."""

@@ -1,4 +1,4 @@
-"""What storing distance fields beside homes saves: `python benchmarks/stored_distance_fields.py [HOME...]`.
+"""Savings by storing the distance fields of homes: `python benchmarks/stored_distance_fields.py [HOME...]`.
 
 Fields are made when a walk first asks for them, or read from where `home ways` stored them. This prints, for each home,
 the processor time of all its fields when they are made, and when they are read and compared with the floor, and what
