@@ -206,7 +206,7 @@ class Dataset:
                     raise too_slow(limit.seconds) from error
                 if isinstance(error, HearthError):
                     raise
-                if type(error).__name__ == "InterruptException" or "Query interrupted" in str(error):
+                if type(error).__name__ == "InterruptException" or str(error).strip() == "Query interrupted":
                     raise KeyboardInterrupt from error
                 raise refused_question(error, self.folder, self._names()) from error
 

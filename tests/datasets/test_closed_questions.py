@@ -211,3 +211,9 @@ def test_a_small_file_of_many_rows_is_answered(ground):
     dataset = Dataset.open(ground / "asked")
     assert dataset.rows("SELECT count(*), count(DISTINCT name) FROM vocabulary")[1] == [(5_000_000, 1)]
     assert len(dataset.rows("FROM vocabulary ORDER BY name", 100)[1]) == 100
+
+
+def test_the_words_of_an_interruption_in_data_are_a_fault_of_the_question(ground):
+    process = asked(ground, "SELECT error('Query interrupted')")
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 1 and b"Query interrupted" in said and b"Stopped" not in said
