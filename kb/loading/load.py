@@ -21,7 +21,7 @@ from hearth.kb.loading.process_rows import load_processes
 from hearth.kb.loading.small_tables import load_limits, load_rooms, load_tables
 from hearth.kb.loading.source_files import Faults, check_extent
 from hearth.kb.spelling import key_of
-from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
 OURS = Path(__file__).parents[1] / "data"
@@ -67,8 +67,13 @@ def load(directory: Path | None = None, overlay: Path | None = None) -> Knowledg
         _check_files(layer, number == 0, faults)
     knowledge = None if faults else _read(layers, faults)
     if faults or knowledge is None:
-        raise HearthError(sorted(faults, key=lambda fault: (fault.file, fault.line)))
+        raise HearthError(_in_reading_order(faults, layers[-1]))
     return knowledge
+
+
+def _in_reading_order(faults: Faults, given: Path) -> list[Diagnostic]:
+    """Sort faults by file and line, those of the folder that was given first: the others follow from them."""
+    return sorted(faults, key=lambda fault: (not Path(fault.file).is_relative_to(given), fault.file, fault.line))
 
 
 @lru_cache(maxsize=1)

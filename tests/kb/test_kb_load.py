@@ -312,3 +312,17 @@ def test_entries_of_odd_shapes_are_faults_with_their_file_and_a_remedy(tmp_path,
     first, *_ = faults(tmp_path)
     assert first.message == message
     assert first.file.endswith(file) and first.line > 0 and first.suggestion
+
+
+@pytest.mark.parametrize(("whole", "given"), [("a", "b"), ("b", "a")])
+def test_the_fault_of_an_overlay_comes_before_those_that_follow_from_it_wherever_the_folders_are(
+    tmp_path, whole, given
+):
+    shutil.copytree(Path(hearth.kb.__file__).parent / "data", tmp_path / whole)
+    (tmp_path / given).mkdir()
+    (tmp_path / given / "states.yaml").write_text("power: [ON, OFF]\n")
+    with pytest.raises(HearthError) as caught:
+        load(tmp_path / whole, overlay=tmp_path / given)
+    first, *others = caught.value.diagnostics
+    assert first.message == "`power` is `['ON', 'OFF']`"
+    assert {Path(each.file).name for each in others} == {"processes.yaml"}
