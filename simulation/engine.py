@@ -9,7 +9,7 @@ from hearth.schemas.graph_change import Change
 from hearth.schemas.program import Program, Step
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATES
-from hearth.simulation.actions.consequences import actions
+from hearth.simulation.actions.consequences import actions_of
 from hearth.simulation.actions.metric_checks import followed
 from hearth.simulation.actions.modifier_effects import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
@@ -121,9 +121,9 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
     placed_there = agents[number].pose is not None
     home, count = world.home, len(objects)
     if rules.consequences:
-        if len(world.states) == len(STATES):
+        if len(world.states) == _NARROW:
             world = widened(world)
-        action = actions(home.knowledge, placed_there).get(name)
+        action = actions_of(home, placed_there).get(name)
     else:
         action = (EVERY if placed_there else ACTIONS).get(name)
     if action is None:
@@ -146,6 +146,9 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
         rest = (result.objects, result.names, result.expected, result.actual)
         return Failure(result.code, result.tick, number, name, *rest)
     return result
+
+
+_NARROW = len(STATES)
 
 
 def _in_place(before: World, done: World, instruction: Step, o: int, s: int) -> World | Failure:

@@ -1,14 +1,13 @@
 """Processes of action set 3: heating, cooking, washing, cooling, one row of `processes.yaml` each.
 
-Every process counts, for each thing, the ticks for which its literals have held without a break. The counts are kept
-bit by bit: a row of a world has the lowest bit of the counts of all things, the next the second, and so on, so that a
-tick of one process is a few operations on sets, however many things take part. Where nothing runs, and nothing
-changed that could start something, a tick costs a comparison.
+Every process counts, for each thing, the ticks for which its literals have held without a break (see `process_ticks`).
+What takes part in which process is asked only when something has changed since the last tick: in a home where
+appliances run and nobody touches them a tick adds 1 to a number until one of them is done.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -19,23 +18,34 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID, STATES
 from hearth.simulation.actions.literal_effects import made
 from hearth.simulation.actions.readings import kind_of
-from hearth.simulation.observation import reach
+from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.further import WIDTH
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.moved_edges import BEARS, CONTENTS, NOTHING
+from hearth.simulation.world.process_ticks import GoingOn, Ticks, ticks_left
 from hearth.simulation.world.world import World
 
 
 class _Kind(NamedTuple):
-    """A thing or a device of a process: a kind of things that never changes, and the states that it has to be in."""
+    """A thing or a device of a process: a kind of things that never changes, and the states that it has to be in.
+
+    Attributes:
+        nodes: the nodes of the kind in one home; -1 before the home is known.
+    """
 
     formula: Formula
     has: tuple[int, ...]
     lacks: tuple[int, ...]
+    nodes: int = -1
 
-    def mask(self, home: Home, states: tuple[int, ...]) -> int:
+    def within(self, home: Home) -> _Kind:
+        """Return the same in one home."""
+        return self._replace(nodes=kind_of(home, self.formula))
+
+    def mask(self, states: tuple[int, ...]) -> int:
         """Return the nodes that are so."""
-        found = kind_of(home, self.formula)
+        found = self.nodes
         for number in self.has:
             found &= states[number]
         for number in self.lacks:
@@ -47,10 +57,55 @@ class _Kind(NamedTuple):
         return self._replace(lacks=tuple(each for each in self.lacks if each != number))
 
 
-_Beside = Callable[[World, int], int]
+class _Devices(NamedTuple):
+    """The devices of some processes, and the relation in which things stand to them.
 
-_Part = tuple[_Kind, _Kind | None, _Beside]
-"""A thing, its device, and the relation between them."""
+    Attributes:
+        number: its place among those of a home; -1 before the home is known.
+        kind: the kind of the rows that have the things: `CONTENTS` or `BEARS`.
+    """
+
+    device: _Kind
+    kind: int
+    number: int = -1
+
+    def beside(self, world: World) -> tuple[int, int]:
+        """Return the devices that are at work, and what is in, or on, them."""
+        found, devices = 0, self.device.mask(world.states)
+        row = rows.contents if self.kind == CONTENTS else rows.bears
+        for i in indices(devices):
+            found |= row(world, i)
+        return devices, found
+
+
+_Known = dict[int, tuple[int, int]]
+"""Number of `_Devices` -> `beside`, as far as it has been asked of a world."""
+
+
+class _Part(NamedTuple):
+    """The things that take part in a process, and their devices, if there are any."""
+
+    thing: _Kind
+    devices: _Devices | None
+
+    def within(self, home: Home, known: dict[tuple[_Kind, int], _Devices]) -> _Part:
+        """Return the same in one home, whose devices so far are known; no device changes a character."""
+        thing = self.thing.within(home)
+        if self.devices is None:
+            return _Part(thing, None)
+        device, kind, _ = self.devices
+        devices = known.setdefault((device, kind), _Devices(device.within(home), kind, len(known)))
+        return _Part(thing._replace(nodes=thing.nodes & ~home.characters), devices)
+
+    def now(self, world: World, known: _Known) -> int:
+        """Return the things that take part."""
+        if self.devices is None:
+            return self.thing.mask(world.states)
+        number = self.devices.number
+        if number not in known:
+            known[number] = self.devices.beside(world)
+        found = known[number][1]
+        return found and found & self.thing.mask(world.states)
 
 
 class Running(NamedTuple):
@@ -58,32 +113,26 @@ class Running(NamedTuple):
 
     Attributes:
         process: the row.
-        thing, device: its kinds of things and devices; the device is None where there is none.
-        beside: the things in, or on, some devices.
+        part: what takes part in it.
         first, bits: its rows among the counts.
-        kept: what keeps up the state that it ends: thing, device and relation of other processes.
+        kept: what keeps up the state that it ends: the parts of other processes.
+        state, triggers: a state that nodes have to be in, or nothing takes part: the devices', else the things' own.
     """
 
     process: Process
-    thing: _Kind
-    device: _Kind | None
-    beside: _Beside
+    part: _Part
     first: int
     bits: int
     kept: tuple[_Part, ...] = ()
+    state: int = 0
+    triggers: int = -1
 
-    def now(self, world: World) -> int:
+    def now(self, world: World, known: _Known) -> int:
         """Return the things that are in it."""
-        found = _taking_part(world, self.thing, self.device, self.beside)
+        found = self.part.now(world, known)
         for each in self.kept if found else ():
-            found &= ~_taking_part(world, *each)
+            found &= ~each.now(world, known)
         return found
-
-
-def _taking_part(world: World, thing: _Kind, device: _Kind | None, beside: _Beside) -> int:
-    devices = -1 if device is None else device.mask(world.home, world.states)
-    things = thing.mask(world.home, world.states) if devices else 0
-    return things & beside(world, devices) if things and device is not None else things
 
 
 @lru_cache(maxsize=8)
@@ -102,10 +151,8 @@ def _running(process: Process, first: int, bits: int) -> Running:
     parts = process.condition.parts if isinstance(process.condition, And) else (process.condition,)
     literals = [part for part in parts if isinstance(part, Literal)]
     joined = next((each.name for each in literals if each.name in ("INSIDE", "ON")), "")
-    device = _kind(literals, "d") if joined else None
-    return Running(
-        process, _kind(literals, "x"), device, reach.upon if joined == "ON" else reach.contained, first, bits
-    )
+    devices = _Devices(_kind(literals, "d"), BEARS if joined == "ON" else CONTENTS) if joined else None
+    return Running(process, _Part(_kind(literals, "x"), devices), first, bits)
 
 
 def _kind(literals: Iterable[Literal[Term]], variable: str) -> _Kind:
@@ -126,90 +173,198 @@ def _keeping(ending: Running, every: Iterable[Running]) -> Iterable[_Part]:
         for other in every:
             if any(each.literal == literal.atom for each in other.process.effects):
                 number = EVERY_STATE_ID[literal.terms[1].name]
-                yield other.thing.without(number), other.device, other.beside
+                yield other.part._replace(thing=other.part.thing.without(number))
+
+
+class _Plan(NamedTuple):
+    """The processes of a home.
+
+    Attributes:
+        processes: those in which something of the home may take part.
+        read: the states that they ask for, each with the nodes of which they ask.
+        devices: their devices by number.
+        by_row: the processes by their first row of counts.
+    """
+
+    processes: tuple[Running, ...]
+    read: tuple[tuple[int, int], ...]
+    devices: dict[int, _Devices]
+    by_row: dict[int, Running]
+
+
+def _in_home(home: Home) -> _Plan:
+    """Return the processes of a home, kept with it."""
+    known = home.kinds.get(_PROCESSES)
+    if known is None:
+        processes = tuple(_possible(home))
+        known = home.kinds[_PROCESSES] = (None, _plan(processes))
+    found: _Plan = known[1]
+    return found
+
+
+_PROCESSES = -1
+"""The place of a home's processes among its `kinds`; no identity is below 0."""
+
+
+def _possible(home: Home) -> Iterator[Running]:
+    known: dict[tuple[_Kind, int], _Devices] = {}
+    for each in running(home.knowledge):
+        part = each.part.within(home, known)
+        if part.thing.nodes and (part.devices is None or part.devices.device.nodes):
+            kept = tuple(kept.within(home, known) for kept in each.kept)
+            trigger = part.devices.device if part.devices is not None and part.devices.device.has else part.thing
+            yield each._replace(part=part, kept=kept, state=trigger.has[0], triggers=trigger.nodes)
+
+
+def _plan(processes: tuple[Running, ...]) -> _Plan:
+    parts = [part for each in processes for part in (each.part, *each.kept)]
+    devices = {part.devices.number: part.devices for part in parts if part.devices is not None}
+    return _Plan(processes, tuple(_read(processes).items()), devices, {each.first: each for each in processes})
+
+
+def _read(processes: Iterable[Running]) -> dict[int, int]:
+    found: dict[int, int] = {}
+    for each in processes:
+        for kind in (each.part.thing, *([each.part.devices.device] if each.part.devices else [])):
+            for number in (*kind.has, *kind.lacks):
+                found[number] = found.get(number, 0) | kind.nodes
+    return found
 
 
 def widened(world: World) -> World:
-    """Return the world with the further states, and counts at 0."""
-    if len(world.states) > len(STATES):
+    """Return the world with the further states, counts at 0, and what has gone on for long at its end."""
+    if len(world.states) > _NARROW:
         return world
-    processes = running(world.home.knowledge)
-    counts = processes[-1].first + processes[-1].bits if processes else 0
-    rows: tuple[Any, ...] = (*world.states, *world.home.further, (0,) * counts)
-    wide = World(world.home, rows, world.agents, world.moved)
-    wide.idle = not _may_start(wide)
+    home = world.home
+    if world.moved is not NOTHING or world.states is not home.states:
+        return _widened(world)
+    known = home.kinds.get(_START)
+    if known is None:
+        known = home.kinds[_START] = (None, _widened(world).states)
+    wide = World(home, known[1], world.agents, world.moved)
+    wide.settled = True
     return wide
+
+
+_START = -5
+"""The place of the states at a home's start among its `kinds`; no identity is below 0."""
+
+_NARROW = len(STATES)
+
+
+def _widened(world: World) -> World:
+    nothing = Ticks((0,) * sum(each.bits for each in running(world.home.knowledge)))
+    rows: tuple[Any, ...] = (*world.states, *world.home.further, nothing)
+    wide = World(world.home, rows, world.agents, world.moved)
+    every = _in_home(wide.home).processes
+    done = [(each, now) for each in every if each.process.at_start and (now := each.now(wide, {}))]
+    wide = _ended(wide, done) if done else wide
+    return _with_ticks(wide, _of_now(wide, nothing.rows))
 
 
 def advanced(before: World, world: World) -> World:
     """Return the world one tick later: after the acts of the characters, with the changes of processes.
 
     Args:
-        before: at the start of the tick; where nothing ran in it, and nothing changed since, nothing does.
+        before: at the start of the tick; what went on in it goes on where nothing of it has changed since.
         world: after the tick's acts.
     """
-    if len(world.states) == len(STATES):
+    states = world.states
+    if len(states) == _NARROW:
         world = widened(world)
-    if getattr(before, "idle", False) and (_same(before, world) or not _may_start(world)):
-        world.idle = True
+        states = world.states
+    ticks: Ticks = states[WIDTH]  # type: ignore[assignment] # see `further`
+    try:
+        known = before.settled
+    except AttributeError:
+        known = False
+    if not known or not (
+        (before.states is states and before.moved is world.moved) or _is_as_before(before, world, ticks)
+    ):
+        ticks = _of_now(world, ticks.counted())
+    elif not ticks.due:
+        world.settled = True
         return world
-    counts: list[int] | None = None
-    known: tuple[int, ...] = world.states[WIDTH]  # type: ignore[assignment] # see `further`
-    ready: list[tuple[Running, int]] = []
-    for each in running(world.home.knowledge):
-        now = each.now(world)
-        if not now and not any(known[each.first : each.first + each.bits]):
-            continue
-        counts = list(known) if counts is None else counts
-        over = _counted(counts, each, now)
-        if over:
-            ready.append((each, over))
-    if counts is None:
-        world.idle = True
-        return world
-    rows: tuple[Any, ...] = (*world.states[:WIDTH], tuple(counts))
-    return _ended(World(world.home, rows, world.agents, world.moved), ready)
+    return _ended_or_older(world, ticks)
 
 
-def _same(before: World, world: World) -> bool:
-    return before.states is world.states and before.moved is world.moved and before.home is world.home
+def _ended_or_older(world: World, ticks: Ticks) -> World:
+    """Return the world in which each process has counted once more for the things that take part in it."""
+    if not ticks.due or ticks.age + 1 < ticks.due:
+        return _with_ticks(world, ticks.older() if ticks.due else ticks)
+    known, by_row = ticks.counted(), _in_home(world.home).by_row
+    rows = [0] * len(known)
+    ready = [
+        (by_row[each.first], over) for each in ticks.going_on if (over := _count(rows, known, by_row[each.first], each))
+    ]
+    states: tuple[Any, ...] = (*world.states[:WIDTH], Ticks(tuple(rows)))
+    return _ended(World(world.home, states, world.agents, world.moved), ready)
 
 
-def _may_start(world: World) -> bool:
-    """Return whether a thing or device of a process is in a state without which the process does not go on."""
-    home, states = world.home, world.states
-    known = home.kinds.get(_TRIGGERS)
-    if known is None:
-        known = home.kinds[_TRIGGERS] = (None, tuple(_triggers(home)))
-    for number, kind in known[1]:  # noqa: SIM110 - `any` takes twice as long, and every tick asks
-        if kind & states[number]:
-            return True
-    return False
+def _with_ticks(world: World, ticks: Ticks) -> World:
+    rows: tuple[Any, ...] = (*world.states[:WIDTH], ticks)
+    later = World(world.home, rows, world.agents, world.moved)
+    later.settled = True
+    return later
 
 
-_TRIGGERS = -1
-"""The place of a home's triggers among its `kinds`; no identity is below 0."""
+def _is_as_before(before: World, world: World, ticks: Ticks) -> bool:
+    """Return whether nothing has changed of which a process asks."""
+    was, now = before.states, world.states
+    if was is not now:
+        for number, nodes in _in_home(world.home).read:
+            if was[number] != now[number] and (was[number] ^ now[number]) & nodes:
+                return False
+    one, other = before.moved, world.moved
+    if one is not other:
+        if (one.inside ^ other.inside | one.on ^ other.on) & ticks.beside:
+            return False
+        for key in ticks.watched:
+            if one.extra.get(key) != other.extra.get(key):
+                return False
+    return before.home is world.home
 
 
-def _triggers(home: Home) -> Iterator[tuple[int, int]]:
-    """For each state the nodes that have to be in it for some process: its devices, else its things."""
-    found: dict[int, int] = {}
-    for each in running(home.knowledge):
-        kind = each.device if each.device is not None and each.device.has else each.thing
-        number = kind.has[0]
-        found[number] = found.get(number, 0) | kind_of(home, kind.formula)
-    yield from found.items()
+def _of_now(world: World, known: tuple[int, ...]) -> Ticks:
+    """Return the ticks of a world as it is: what goes on in it, and has counted so far; what does not starts anew."""
+    rows = [0] * len(known)
+    going_on: list[GoingOn] = []
+    due = 0
+    states, beside = world.states, _Known()
+    for each in _in_home(world.home).processes:
+        now = each.now(world, beside) if each.triggers & states[each.state] else 0
+        if now:
+            for k in range(each.first, each.first + each.bits):
+                rows[k] = known[k] & now
+            going = GoingOn(each.first, each.bits, now)
+            going_on.append(going)
+            left = ticks_left(rows, going, each.process.after)
+            due = left if not due else min(due, left)
+    return Ticks(tuple(rows), tuple(going_on), 0, due, *_watched(world.home, beside))
 
 
-def _counted(counts: list[int], process: Running, now: int) -> int:
-    """Count one more for the things in a process, and from the start again for others; those that are done."""
-    carry, over = now, now
-    for k in range(process.bits):
-        row = counts[process.first + k] & now
-        counts[process.first + k], carry = row ^ carry, row & carry
-        over &= counts[process.first + k] if process.process.after >> k & 1 else ~counts[process.first + k]
-    for k in range(process.bits if over else 0):
-        counts[process.first + k] &= ~over
+def _watched(home: Home, known: _Known) -> tuple[tuple[int, ...], int]:
+    """Return what `Ticks` watch: the devices that are at work, and what stands in or on them."""
+    keys: list[int] = []
+    beside = 0
+    for number, (devices, _) in known.items():
+        kind = _in_home(home).devices[number].kind
+        table = home.contents if kind == CONTENTS else home.bears
+        for i in indices(devices):
+            keys.append(8 * i + kind)
+            beside |= 1 << i | table[i]
+    return tuple(keys), beside
+
+
+def _count(rows: list[int], known: tuple[int, ...], process: Running, going: GoingOn) -> int:
+    """Count one more for the things in a process, and return those for which it is done; these start from 0 again."""
+    carry = over = going.things
+    for k in range(process.first, process.first + process.bits):
+        row = known[k]
+        rows[k], carry = row ^ carry, row & carry
+        over &= rows[k] if process.process.after >> (k - process.first) & 1 else ~rows[k]
+    for k in range(process.first, process.first + process.bits if over else 0):
+        rows[k] &= ~over
     return over
 
 
@@ -218,7 +373,7 @@ def _ended(world: World, ready: Iterable[tuple[Running, int]]) -> World:
     changes = [
         (effect.literal, (i,)) for each, things in ready for effect in each.process.effects for i in indices(things)
     ]
-    return made(changes, world) if changes else world
+    return made(changes, world)
 
 
 def seen(world: World) -> tuple[tuple[int, str], ...]:
@@ -226,7 +381,7 @@ def seen(world: World) -> tuple[tuple[int, str], ...]:
     world = widened(world)
     return tuple(
         (world.home.ids[i], each.process.seen)
-        for each in running(world.home.knowledge)
+        for each in _in_home(world.home).processes
         if each.process.seen
-        for i in indices(each.now(world))
+        for i in indices(each.now(world, {}))
     )

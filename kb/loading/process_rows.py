@@ -13,7 +13,7 @@ from hearth.kb.loading.layers import Layers, parsed, yaml_entries
 from hearth.kb.loading.source_files import Entry, Faults, strings
 from hearth.schemas.literals import Literal
 
-_KEYS = ("while", "after", "becomes", "seen")
+_KEYS = ("while", "after", "becomes", "seen", "at_start")
 _SHAPES = {"while": TEXT, "becomes": LIST, "seen": TEXT}
 
 MOST_TICKS = 1_000
@@ -65,7 +65,9 @@ def _process(name: str, number: int, entry: Entry, derived: Derived, groups: Gro
     if not ended_by(condition, effects, groups):
         remedy = "ask that it is not so yet"
         faults.at(entry, f"`{name}` never ends: what it makes true leaves what it waits for", remedy)
-    return Process(name, number, condition, after, effects, str(fields.get("seen") or ""))
+    if type(at_start := fields.get("at_start", False)) is not bool:
+        faults.at(entry, f"`at_start` of {name} is {at_start!r:.40}", "true or false")
+    return Process(name, number, condition, after, effects, str(fields.get("seen") or ""), at_start is True)
 
 
 def _check(

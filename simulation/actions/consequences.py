@@ -17,14 +17,15 @@ from hearth.kb.knowledge_records import Condition, Consequence
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import common
 from hearth.simulation.actions.common import Action, Masks, refuse
-from hearth.simulation.actions.literal_effects import done
 from hearth.simulation.actions.locomotion import need_legs
-from hearth.simulation.actions.readings import Bound, Reading
+from hearth.simulation.actions.prepared_effects import bound_to, prepared
+from hearth.simulation.actions.readings import Reading
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 
@@ -38,56 +39,56 @@ def actions(knowledge: Knowledge, placed: bool) -> Mapping[str, Action]:
             continue
         if name in EVERY:
             if name in found:
-                found[name] = _followed(found[name], later)
+                found[name] = _followed(found[name], later, knowledge)
         elif later.like:
-            found[name] = _followed(found[later.like]._replace(name=name), later)
+            found[name] = _followed(found[later.like]._replace(name=name), later, knowledge)
         else:
-            found[name] = _by_literals(known, later)
+            found[name] = _by_literals(known, later, knowledge)
     return found
 
 
-def _followed(action: Action, later: Consequence) -> Action:
+def actions_of(home: Home, placed: bool) -> Mapping[str, Action]:
+    """Return every action of set 3 in a home; kept with the home, since every step asks."""
+    known = home.kinds.get(_OF_PLACED if placed else _OF_OTHERS)
+    if known is None:
+        known = home.kinds[_OF_PLACED if placed else _OF_OTHERS] = (None, actions(home.knowledge, placed))
+    found: Mapping[str, Action] = known[1]
+    return found
+
+
+_OF_PLACED, _OF_OTHERS = -3, -4
+"""The places of a home's actions among its `kinds`; no identity is below 0."""
+
+
+def _followed(action: Action, later: Consequence, knowledge: Knowledge) -> Action:
     """Return an action of set 2 with the additions of set 3."""
     if not later.effects:
         return action
 
-    bare = all(str(e.literal) == "not ON(a, x)" or "holds(a, h)" in str(e.condition) for e in later.effects)
+    effects, done = prepared(later.effects, knowledge).after, action.rule
 
     def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
-        result = action.rule(world, number, o, s, rules)
-        if isinstance(result, Failure):
+        result = done(world, number, o, s, rules)
+        if type(result) is not World:
             return result
-        agent = world.agents[number]
-        if bare and not (agent.on or agent.right or agent.left):
-            return result  # nothing to step down from, and nothing that is carried: a walk
-        return _after(world, result, number, (o, s), later, rules)
+        return effects(world, result, world.agents[number], o, s, rules)
 
     return Action(action.name, rule, action.mask)
 
 
-def _after(
-    before: World, world: World, number: int, objects: tuple[int, int], later: Consequence, rules: Rules
-) -> World:
-    agent = before.agents[number]
-    return done(later.effects, Reading(before, agent, rules), _bound(agent, objects), world)
-
-
-def _bound(agent: Agent, objects: tuple[int, int]) -> Bound:
-    return {"a": agent.index} | {name: i for name, i in zip("os", objects, strict=True) if i >= 0}
-
-
-def _by_literals(known: Known, later: Consequence) -> Action:
+def _by_literals(known: Known, later: Consequence, knowledge: Knowledge) -> Action:
     checks = tuple(_Check(condition, known) for condition in later.preconditions)
+    effects = prepared(later.effects, knowledge).after
 
     def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
         agent, objects = world.agents[number], (o, s)
         if o == s and s >= 0:
             return refuse(world, Code.NOT_AFFORDED, "two different things", "the same twice", o)
-        reading, bound = Reading(world, agent, rules, known.name), _bound(agent, objects)
+        reading, bound = Reading(world, agent, rules, known.name), bound_to(agent, o, s)
         for check in checks:
             if not reading.holds(check.condition.formula, bound):
                 return check.refusal(world, agent, objects, rules)
-        return done(later.effects, reading, bound, world)
+        return effects(world, world, agent, o, s, rules, known.name)
 
     return Action(known.name, rule, lambda situation: _masks(situation, known, checks))
 

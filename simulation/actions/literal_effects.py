@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import lru_cache
 
-from hearth.kb.formula import GONE, Effect, Term
+from hearth.kb.formula import GONE, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
-from hearth.simulation.actions.readings import Bound, Reading
 from hearth.simulation.world import moved_edges as kinds
 from hearth.simulation.world.moved_edges import Moved, unlink_all
 from hearth.simulation.world.overlay import linked, unlinked
@@ -18,26 +17,6 @@ from hearth.simulation.world.world import World
 
 Change = tuple[Literal[Term], tuple[int, ...]]
 """A literal and the indices of its terms; names of states have none."""
-
-
-def done(effects: Iterable[Effect], reading: Reading, bound: Bound, after: World) -> World:
-    """Return a world after effects whose conditions are read in the world before: what ends first, then what begins.
-
-    Args:
-        effects: of an act.
-        reading: the world before.
-        bound: the character and the objects.
-        after: what is changed; the world before, or what the act has made of it by itself.
-    """
-    found: list[Change] = []
-    for effect in effects:
-        for each in reading.solutions(effect, bound):
-            literal = effect.literal
-            terms = literal.terms[:1] if literal.name == "state" else literal.terms
-            nodes = tuple(reading.thing(term, each) for term in terms)
-            if min(nodes) >= 0:
-                found.append((literal, nodes))
-    return made(found, after)
 
 
 def made(changes: Iterable[Change], world: World) -> World:

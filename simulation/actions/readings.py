@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from hearth.kb.formula import And, Count, Effect, Formula, Not, Or, Some, Term, free
+from hearth.kb.formula import And, Count, Formula, Not, Or, Some, Term, free
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID, RELATIONS
 from hearth.simulation.literal_truth import RELATED
@@ -54,7 +54,7 @@ class Reading(NamedTuple):
             return all(self.holds(part, bound) for part in formula.parts)
         if isinstance(formula, Or):
             return any(self.holds(part, bound) for part in formula.parts)
-        those = indices(self._worth(formula.variable, (formula.part,), bound))
+        those = indices(candidates(self, formula.variable, (formula.part,), bound))
         hits = (i for i in those if self.holds(formula.part, {**bound, formula.variable: i}))
         if isinstance(formula, Some):
             return next(hits, None) is not None
@@ -62,36 +62,6 @@ class Reading(NamedTuple):
 
     def _limit(self, formula: Count, bound: Bound) -> int:
         return self.world.home.limit(bound[formula.limit.name], formula.limit.function == "bed_limit")
-
-    def solutions(self, effect: Effect, bound: Bound) -> Iterator[Bound]:
-        """Yield the bindings under which an effect takes place."""
-        parts = effect.condition.parts if isinstance(effect.condition, And) else (effect.condition,)
-        helpful = (*parts, effect.literal.atom) if effect.literal.negated else parts
-        yield from self._extended(effect.variables, parts, helpful, bound)
-
-    def _extended(
-        self, variables: tuple[str, ...], parts: Iterable[Formula], helpful: Iterable[Formula], bound: Bound
-    ) -> Iterator[Bound]:
-        waiting = [part for part in parts if free(part) - bound.keys()]
-        if not all(self.holds(part, bound) for part in parts if part not in waiting):
-            return
-        if not variables:
-            yield bound
-            return
-        for i in indices(self._worth(variables[0], helpful, bound)):
-            yield from self._extended(variables[1:], waiting, helpful, {**bound, variables[0]: i})
-
-    def _worth(self, variable: str, parts: Iterable[Formula], bound: Bound) -> int:
-        """Return the nodes worth trying for a variable, by the joined literals."""
-        found = self.world.home.everything
-        every = list(_flat(parts))
-        for part in every:
-            if isinstance(part, Literal) and not part.negated and part.name in _NEAR:
-                found &= _NEAR[part.name](self, part, variable, bound)
-        for part in every if found else ():
-            if _is_of_kind(part) and free(part) == {variable}:
-                found &= kind_of(self.world.home, part)
-        return found
 
     def _atom(self, atom: Literal[Term], bound: Bound) -> bool:
         name, terms = atom.name, atom.terms
@@ -109,6 +79,20 @@ class Reading(NamedTuple):
             return _FAST[name](self, second if len(terms) > 1 else first)
         head, body = self.world.home.knowledge.derived[name]
         return self.holds(body, {term.name: i for term, i in zip(head.terms, (first, second), strict=False)})
+
+
+def candidates(reading: Reading, variable: str, parts: Iterable[Formula], bound: Bound) -> int:
+    """Return the nodes worth trying for a variable, by the literals that are joined in some parts of a condition."""
+    home = reading.world.home
+    found = home.everything
+    every = list(_flat(parts))
+    for part in every:
+        if isinstance(part, Literal) and not part.negated and part.name in _NEAR:
+            found &= _NEAR[part.name](reading, part, variable, bound)
+    for part in every if found else ():
+        if is_of_kind(part) and free(part) == {variable}:
+            found &= kind_of(home, part)
+    return found
 
 
 def _flat(parts: Iterable[Formula]) -> Iterator[Formula]:
@@ -132,11 +116,12 @@ def kind_of(home: Home, formula: Formula) -> int:
     return found
 
 
-def _is_of_kind(formula: Formula) -> bool:
+def is_of_kind(formula: Formula) -> bool:
+    """Return whether a formula asks for classes and properties alone, which never change."""
     if isinstance(formula, Literal):
         return formula.name in _OF_KIND
     parts = formula.parts if isinstance(formula, And | Or) else (formula.part,) if isinstance(formula, Not) else ()
-    return bool(parts) and all(map(_is_of_kind, parts))
+    return bool(parts) and all(map(is_of_kind, parts))
 
 
 def _state(reading: Reading, i: int, name: str) -> bool:

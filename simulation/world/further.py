@@ -1,7 +1,7 @@
 """Worlds of action set 3: further states, and the rows in which processes count their ticks, behind the ten of all.
 
 They stand in `World.states`, so that every action hands them on without knowing them: a row for each further state, and
-one tuple with all rows of counts, which few acts copy.
+last the `Ticks` of all processes.
 """
 
 from hearth.schemas.vocabulary import EVERY_STATE, STATES
@@ -29,4 +29,9 @@ WIDTH = len(EVERY_STATE)
 
 def counts_of(world: WorldState) -> tuple[int, ...]:
     """Return the rows in which processes count (see `processes`); none of a world of another set."""
-    return world.states[WIDTH] if is_wide(world) else ()  # type: ignore[return-value]
+    return world.states[WIDTH].counted() if is_wide(world) else ()  # type: ignore[attr-defined]
+
+
+def canonical_states(world: WorldState) -> tuple[object, ...]:
+    """Return the rows of states and of counts, equal for worlds in which the same is so."""
+    return (*world.states[:WIDTH], counts_of(world)) if is_wide(world) else world.states

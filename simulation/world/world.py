@@ -13,7 +13,7 @@ from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, replaced
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.further import rows_with_further
+from hearth.simulation.world.further import canonical_states, rows_with_further
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import NOTHING
 from hearth.simulation.world.nodes import with_states
@@ -33,10 +33,11 @@ class World(WorldState):
         (False, True)
     """
 
-    __slots__ = ("_key", "idle")
+    __slots__ = ("_key", "settled")
     _key: tuple[object, ...]
-    idle: bool
-    """True if no process goes on in it; known once it has been asked (see `processes`)."""
+    settled: bool
+    """True if its `Ticks` name all that goes on in it; not set in a world that was made in another way than by a tick
+    (see `processes`)."""
 
     @classmethod
     @explained
@@ -98,7 +99,7 @@ class World(WorldState):
         except AttributeError:
             pass
         memories = tuple((frozenset(agent.origins), agent.pose, agent.stride) for agent in self.agents)
-        self._key = (self.states, rows.difference(self), tuple(a[:11] for a in self.agents), memories)
+        self._key = (canonical_states(self), rows.difference(self), tuple(a[:11] for a in self.agents), memories)
         return self._key
 
     def __copy__(self) -> World:

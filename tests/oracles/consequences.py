@@ -44,6 +44,8 @@ def going_on(knowledge: Knowledge, facts: Facts, process: Process, lacking: str 
     device = any(isinstance(part, Literal) and part.name in ("INSIDE", "ON") for part in parts)
     found = set()
     for x in facts.nodes():
+        if device and facts.by_id[x].class_name == "character":
+            continue
         for d in facts.nodes() if device else (x,):
             if holds(knowledge, facts, formula, {"x": x, "d": d}):
                 found.add(x)

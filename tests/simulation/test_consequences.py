@@ -263,9 +263,9 @@ def test_a_process_that_is_done_is_a_change_of_its_tick():
 def test_where_nothing_runs_a_tick_looks_at_nothing(monkeypatch):
     world, ids = kitchen()
     still = ran(world, ids, "Wait 2").final
-    assert still.idle
-    monkeypatch.setattr("hearth.simulation.processes.running", None)
-    assert advanced(still, World(still.home, still.states, still.agents, still.moved)).idle
+    assert still.settled and still.states[-1].due == 0
+    monkeypatch.setattr("hearth.simulation.processes._of_now", None)
+    assert advanced(still, World(still.home, still.states, still.agents, still.moved)).settled
 
 
 def test_who_eats_has_no_bread_left_and_nothing_that_is_gone_comes_back():
