@@ -103,7 +103,7 @@ class Process:
         after: the number of ticks after which it is done.
         effects: what becomes true of x then.
         seen: what is seen meanwhile, in words.
-        at_start: whether it is done at the start for what takes part then: it has gone on for long.
+        at_start: whether it is done at the start for the things that take part then: it has gone on for long.
     """
 
     name: str

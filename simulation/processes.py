@@ -7,232 +7,21 @@ appliances run and nobody touches them a tick adds 1 to a number until one of th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from functools import lru_cache
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import Any
 
-from hearth.kb.formula import TRUE, And, Formula, Term
-from hearth.kb.knowledge import Knowledge
-from hearth.kb.knowledge_records import Process
-from hearth.schemas.literals import Literal
-from hearth.schemas.vocabulary import EVERY_STATE_ID, STATES
+from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.literal_effects import made
-from hearth.simulation.actions.readings import kind_of
-from hearth.simulation.world import rows
+from hearth.simulation.process_plan import Moment, Running, here
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.further import WIDTH
-from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved_edges import BEARS, CONTENTS, NOTHING
+from hearth.simulation.world.moved_edges import CONTENTS, NOTHING
 from hearth.simulation.world.process_ticks import GoingOn, Ticks, ticks_left
 from hearth.simulation.world.world import World
 
 
-class _Kind(NamedTuple):
-    """A thing or a device of a process: a kind of things that never changes, and the states that it has to be in.
-
-    Attributes:
-        nodes: the nodes of the kind in one home; -1 before the home is known.
-    """
-
-    formula: Formula
-    has: tuple[int, ...]
-    lacks: tuple[int, ...]
-    nodes: int = -1
-
-    def within(self, home: Home) -> _Kind:
-        """Return the same in one home."""
-        return self._replace(nodes=kind_of(home, self.formula))
-
-    def mask(self, states: tuple[int, ...]) -> int:
-        """Return the nodes that are so."""
-        found = self.nodes
-        for number in self.has:
-            found &= states[number]
-        for number in self.lacks:
-            found &= ~states[number]
-        return found
-
-    def without(self, number: int) -> _Kind:
-        """Return the same, whether or not it is in a state."""
-        return self._replace(lacks=tuple(each for each in self.lacks if each != number))
-
-
-class _Devices(NamedTuple):
-    """The devices of some processes, and the relation in which things stand to them.
-
-    Attributes:
-        number: its place among those of a home; -1 before the home is known.
-        kind: the kind of the rows that have the things: `CONTENTS` or `BEARS`.
-    """
-
-    device: _Kind
-    kind: int
-    number: int = -1
-
-    def beside(self, world: World) -> tuple[int, int]:
-        """Return the devices that are at work, and what is in, or on, them."""
-        found, devices = 0, self.device.mask(world.states)
-        row = rows.contents if self.kind == CONTENTS else rows.bears
-        for i in indices(devices):
-            found |= row(world, i)
-        return devices, found
-
-
-_Known = dict[int, tuple[int, int]]
-"""Number of `_Devices` -> `beside`, as far as it has been asked of a world."""
-
-
-class _Part(NamedTuple):
-    """The things that take part in a process, and their devices, if there are any."""
-
-    thing: _Kind
-    devices: _Devices | None
-
-    def within(self, home: Home, known: dict[tuple[_Kind, int], _Devices]) -> _Part:
-        """Return the same in one home, whose devices so far are known; no device changes a character."""
-        thing = self.thing.within(home)
-        if self.devices is None:
-            return _Part(thing, None)
-        device, kind, _ = self.devices
-        devices = known.setdefault((device, kind), _Devices(device.within(home), kind, len(known)))
-        return _Part(thing._replace(nodes=thing.nodes & ~home.characters), devices)
-
-    def now(self, world: World, known: _Known) -> int:
-        """Return the things that take part."""
-        if self.devices is None:
-            return self.thing.mask(world.states)
-        number = self.devices.number
-        if number not in known:
-            known[number] = self.devices.beside(world)
-        found = known[number][1]
-        return found and found & self.thing.mask(world.states)
-
-
-class Running(NamedTuple):
-    """A process, ready to be advanced.
-
-    Attributes:
-        process: the row.
-        part: what takes part in it.
-        first, bits: its rows among the counts.
-        kept: what keeps up the state that it ends: the parts of other processes.
-        state, triggers: a state that nodes have to be in, or nothing takes part: the devices', else the things' own.
-    """
-
-    process: Process
-    part: _Part
-    first: int
-    bits: int
-    kept: tuple[_Part, ...] = ()
-    state: int = 0
-    triggers: int = -1
-
-    def now(self, world: World, known: _Known) -> int:
-        """Return the things that are in it."""
-        found = self.part.now(world, known)
-        for each in self.kept if found else ():
-            found &= ~each.now(world, known)
-        return found
-
-
-@lru_cache(maxsize=8)
-def running(knowledge: Knowledge) -> tuple[Running, ...]:
-    """Return the processes of the knowledge."""
-    found: list[Running] = []
-    first = 0
-    for process in knowledge.processes.values():
-        bits = process.after.bit_length()
-        found.append(_running(process, first, bits))
-        first += bits
-    return tuple(each._replace(kept=tuple(_keeping(each, found))) for each in found)
-
-
-def _running(process: Process, first: int, bits: int) -> Running:
-    parts = process.condition.parts if isinstance(process.condition, And) else (process.condition,)
-    literals = [part for part in parts if isinstance(part, Literal)]
-    joined = next((each.name for each in literals if each.name in ("INSIDE", "ON")), "")
-    devices = _Devices(_kind(literals, "d"), BEARS if joined == "ON" else CONTENTS) if joined else None
-    return Running(process, _Part(_kind(literals, "x"), devices), first, bits)
-
-
-def _kind(literals: Iterable[Literal[Term]], variable: str) -> _Kind:
-    mine = [each for each in literals if len(each.terms) == 2 and each.terms[0].name == variable]
-    kinds = tuple(each for each in mine if each.name in ("class", "class_contains", "property"))
-    states = [(EVERY_STATE_ID[each.terms[1].name], each.negated) for each in mine if each.name == "state"]
-    return _Kind(
-        And(kinds) if kinds else TRUE,
-        tuple(number for number, negated in states if not negated),
-        tuple(number for number, negated in states if negated),
-    )
-
-
-def _keeping(ending: Running, every: Iterable[Running]) -> Iterable[_Part]:
-    """Yield the parts of processes that make a state which this one ends, whether or not the state is there."""
-    ends = [e.literal for e in ending.process.effects if e.literal.name == "state" and e.literal.negated]
-    for literal in ends:
-        for other in every:
-            if any(each.literal == literal.atom for each in other.process.effects):
-                number = EVERY_STATE_ID[literal.terms[1].name]
-                yield other.part._replace(thing=other.part.thing.without(number))
-
-
-class _Plan(NamedTuple):
-    """The processes of a home.
-
-    Attributes:
-        processes: those in which something of the home may take part.
-        read: the states that they ask for, each with the nodes of which they ask.
-        devices: their devices by number.
-        by_row: the processes by their first row of counts.
-    """
-
-    processes: tuple[Running, ...]
-    read: tuple[tuple[int, int], ...]
-    devices: dict[int, _Devices]
-    by_row: dict[int, Running]
-
-
-def _in_home(home: Home) -> _Plan:
-    """Return the processes of a home, kept with it."""
-    known = home.kinds.get(_PROCESSES)
-    if known is None:
-        processes = tuple(_possible(home))
-        known = home.kinds[_PROCESSES] = (None, _plan(processes))
-    found: _Plan = known[1]
-    return found
-
-
-_PROCESSES = -1
-"""The place of a home's processes among its `kinds`; no identity is below 0."""
-
-
-def _possible(home: Home) -> Iterator[Running]:
-    known: dict[tuple[_Kind, int], _Devices] = {}
-    for each in running(home.knowledge):
-        part = each.part.within(home, known)
-        if part.thing.nodes and (part.devices is None or part.devices.device.nodes):
-            kept = tuple(kept.within(home, known) for kept in each.kept)
-            trigger = part.devices.device if part.devices is not None and part.devices.device.has else part.thing
-            yield each._replace(part=part, kept=kept, state=trigger.has[0], triggers=trigger.nodes)
-
-
-def _plan(processes: tuple[Running, ...]) -> _Plan:
-    parts = [part for each in processes for part in (each.part, *each.kept)]
-    devices = {part.devices.number: part.devices for part in parts if part.devices is not None}
-    return _Plan(processes, tuple(_read(processes).items()), devices, {each.first: each for each in processes})
-
-
-def _read(processes: Iterable[Running]) -> dict[int, int]:
-    found: dict[int, int] = {}
-    for each in processes:
-        for kind in (each.part.thing, *([each.part.devices.device] if each.part.devices else [])):
-            for number in (*kind.has, *kind.lacks):
-                found[number] = found.get(number, 0) | kind.nodes
-    return found
-
-
 def widened(world: World) -> World:
-    """Return the world with the further states, counts at 0, and what has gone on for long at its end."""
+    """Return the world with the further states, counts at 0, and processes that have gone on for long at their end."""
     if len(world.states) > _NARROW:
         return world
     home = world.home
@@ -253,11 +42,12 @@ _NARROW = len(STATES)
 
 
 def _widened(world: World) -> World:
-    nothing = Ticks((0,) * sum(each.bits for each in running(world.home.knowledge)))
+    plan, kinds, _ = here(world.home)
+    nothing = Ticks((0,) * plan.bits)
     rows: tuple[Any, ...] = (*world.states, *world.home.further, nothing)
     wide = World(world.home, rows, world.agents, world.moved)
-    every = _in_home(wide.home).processes
-    done = [(each, now) for each in every if each.process.at_start and (now := each.now(wide, {}))]
+    moment = Moment(wide, kinds)
+    done = [(each, now) for each in plan.processes if each.process.at_start and (now := each.now(moment))]
     wide = _ended(wide, done) if done else wide
     return _with_ticks(wide, _of_now(wide, nothing.rows))
 
@@ -292,7 +82,7 @@ def _ended_or_older(world: World, ticks: Ticks) -> World:
     """Return the world in which each process has counted once more for the things that take part in it."""
     if not ticks.due or ticks.age + 1 < ticks.due:
         return _with_ticks(world, ticks.older() if ticks.due else ticks)
-    known, by_row = ticks.counted(), _in_home(world.home).by_row
+    known, by_row = ticks.counted(), here(world.home).plan.by_row
     rows = [0] * len(known)
     ready = [
         (by_row[each.first], over) for each in ticks.going_on if (over := _count(rows, known, by_row[each.first], each))
@@ -312,7 +102,7 @@ def _is_as_before(before: World, world: World, ticks: Ticks) -> bool:
     """Return whether nothing has changed of which a process asks."""
     was, now = before.states, world.states
     if was is not now:
-        for number, nodes in _in_home(world.home).read:
+        for number, nodes in here(world.home).read:
             if was[number] != now[number] and (was[number] ^ now[number]) & nodes:
                 return False
     one, other = before.moved, world.moved
@@ -330,9 +120,10 @@ def _of_now(world: World, known: tuple[int, ...]) -> Ticks:
     rows = [0] * len(known)
     going_on: list[GoingOn] = []
     due = 0
-    states, beside = world.states, _Known()
-    for each in _in_home(world.home).processes:
-        now = each.now(world, beside) if each.triggers & states[each.state] else 0
+    plan, kinds, _ = here(world.home)
+    moment = Moment(world, kinds)
+    for each in plan.processes:
+        now = each.now(moment)
         if now:
             for k in range(each.first, each.first + each.bits):
                 rows[k] = known[k] & now
@@ -340,18 +131,18 @@ def _of_now(world: World, known: tuple[int, ...]) -> Ticks:
             going_on.append(going)
             left = ticks_left(rows, going, each.process.after)
             due = left if not due else min(due, left)
-    return Ticks(tuple(rows), tuple(going_on), 0, due, *_watched(world.home, beside))
+    return Ticks(tuple(rows), tuple(going_on), 0, due, *_watched(moment))
 
 
-def _watched(home: Home, known: _Known) -> tuple[tuple[int, ...], int]:
-    """Return what `Ticks` watch: the devices that are at work, and what stands in or on them."""
+def _watched(moment: Moment) -> tuple[tuple[int, ...], int]:
+    """Return what `Ticks` watch: the devices that are at work, and the things in or on them."""
+    home = moment.world.home
     keys: list[int] = []
     beside = 0
-    for number, (devices, _) in known.items():
-        kind = _in_home(home).devices[number].kind
-        table = home.contents if kind == CONTENTS else home.bears
-        for i in indices(devices):
-            keys.append(8 * i + kind)
+    for devices, (working, _) in moment.beside.items():
+        table = home.contents if devices.relation == CONTENTS else home.bears
+        for i in indices(working):
+            keys.append(8 * i + devices.relation)
             beside |= 1 << i | table[i]
     return tuple(keys), beside
 
@@ -379,9 +170,11 @@ def _ended(world: World, ready: Iterable[tuple[Running, int]]) -> World:
 def seen(world: World) -> tuple[tuple[int, str], ...]:
     """Return the ids of the things in a process, each with its visible sign in words."""
     world = widened(world)
+    plan, kinds, _ = here(world.home)
+    moment = Moment(world, kinds)
     return tuple(
         (world.home.ids[i], each.process.seen)
-        for each in _in_home(world.home).processes
+        for each in plan.processes
         if each.process.seen
-        for i in indices(each.now(world, {}))
+        for i in indices(each.now(moment))
     )

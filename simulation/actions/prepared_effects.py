@@ -1,7 +1,7 @@
 """Effects of action set 3, prepared once so that an act reads only what they need (see `literal_effects`).
 
-Most acts of set 3 have nothing to add to those of set 2: who walks carries no full box and sits on nothing. A guard
-says so from a row or two; only where it does not are the conditions read.
+Most acts of set 3 have nothing to add to those of set 2: a walker mostly carries no full
+box and sits on nothing. A guard says so from a row or two; only where it does not are the conditions read.
 """
 
 from __future__ import annotations
@@ -16,14 +16,13 @@ from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.actions.literal_effects import Change, excluded, made
 from hearth.simulation.actions.readings import Bound, Reading, candidates, is_of_kind, kind_of
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import CONTENTS
 from hearth.simulation.world.world import World
 
 Guard = Callable[[World, Agent, int, int], bool]
-"""Whether effects may take place: of a world, a character, and the indices of the objects."""
+"""A test of whether effects may take place, by a world, a character, and the indices of the objects."""
 
 
 class _Level(NamedTuple):
@@ -144,7 +143,7 @@ def prepared(effects: Iterable[Effect], knowledge: Knowledge) -> Prepared:
     states = [effect for effect in every if effect.literal.name == "state"]
     marks = [mark for effect in states if (mark := _mark(effect, knowledge)) is not None]
     if len(marks) < len(states):
-        marks = []  # what ends comes before what begins, among all of them
+        marks = []  # endings come before beginnings, among all of them
     for effect in every:
         if marks and effect.literal.name == "state":
             continue
@@ -220,7 +219,7 @@ def _is_on(world: World, agent: Agent, o: int, s: int) -> bool:
 
 
 def _carries(world: World, agent: Agent, o: int, s: int) -> bool:
-    """Return whether something may be in what the character holds."""
+    """Return whether something may be in a thing that the character holds."""
     held = agent.right | agent.left
     if not held:
         return False
@@ -232,11 +231,18 @@ def _carries(world: World, agent: Agent, o: int, s: int) -> bool:
 
 
 def _is_full(world: World, agent: Agent, o: int, s: int) -> bool:
-    return rows.contents(world, o) != 0 or _anybody_inside(world, 1 << o)
+    moved = world.moved
+    inside = world.home.contents[o]
+    if 8 * o + CONTENTS in moved.extra or (inside and inside & ~moved.inside and not moved.inside >> o & 1):
+        return True
+    return _anybody_inside(world, 1 << o)
 
 
 def _anybody_inside(world: World, things: int) -> bool:
-    return any(each.inside & things or (each.bit & things and each.contents) for each in world.agents)
+    for each in world.agents:  # noqa: SIM110 - `any` takes three times as long
+        if each.inside & things or (each.bit & things and each.contents):
+            return True
+    return False
 
 
 def _of_kind(condition: Formula) -> Guard:

@@ -111,7 +111,11 @@ def kind_of(home: Home, formula: Formula) -> int:
     known = home.kinds.get(id(formula))
     if known is not None:
         return int(known[1])
-    found = of_kind(formula, home.properties, home.by_class, home.everything)
+    if isinstance(formula, Literal) and formula.name in ("class", "property") and not formula.negated:
+        rows_of = home.by_class if formula.name == "class" else home.properties
+        found = rows_of.get(formula.terms[1].name, 0)
+    else:
+        found = of_kind(formula, home.properties, home.by_class, home.everything)
     home.kinds[id(formula)] = (formula, found)
     return found
 

@@ -176,11 +176,15 @@ class Home:
     def further(self) -> tuple[int, ...]:
         """The rows of `vocabulary.FURTHER_STATES` at the start: only worlds of action set 3 have them."""
         found = dict.fromkeys(FURTHER_STATES, 0)
-        for i in indices(self.everything):
-            for name in self.node(i).states:
+        known = len(self.base[0].ids) if self.base else 0
+        for i in range(known, len(self.nodes)):
+            given = self.nodes[i]
+            for name in (given if isinstance(given, Node) else read_node(given)).states:
                 if name in found:
                     found[name] |= 1 << i
-        return tuple(found.values())
+        before = self.base[0].further if self.base else (0,) * len(found)
+        here = self.everything
+        return tuple((was | now) & here for was, now in zip(before, found.values(), strict=True))
 
     @cached_property
     def kinds(self) -> dict[int, tuple[Any, Any]]:

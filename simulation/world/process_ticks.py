@@ -24,7 +24,7 @@ class Ticks(NamedTuple):
         age: the number of ticks since.
         due: the age at which a process is done for some thing; 0 while no process goes on.
         watched: the keys of the rows of `Moved.extra` that say what is in, or on, the devices that are at work.
-        beside: these devices, and what is in, or on, them in the home as it is given.
+        beside: these devices, and the things in, or on, them in the home as it is given.
     """
 
     rows: tuple[int, ...]

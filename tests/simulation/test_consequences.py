@@ -17,7 +17,8 @@ from hearth.simulation.actions.consequences import executed
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.engine import act, run, tick
-from hearth.simulation.processes import advanced, running, seen, widened
+from hearth.simulation.process_plan import planned
+from hearth.simulation.processes import advanced, seen, widened
 from hearth.simulation.rules import CONSEQUENCES, DEFAULT
 from hearth.simulation.world import rows
 from hearth.simulation.world.home import Home
@@ -326,7 +327,7 @@ def test_an_act_that_cannot_be_done_says_why(before, step, code, words):
 def test_worlds_of_set_2_have_the_ten_states_alone():
     world, ids = kitchen()
     assert len(run(world, Program(steps=()), DEFAULT).final.states) == 10
-    assert len(ran(world, ids, "Wait").final.states) > 10 and running(KNOWN)
+    assert len(ran(world, ids, "Wait").final.states) > 10 and planned(KNOWN).processes
 
 
 def test_what_is_in_what_one_carries_comes_along():

@@ -1,0 +1,242 @@
+"""The processes of `processes.yaml`, ready to be asked of worlds which things take part in them.
+
+What a row says of kinds of things never changes in a home: each kind has a number, and a home the nodes of each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from typing import NamedTuple
+
+from hearth.kb.formula import TRUE, And, Formula, Term
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge_records import Process
+from hearth.schemas.literals import Literal
+from hearth.schemas.vocabulary import EVERY_STATE_ID
+from hearth.simulation.actions.readings import kind_of
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.moved_edges import BEARS, CONTENTS
+from hearth.simulation.world.world import World
+
+
+class Kind(NamedTuple):
+    """A thing or a device of a process: a kind of things that never changes, and the states that it has to be in.
+
+    Attributes:
+        number: the place of the kind among those of all processes.
+        has, lacks: the rows of the states.
+    """
+
+    number: int
+    has: tuple[int, ...]
+    lacks: tuple[int, ...]
+
+    def nodes(self, world: World, kinds: tuple[int, ...]) -> int:
+        """Return the nodes that are so."""
+        states, found = world.states, kinds[self.number]
+        for number in self.has:
+            found &= states[number]
+        for number in self.lacks:
+            found &= ~states[number]
+        return found
+
+    def without(self, number: int) -> Kind:
+        """Return the same, whether or not it is in a state."""
+        return Kind(self.number, self.has, tuple(each for each in self.lacks if each != number))
+
+
+class Devices(NamedTuple):
+    """The devices of some processes, and the relation in which things stand to them.
+
+    Attributes:
+        kind: what they are.
+        relation: the kind of the rows that have the things: `CONTENTS` or `BEARS`.
+    """
+
+    kind: Kind
+    relation: int
+
+
+class Moment:
+    """A world at one moment: the devices that are at work and what is in, or on, them, as far as it has been asked."""
+
+    __slots__ = ("beside", "kinds", "world")
+
+    def __init__(self, world: World, kinds: tuple[int, ...]) -> None:
+        self.world = world
+        self.kinds = kinds
+        self.beside: dict[Devices, tuple[int, int]] = {}
+
+    def at(self, devices: Devices) -> int:
+        """Return the things that are in, or on, devices at work."""
+        known = self.beside.get(devices)
+        if known is None:
+            world, found = self.world, 0
+            working = devices.kind.nodes(world, self.kinds)
+            row = rows.contents if devices.relation == CONTENTS else rows.bears
+            for i in indices(working):
+                found |= row(world, i)
+            known = self.beside[devices] = working, found
+        return known[1]
+
+
+class Part(NamedTuple):
+    """The things that take part in a process, and their devices, if there are any."""
+
+    thing: Kind
+    devices: Devices | None
+
+    def now(self, moment: Moment) -> int:
+        """Return the things that take part."""
+        if self.devices is None:
+            return self.thing.nodes(moment.world, moment.kinds)
+        found = moment.at(self.devices)
+        return found and found & self.thing.nodes(moment.world, moment.kinds)
+
+
+class Running(NamedTuple):
+    """A process, ready to be advanced.
+
+    Attributes:
+        process: the row.
+        part: what takes part in it.
+        first, bits: its rows among the counts.
+        trigger, state: a kind and a state in which one of it has to be, or nothing takes part.
+        kept: what keeps up the state that it ends: the parts of other processes.
+    """
+
+    process: Process
+    part: Part
+    first: int
+    bits: int
+    trigger: int
+    state: int
+    kept: tuple[Part, ...] = ()
+
+    def now(self, moment: Moment) -> int:
+        """Return the things that are in it."""
+        if not moment.kinds[self.trigger] & moment.world.states[self.state]:
+            return 0
+        found = self.part.now(moment)
+        for each in self.kept if found else ():
+            found &= ~each.now(moment)
+        return found
+
+
+class Plan(NamedTuple):
+    """All processes.
+
+    Attributes:
+        processes: in the order of the file.
+        formulas: what each kind is, and whether characters are left out of it.
+        read: the states that they ask for, each with the kinds of which they ask.
+        bits: the rows of counts.
+        by_row: the processes by their first row of counts.
+    """
+
+    processes: tuple[Running, ...]
+    formulas: tuple[tuple[Formula, bool], ...]
+    read: tuple[tuple[int, frozenset[int]], ...]
+    bits: int
+    by_row: dict[int, Running]
+
+
+@lru_cache(maxsize=8)
+def planned(knowledge: Knowledge) -> Plan:
+    """Return the processes of the knowledge."""
+    numbers: dict[tuple[Formula, bool], int] = {}
+    found: list[Running] = []
+    first = 0
+    for process in knowledge.processes.values():
+        found.append(_running(process, first, numbers))
+        first += found[-1].bits
+    every = tuple(each._replace(kept=tuple(_keeping(each, found))) for each in found)
+    return Plan(every, tuple(numbers), tuple(_read(every).items()), first, {each.first: each for each in every})
+
+
+def _running(process: Process, first: int, numbers: dict[tuple[Formula, bool], int]) -> Running:
+    parts = process.condition.parts if isinstance(process.condition, And) else (process.condition,)
+    literals = [part for part in parts if isinstance(part, Literal)]
+    joined = next((each.name for each in literals if each.name in ("INSIDE", "ON")), "")
+    thing = _kind(literals, "x", numbers, bool(joined))
+    devices = Devices(_kind(literals, "d", numbers, False), BEARS if joined == "ON" else CONTENTS) if joined else None
+    trigger = devices.kind if devices is not None and devices.kind.has else thing
+    part = Part(thing, devices)
+    return Running(process, part, first, process.after.bit_length(), trigger.number, trigger.has[0])
+
+
+def _kind(
+    literals: Iterable[Literal[Term]], variable: str, numbers: dict[tuple[Formula, bool], int], things_only: bool
+) -> Kind:
+    """Return what literals say of a variable; no device changes a character."""
+    mine = [each for each in literals if len(each.terms) == 2 and each.terms[0].name == variable]
+    kinds = tuple(each for each in mine if each.name in ("class", "class_contains", "property"))
+    states = [(EVERY_STATE_ID[each.terms[1].name], each.negated) for each in mine if each.name == "state"]
+    formula: Formula = TRUE if not kinds else kinds[0] if len(kinds) == 1 else And(kinds)
+    return Kind(
+        numbers.setdefault((formula, things_only), len(numbers)),
+        tuple(number for number, negated in states if not negated),
+        tuple(number for number, negated in states if negated),
+    )
+
+
+def _keeping(ending: Running, every: Iterable[Running]) -> Iterator[Part]:
+    """Yield the parts of processes that make a state which this one ends, whether or not the state is there."""
+    ends = [e.literal for e in ending.process.effects if e.literal.name == "state" and e.literal.negated]
+    for literal in ends:
+        for other in every:
+            if any(each.literal == literal.atom for each in other.process.effects):
+                yield Part(other.part.thing.without(EVERY_STATE_ID[literal.terms[1].name]), other.part.devices)
+
+
+def _read(processes: Iterable[Running]) -> dict[int, frozenset[int]]:
+    found: dict[int, frozenset[int]] = {}
+    for each in processes:
+        for kind in (each.part.thing, *([each.part.devices.kind] if each.part.devices else [])):
+            for number in (*kind.has, *kind.lacks):
+                found[number] = found.get(number, frozenset()) | {kind.number}
+    return found
+
+
+class Here(NamedTuple):
+    """The processes in one home.
+
+    Attributes:
+        plan: all processes.
+        kinds: the nodes of each kind.
+        read: the states that processes ask for, each with the nodes of which they ask.
+    """
+
+    plan: Plan
+    kinds: tuple[int, ...]
+    read: tuple[tuple[int, int], ...]
+
+
+def here(home: Home) -> Here:
+    """Return the processes in a home, kept with it."""
+    known = home.kinds.get(_HERE)
+    if known is None:
+        known = home.kinds[_HERE] = (None, _here(home))
+    found: Here = known[1]
+    return found
+
+
+_HERE = -1
+"""The place of a home's processes among its `kinds`; no identity is below 0."""
+
+
+def _here(home: Home) -> Here:
+    plan = planned(home.knowledge)
+    kinds = tuple(
+        kind_of(home, formula) & (~home.characters if things_only else -1) for formula, things_only in plan.formulas
+    )
+    read = []
+    for state, numbers in plan.read:
+        nodes = 0
+        for number in numbers:
+            nodes |= kinds[number]
+        read.append((state, nodes))
+    return Here(plan, kinds, tuple(read))
