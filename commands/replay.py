@@ -113,11 +113,13 @@ def _json(one: Replayed) -> dict[str, Any]:
 
 
 def _explain(one: Replayed) -> None:
+    from hearth.schemas.failure_words import sentence
+
     output.line(f"\n{one.program_id} in {one.home}:")
     for fault in one.faults:
         output.line(output.explain(fault))
     if one.failure is not None:
-        output.line(f"  {one.failure.message()}")
+        output.line(f"  step {one.failure.tick + 1} failed: {sentence(one.failure)}")
     for sign, edges in (("missing", one.difference.added), ("surplus", one.difference.removed)):
         for edge in edges:
             output.line(f"  {sign}: {edge.source} {edge.relation} {edge.target}")
