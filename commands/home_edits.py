@@ -56,7 +56,11 @@ def edited(
     found = edit(world, add=nodes, remove=remove, place=place, set=wanted)
     if isinstance(found, Failure):
         raise HearthError(
-            Diagnostic(found.code, sentence(found, remedy=None, code=False), suggestion="another place; `kb show CLASS` names some")
+            Diagnostic(
+                found.code,
+                sentence(found, remedy=None, code=False),
+                suggestion="another place; `kb show CLASS` names some",
+            )
         )
     after = replace(found.graph(), extra=graph.extra)
     return posed(after, place, knowledge) if has_geometry(after) else after, tuple(node.id for node in nodes)

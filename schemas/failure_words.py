@@ -189,7 +189,10 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
     (Code.NOT_FACING, "the seat facing it"): "the seat does not face the {0}",
     (Code.NOT_AFFORDED, "two different things"): "the {0} is named twice, and this takes two different things",
     (Code.NO_PATH, "something with a place"): "nobody knows where the {0} stands",
-    (Code.NO_PLACE, NO_USUAL_PLACE): "nobody knows where a {0} belongs: the home has none, and no place is usual for it",
+    (
+        Code.NO_PLACE,
+        NO_USUAL_PLACE,
+    ): "nobody knows where a {0} belongs: the home has none, and no place is usual for it",
     (Code.NO_PLACE, "a home with geometry"): "the home does not say where in the room things are",
     (Code.CONFLICT, "one instruction an agent and tick"): "one character is to do two things at the same time",
     (Code.NOT_SIMULATED, "a character at a place"): "the home does not say where the character stands",

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from hearth.grounding.environments.home_thinning import superfluous, without
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
 from hearth.schemas.failure_words import NO_USUAL_PLACE
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge
 from hearth.schemas.spoken_words import spoken
 from hearth.schemas.vocabulary import STATES
@@ -109,7 +109,11 @@ class Base:
             if self.instances(name):
                 return None
             rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)})) or "none"
-            return Code.NO_ROOM, f"a home with a {spoken(name)}, or a room that serves as one", f"{home.name} has {rooms}"
+            return (
+                Code.NO_ROOM,
+                f"a home with a {spoken(name)}, or a room that serves as one",
+                f"{home.name} has {rooms}",
+            )
         known = knowledge.object_class(name)
         if known is None or known.category in WITHOUT_PLACE or known.rooms or self.instances(name):
             return None

@@ -142,7 +142,7 @@ def test_the_character_has_a_name_of_its_own(knowledge):
     ],
 )
 def test_a_contradiction_names_the_steps_that_make_it(knowledge, steps, needing, violating):
-    """Without one of the named steps, the program up to the failing step runs from some start; with all, it does not."""
+    """Without one of the named steps, the program up to the failing step runs from some start."""
     program = read(knowledge, *steps)
     found = infer(program, knowledge)
     assert isinstance(found, Failure) and found.code is Code.CONTRADICTION, found
