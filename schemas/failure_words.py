@@ -15,7 +15,7 @@ MOST_NAMED = 4
 
 
 NO_USUAL_PLACE = "a usual place"
-"""What a NO_PLACE expects of a class that has no placements."""
+"""The fact that NO_PLACE expects, for classes without placements."""
 
 
 def sentence(failure: Failure, number: int = 0, step: str = "", remedy: str | None = "", code: bool = True) -> str:
