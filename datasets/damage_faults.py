@@ -65,8 +65,7 @@ def refused_question(error: Exception, folder: Path, names: Mapping[str, Sequenc
     Args:
         error: DuckDB's error.
         folder: of the dataset.
-        names: of all columns, tables (with views) and functions, by these words, which may have been meant by an unknown
-            one of the kind.
+        names: of all columns, of all tables and views, and of all functions, by `column`, `table` and `function`.
     """
     message = str(error).split("\n\n", 1)[0]
     if "Required module" in message:

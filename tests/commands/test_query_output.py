@@ -128,7 +128,8 @@ def test_an_unknown_name_is_no_fault_of_syntax_and_has_near_names(dataset, sql, 
 def test_no_hint_is_the_unknown_name_itself(dataset):
     """Every name of one kind, asked for as another: columns as tables, tables and functions as columns."""
     names = hearth.load(dataset)._names()
-    for kind, sql in (("table", "SELECT * FROM {0}"), ("column", "SELECT {0} FROM ledger"), ("function", "SELECT {0}(1)")):
+    asked = {"table": "SELECT * FROM {0}", "column": "SELECT {0} FROM ledger", "function": "SELECT {0}(1)"}
+    for kind, sql in asked.items():
         for name in sorted({each for other, known in names.items() if other != kind for each in known})[::7]:
             said = " ".join(run(dataset, sql.format(f'"{name}"')).output.split())
             meant = said.partition("did you mean")[2].partition("?")[0]
