@@ -192,7 +192,9 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
 
 `f1` of an empty prediction is 0. In the thesis's reading, `f1_published`, an empty program runs: it shares the
 character's place with its reference, or has no state as its reference. `goal` counts only literals that did not hold at
-the start. `goal_whole` is the reading before version 2, which counts all. To add a scorer: a module, a row here, a test.
+the start. `goal_whole` is the reading before version 2, which counts all.
+
+To add a scorer: a module, a row here, a test.
 """
 
 
