@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import typer
 
 from hearth.commands import output
+from hearth.commands.failure_output import failure_document
 from hearth.commands.inputs import read_given, read_knowledge
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def _refuse(failure: Failure, program: Program, home: str, as_json: bool) -> NoR
     from hearth.schemas.failure_words import in_program
 
     text = f"This program does not run in any start of {home} that was tried: {in_program(failure, program)}"
-    output.say(text, {"home": home, "failure": failure}, as_json)
+    output.say(text, {"home": home, "failure": failure_document(failure, program)}, as_json)
     raise typer.Exit(output.BAD_INPUT)
 
 
@@ -122,7 +123,7 @@ def _print_attempt(attempt: Attempt, known: Knowledge) -> None:
     from hearth.schemas.failure_words import sentence
 
     row, step = known.repairs.get(attempt.handler), attempt.before[attempt.step : attempt.step + 1]
-    said = sentence(attempt.failure, attempt.step + 1 if step else 0, "".join(_texts(step)), None)
+    said = sentence(attempt.failure, _number(attempt), "".join(_texts(step)), None)
     output.line(f"\n{attempt.number + 1:3}  {said}")
     output.line(f"     {attempt.handler}{': ' + row.say if row is not None and row.say else ''}")
     for line in _difference(_texts(attempt.before), _texts(attempt.after or attempt.before)):
@@ -155,15 +156,20 @@ def _pair_json(pair: Pair) -> dict[str, Any]:
         "original": _texts(pair.environment.program.steps),
         "attempts": [_attempt_json(attempt) for attempt in pair.attempts],
         "repaired": _texts(pair.program.steps) if pair.failure is None else None,
-        "failure": pair.failure,
+        "failure": failure_document(pair.failure, pair.program),
     }
+
+
+def _number(attempt: Attempt) -> int:
+    """Return the number of the step that failed, from 1; 0 where the program ran, and missed its goal."""
+    return attempt.step + 1 if attempt.step < len(attempt.before) else 0
 
 
 def _attempt_json(attempt: Attempt) -> dict[str, Any]:
     return {
         "attempt": attempt.number + 1,
-        "step": attempt.step + 1,
-        "failure": attempt.failure,
+        "step": _number(attempt) or None,
+        "failure": failure_document(attempt.failure, None, _number(attempt)),
         "handler": attempt.handler,
         "before": _texts(attempt.before),
         "after": _texts(attempt.after),

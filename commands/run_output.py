@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.commands import output
+from hearth.commands.failure_output import failure_document
 from hearth.commands.run_additions import Additions, additions, names_of
 
 if TYPE_CHECKING:
@@ -121,16 +122,15 @@ def _sampling_helps(outcome: Outcome) -> bool:
 
 def _failure(outcome: Outcome) -> dict[str, Any] | None:
     from hearth.repair.remedies import remedy, stop_reason
-    from hearth.schemas.failure_words import step_number, why
+    from hearth.schemas.failure_words import why
 
     execution = outcome.trial.execution
     failure = execution.failure
     if failure is None:
         return None
-    number = step_number(execution.program, failure)
     advice = remedy(execution) or (SAMPLE if _sampling_helps(outcome) else None)
     words = {"message": stop_reason(execution), "why": why(failure), "remedy": advice}
-    return {"code": failure.code, "step": number, **asdict(failure), **words}
+    return {**(failure_document(failure, execution.program) or {}), **words}
 
 
 def _explained(execution: Execution) -> Iterator[dict[str, Any]]:
