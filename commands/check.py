@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import grouped_faults, inputs, output
 from hearth.commands.grouped_faults import in_order
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.kb.language.recognition import recognizing
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.pipelines.checks.text_checks import Checked, check_text, warnings_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from hearth.commands import inputs
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.kb.language.recognition import recognizing
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring.environments import GRAPH, HOME

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from hearth.datasets.format.codecs import graph_of
 from hearth.datasets.format.shared_homes import write_home
-from hearth.kb.language.recognition import recognizing
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.description_lookup import Described
 from hearth.pipelines.crowd.duplicate_records import Repeated

@@ -13,7 +13,7 @@ from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.kb.language.recognition import recognizing
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hearth.kb.language.program_names import action_of
-from hearth.kb.language.recognition import recognition
+from hearth.kb.language.recognition_knowledge import recognition
 from hearth.kb.spelling import key_of
 
 ACTIONS = (

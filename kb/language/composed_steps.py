@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.program_names import action_of, words_of
-from hearth.kb.language.recognition import recognition
+from hearth.kb.language.recognition_knowledge import recognition
 
 
 def composed_step(name: str, objects: Sequence[str], relation: str = "") -> str:

@@ -21,7 +21,7 @@ from hearth.kb.language.plan_lines import (
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import REMEMBERED, Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.kb.language.recognition import is_recognizing, recognizing
+from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
 from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
 from hearth.kb.language.step_phrases import say
 from hearth.kb.language.step_understanding import Candidate, Understood

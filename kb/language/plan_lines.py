@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hearth.kb.language.recognition import recognized_cache
+from hearth.kb.language.recognition_knowledge import recognized_cache
 from hearth.schemas.program_boundaries import TITLE, is_sentence
 
 _COUNTED = (

@@ -14,7 +14,7 @@ from hearth.kb.language.marked_lines import marked
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
-from hearth.kb.language.recognition import recognized_cache
+from hearth.kb.language.recognition_knowledge import recognized_cache
 from hearth.kb.language.unmarked_lines import (
     are_steps,
     chained,

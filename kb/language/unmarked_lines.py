@@ -8,7 +8,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_noun, is_verb
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN
-from hearth.kb.language.recognition import recognition, recognized_cache
+from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
 from hearth.kb.language.typos import near_words
 from hearth.schemas.program_boundaries import is_sentence
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.program_lines import is_plan, lines_of_program
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.kb.language.recognition import recognition, recognized_cache
+from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
 from hearth.pipelines.readers.step_texts import numbered, steps_of
 from hearth.schemas.diagnostics import HearthError
 

@@ -132,7 +132,7 @@ def test_the_character_has_a_name_of_its_own(knowledge):
 @pytest.mark.parametrize(
     ("steps", "needing", "violating"),
     [
-        # A walk between two acts of the hands is no part of the contradiction.
+        # A walk between two acts of the hands does not belong to the contradiction.
         (["[Walk] <sofa> (1)", "[Sit] <sofa> (1)", "[Touch] <sofa> (1)", "[Walk] <kitchen> (1)"], 4, (2,)),
         (["[Grab] <cup> (1)", "[Grab] <plate> (1)", "[Walk] <sofa> (1)", "[Grab] <book> (1)"], 4, (1, 2)),
         (["[Walk] <tv> (1)", "[SwitchOn] <tv> (1)", "[Walk] <sofa> (1)", "[SwitchOn] <tv> (1)"], 4, (2,)),

@@ -19,7 +19,7 @@ READS = {
 """Files below that read knowledge because something names it."""
 
 RECOGNISES = {
-    "kb/language/recognition.py": "how forms of text are recognized where no reading was given a knowledge",
+    "kb/language/recognition_knowledge.py": "how forms of text are recognized where no reading was given a knowledge",
 }
 """The one file in which readers find the knowledge that a command or build gave to a reading."""
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from hearth.cli import app
 from hearth.kb.language.numbered_steps import parse_steps
-from hearth.kb.language.recognition import recognition, recognizing
+from hearth.kb.language.recognition_knowledge import recognition, recognizing
 from hearth.kb.loading.load import default, overlaid
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
@@ -90,7 +90,7 @@ def test_check_and_run_read_it_in_json(tmp_path, overlay, name):
     assert checked.exit_code == 0, checked.output
     ran = json.loads(CliRunner().invoke(app, ["run", *args, "--json"]).stdout)
     assert ran["steps"][-1].startswith("[Zap] <sofa>")
-    assert CliRunner().invoke(app, ["check", str(file)]).exit_code == 1, "it is no action of ours"
+    assert CliRunner().invoke(app, ["check", str(file)]).exit_code == 1, "ours does not have the action"
 
 
 def test_a_build_reads_it(tmp_path, overlay):

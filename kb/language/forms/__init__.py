@@ -23,7 +23,7 @@ from hearth.kb.language.forms.text_games import PROMPTS
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.todo_lists import TODO_LISTS
 from hearth.kb.language.forms.yaml_lists import YAML
-from hearth.kb.language.recognition import recognized_cache
+from hearth.kb.language.recognition_knowledge import recognized_cache
 
 __all__ = ["FORMS", "YAML", "form_of", "form_of_line"]
 

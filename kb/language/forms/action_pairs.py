@@ -7,7 +7,7 @@ from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_names import action_of
-from hearth.kb.language.recognition import recognition
+from hearth.kb.language.recognition_knowledge import recognition
 from hearth.schemas.program_boundaries import TITLE
 
 _PAIR = re.compile(
