@@ -160,17 +160,25 @@ def _culprits(
     """Return the earlier steps that make a step impossible: without one of them, some start makes it possible.
 
     Where no single one does, the last step is named without which, and without those after it, the step is possible;
-    none where no start makes the step alone possible. A step that needs a free hand has a culprit for each hand.
+    none where no start makes the step alone possible, unless without a step about the same object it is. A step that
+    needs a free hand has a culprit for each hand.
     """
     guess = _likely_culprit(program, conditions, step, knowledge)
-    order = dict.fromkeys([*([] if guess is None else [guess]), *range(step - 1, -1, -1)])
+    alone = _possible(_until(program, step, {*range(step)}), knowledge, rules)
+    before = [n for n in range(step - 1, -1, -1) if alone or _share(program.steps[n], program.steps[step])]
+    order = dict.fromkeys([*([] if guess is None else [guess]), *before])
     needed = (number for number in order if _possible(_until(program, step, {number}), knowledge, rules))
     found = tuple(sorted(islice(needed, 2 if code is Code.NO_FREE_HAND else 1)))
     if found:
         return found
-    suffixes = ({*range(first, step)} for first in range(step - 1, -1, -1))
+    suffixes = ({*range(first, step)} for first in range(step - 1, -1, -1) if alone)
     last = next((left for left in suffixes if _possible(_until(program, step, left), knowledge, rules)), None)
     return () if last is None else (min(last),)
+
+
+def _share(one: Step, other: Step) -> bool:
+    """Return whether two steps are about the same object."""
+    return not {ref.key for ref in one.objects}.isdisjoint(ref.key for ref in other.objects)
 
 
 def _until(program: Program, step: int, left_out: Set[int]) -> Program:
