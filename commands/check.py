@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import grouped_faults, inputs, output
 from hearth.commands.grouped_faults import in_order
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.pipelines.checks.text_checks import Checked, check_text, warnings_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -110,8 +111,9 @@ def check_file(
             if text is not None:
                 # Parsed as a whole, so that a line that is too long hides no other fault.
                 return check_text(text, knowledge, name, affordances=affordances, lint=lint)
-            found = inputs.read_programs(place, knowledge, name, columns, fuzzy)
-            checked = _check_programs(found, name, knowledge, affordances=affordances, lint=lint)
+            with recognizing(knowledge):
+                found = inputs.read_programs(place, knowledge, name, columns, fuzzy)
+                checked = _check_programs(found, name, knowledge, affordances=affordances, lint=lint)
             return _strictly(checked) if strict else checked
     except HearthError as error:
         return Checked(name, 0, 0, tuple(fault.at(name) for fault in error.diagnostics))

@@ -58,6 +58,8 @@ def _failures(found: Coverage) -> Iterator[dict[str, Any]]:
 
 def _row(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> dict[str, Any]:
     """Return the reason why a program does not run, with the lines of the steps that contradict each other."""
+    from hearth.schemas.failure_words import in_program
+
     return {
         "program": script.program_id,
         "place": script.place,
@@ -66,5 +68,5 @@ def _row(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> d
         "steps": [{"step": number + 1, "line": script.program.line(number)} for number in steps],
         "expected": failure.expected,
         "actual": failure.actual,
-        "message": failure.message(),
+        "message": in_program(failure, script.program),
     }

@@ -29,6 +29,7 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
     """
     from hearth.grounding.preconditions.precondition_inference import at_odds, infer
     from hearth.grounding.preconditions.release_rules import compare
+    from hearth.schemas.failure_words import in_program
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
 
@@ -41,9 +42,9 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
             for n in at_odds(program, known)
         ]
         if as_json:
-            output.emit({"impossible": found.message(), "steps": steps})
+            output.emit({"impossible": in_program(found, program), "steps": steps})
         else:
-            output.line(found.message())
+            output.line(in_program(found, program))
             for step in steps:
                 output.line(f"  step {step['step']}, line {step['line']}: {step['text']}")
         output.status(1, strict=True)

@@ -93,12 +93,13 @@ def _beside(
 
 def printed(found: dict[str, Any]) -> None:
     """Print the steps with their times, and whether they run."""
+    from hearth.schemas.failure_words import sentence
+
     output.line(f"{output.counted(found['clips'], 'clip')} of {output.shown(str(found['film']))}")
     for row in found["steps"]:
         output.line(f"  {row['time']:7.1f} s  {row['step']}")
     failure = found["failure"]
-    output.line(
-        f"It runs in {found['home']}." if found["executable"] else f"Nothing runs: {failure and failure.message()}"
-    )
+    said = sentence(failure) if failure else ""
+    output.line(f"It runs in {found['home']}." if found["executable"] else f"Nothing runs: {said}")
     if found["pages"]:
         output.line(f"Films: {', '.join(found['pages'])}")

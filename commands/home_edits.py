@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NoReturn
 
 from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failure_words import sentence
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.numbers import number_of
 
@@ -55,7 +56,11 @@ def edited(
     found = edit(world, add=nodes, remove=remove, place=place, set=wanted)
     if isinstance(found, Failure):
         raise HearthError(
-            Diagnostic(found.code, found.message(), suggestion="another place; `kb show CLASS` names some")
+            Diagnostic(
+                found.code,
+                sentence(found, remedy=None, code=False),
+                suggestion="another place; `kb show CLASS` names some",
+            )
         )
     after = replace(found.graph(), extra=graph.extra)
     return posed(after, place, knowledge) if has_geometry(after) else after, tuple(node.id for node in nodes)

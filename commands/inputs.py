@@ -169,6 +169,7 @@ def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "
         HearthError: the input has no such program, or cannot be read.
     """
     from hearth.commands import output
+    from hearth.kb.language.recognition_knowledge import recognizing
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
     from hearth.storage.input_files import placed
@@ -176,7 +177,7 @@ def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "
 
     refused: list[Diagnostic] = []
     programs: list[Given] = []
-    with placed(file) as path:
+    with placed(file) as path, recognizing(known):
         for found in read_programs(path, known, name_of(file), columns, fuzzy):
             if isinstance(found, Reject):
                 refused += found.diagnostics

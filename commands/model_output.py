@@ -121,6 +121,7 @@ def document(one: Shown) -> dict[str, Any]:
 
 def printed(found: Mapping[str, Shown]) -> None:
     """Print programs: the words and the sketch once, then each program, or two side by side."""
+    from hearth.schemas.failure_words import sentence
     from hearth.schemas.syntax import print_step
 
     first = next(iter(found.values()))
@@ -128,14 +129,14 @@ def printed(found: Mapping[str, Shown]) -> None:
     output.line("Sketch:", *(f"  {print_step(step)}" for step in first.sketch), sep="\n")
     for home, one in found.items():
         for step, failure in one.completion.left_out:
-            output.line(f"  left out in {home}: {print_step(step)}: {failure.message()}")
+            output.line(f"  left out in {home}: {print_step(step)}: {sentence(failure)}")
     if len(found) == 2:
         _print_beside(found)
     for home, one in found.items():
         if len(found) != 2:
             output.line(f"Program in {home}:", *(f"  {line}" for line in document(one)["program"]), sep="\n")
         runs = document(one)["executable"]
-        output.line("It runs." if runs else f"Nothing runs: {one.failure and one.failure.message()}")
+        output.line("It runs." if runs else f"Nothing runs: {sentence(one.failure) if one.failure else ''}")
 
 
 def _print_beside(found: Mapping[str, Shown]) -> None:

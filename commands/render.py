@@ -48,6 +48,7 @@ def program(
     """
     from hearth.kb.loading.load import default
     from hearth.rendering.scene.home_geometry import with_geometry
+    from hearth.schemas.failure_words import in_program
 
     _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
     known = default()
@@ -61,7 +62,7 @@ def program(
         made = videos(shooting, _split(cameras), fps, "fine" if fine else "draft", _split(modalities or "rgb"))
     else:
         made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities or "rgb,instance_ids"))
-    failure = execution.failure.message() if execution.failure else None
+    failure = in_program(execution.failure, execution.program) if execution.failure else None
     if as_json:
         facts = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
         output.emit({**facts, **made})
@@ -316,12 +317,13 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
 def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
     from hearth.grounding.grounded_run import attempt
     from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failure_words import in_program
     from hearth.schemas.failures import Failure
     from hearth.simulation.world.home import Home
 
     trial = attempt(program, Home.from_graph(graph, home, known), seed)
     if isinstance(trial, Failure):
-        raise HearthError.of(trial.code, trial.message())
+        raise HearthError.of(trial.code, in_program(trial, program, code=False))
     return trial.execution
 
 

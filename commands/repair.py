@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import typer
 
 from hearth.commands import output
+from hearth.commands.failure_output import failure_document
 from hearth.commands.inputs import read_given, read_knowledge
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from hearth.repair.augmentation import Augmented, Pair
     from hearth.repair.perturbation_strengths import Strength
     from hearth.repair.repair_loop import Attempt
+    from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program, Step
 
 
@@ -53,7 +55,7 @@ def repair(
     program, place, _ = given.at_home(home, graph, homes, known)
     found = augment(program, place, seed, program.title, Options(variants, strength=_strength(strength, perturb)))
     if isinstance(found, Failure):
-        _refuse(found, place.name, as_json)
+        _refuse(found, program, place.name, as_json)
     if as_json:
         output.emit({"home": place.name, "seed": seed, **_json(found)})
     else:
@@ -65,9 +67,11 @@ def repair(
 _HARMLESS = ("UNPERTURBED", "DUPLICATE")
 
 
-def _refuse(failure: Any, home: str, as_json: bool) -> NoReturn:
-    text = f"This program can't be placed in {home}. {failure.message()}"
-    output.say(text, {"home": home, "failure": failure}, as_json)
+def _refuse(failure: Failure, program: Program, home: str, as_json: bool) -> NoReturn:
+    from hearth.schemas.failure_words import in_program
+
+    text = f"This program does not run in any start of {home} that was tried: {in_program(failure, program)}"
+    output.say(text, {"home": home, "failure": failure_document(failure, program)}, as_json)
     raise typer.Exit(output.BAD_INPUT)
 
 
@@ -100,12 +104,15 @@ def _print(program: Program, found: Augmented, home: str, known: Knowledge) -> N
 
 
 def _print_pair(pair: Pair, known: Knowledge) -> None:
+    from hearth.schemas.failure_words import in_program
+
     for perturbation in pair.perturbations:
         output.line(f"\nPerturbed: {perturbation}")
     for attempt in pair.attempts:
         _print_attempt(attempt, known)
     if pair.failure is not None:
-        output.line(f"\nGiven up. {pair.failure.message()}" if pair.attempts else f"\n{pair.failure.message()}")
+        said = in_program(pair.failure, pair.program)
+        output.line(f"\nGiven up: {said}" if pair.attempts else f"\n{said}")
         return
     output.line(f"\nRepaired: {output.counted(len(pair.program.steps), 'step')}.")
     before, after = _texts(pair.environment.program.steps), _texts(pair.program.steps)
@@ -113,8 +120,11 @@ def _print_pair(pair: Pair, known: Knowledge) -> None:
 
 
 def _print_attempt(attempt: Attempt, known: Knowledge) -> None:
-    row = known.repairs.get(attempt.handler)
-    output.line(f"\n{attempt.number + 1:3}  {attempt.failure.message()}")
+    from hearth.schemas.failure_words import sentence
+
+    row, step = known.repairs.get(attempt.handler), attempt.before[attempt.step : attempt.step + 1]
+    said = sentence(attempt.failure, _number(attempt), "".join(_texts(step)), None)
+    output.line(f"\n{attempt.number + 1:3}  {said}")
     output.line(f"     {attempt.handler}{': ' + row.say if row is not None and row.say else ''}")
     for line in _difference(_texts(attempt.before), _texts(attempt.after or attempt.before)):
         output.line(f"       {line}")
@@ -146,15 +156,20 @@ def _pair_json(pair: Pair) -> dict[str, Any]:
         "original": _texts(pair.environment.program.steps),
         "attempts": [_attempt_json(attempt) for attempt in pair.attempts],
         "repaired": _texts(pair.program.steps) if pair.failure is None else None,
-        "failure": pair.failure,
+        "failure": failure_document(pair.failure, pair.program),
     }
+
+
+def _number(attempt: Attempt) -> int:
+    """Return the number of the step that failed, from 1; 0 where the program ran, and missed its goal."""
+    return attempt.step + 1 if attempt.step < len(attempt.before) else 0
 
 
 def _attempt_json(attempt: Attempt) -> dict[str, Any]:
     return {
-        "attempt": attempt.number,
-        "step": attempt.step,
-        "failure": attempt.failure,
+        "attempt": attempt.number + 1,
+        "step": _number(attempt) or None,
+        "failure": failure_document(attempt.failure, None, _number(attempt)),
         "handler": attempt.handler,
         "before": _texts(attempt.before),
         "after": _texts(attempt.after),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from zipfile import is_zipfile
 
 from hearth.commands import output
+from hearth.commands.failure_output import failure_document
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -102,7 +103,7 @@ def _json(one: Replayed) -> dict[str, Any]:
         "program_id": one.program_id,
         "home": one.home,
         "faults": one.faults,
-        "failure": one.failure,
+        "failure": failure_document(one.failure, None, one.failure.tick + 1 if one.failure else 0),
         "difference": {
             "missing": one.difference.added,
             "surplus": one.difference.removed,
@@ -113,11 +114,13 @@ def _json(one: Replayed) -> dict[str, Any]:
 
 
 def _explain(one: Replayed) -> None:
+    from hearth.schemas.failure_words import sentence
+
     output.line(f"\n{one.program_id} in {one.home}:")
     for fault in one.faults:
         output.line(output.explain(fault))
     if one.failure is not None:
-        output.line(f"  {one.failure.message()}")
+        output.line(f"  step {one.failure.tick + 1} failed: {sentence(one.failure)}")
     for sign, edges in (("missing", one.difference.added), ("surplus", one.difference.removed)):
         for edge in edges:
             output.line(f"  {sign}: {edge.source} {edge.relation} {edge.target}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from hearth.commands import output
 from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
-from hearth.commands.run_output import Outcome, document, failed, show
+from hearth.commands.run_output import Outcome, document, show
 from hearth.kb.language.reading_modes import Fuzzy
 
 if TYPE_CHECKING:
@@ -110,15 +110,16 @@ def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rule
     """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
     from hearth.grounding.grounded_run import LEAST, as_given, attempt
     from hearth.repair.remedies import stop_reason
+    from hearth.schemas.failure_words import in_program
     from hearth.schemas.failures import Failure
 
     trial = as_given(program, place, seed, rules)
     if trial.execution.failure is None or not sample:
-        return Outcome(program, place, trial)
+        return Outcome(program, place, trial, sampling=sample)
     found = attempt(program.unbound(), place, seed, rules, size=LEAST)
     if isinstance(found, Failure):
-        return Outcome(program, place, trial, unsampled=failed(found, program))
-    return Outcome(program, place, found, as_it_is=stop_reason(trial.execution))
+        return Outcome(program, place, trial, unsampled=in_program(found, program), sampling=True)
+    return Outcome(program, place, found, as_it_is=stop_reason(trial.execution), sampling=True)
 
 
 def _progress(goal: list[str], outcome: Outcome) -> Progress:

@@ -7,17 +7,22 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.commands import output
-from hearth.commands.run_additions import Additions, additions
+from hearth.commands.failure_output import failure_document
+from hearth.commands.run_additions import Additions, additions, names_of
 
 if TYPE_CHECKING:
     from hearth.grounding.grounded_run import Trial
-    from hearth.schemas.failures import Failure
+    from hearth.schemas.graph import EnvironmentGraph
     from hearth.schemas.program import Program, Step
     from hearth.simulation.engine import Execution
     from hearth.simulation.motion.base_pose import HandAndBasePose
     from hearth.simulation.step_explanations import Check
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
+
+
+SAMPLE = "`--sample` adds what is missing, and prints all of it."
+"""Advice of a run in which an object was missing."""
 
 
 class Outcome(NamedTuple):
@@ -29,6 +34,7 @@ class Outcome(NamedTuple):
         trial: the run that is shown.
         as_it_is: why the program did not run in the home as it is, where another start was sampled; else "".
         unsampled: why no other start could be sampled, where one was wanted; else "".
+        sampling: whether `--sample` was given; then no output advises it.
     """
 
     program: Program
@@ -36,12 +42,21 @@ class Outcome(NamedTuple):
     trial: Trial
     as_it_is: str = ""
     unsampled: str = ""
+    sampling: bool = False
 
     def additions(self) -> Additions:
         """Return the additions of the start to the home, and the other changes."""
+        return additions(*self._starts())
+
+    def added_lines(self) -> Iterator[str]:
+        """Yield the additions as text."""
+        return self.additions().lines(names_of(*self._starts()))
+
+    def _starts(self) -> tuple[EnvironmentGraph, EnvironmentGraph]:
+        """Return the home as it is, and the start of the run."""
         from hearth.simulation.world.world import World
 
-        return additions(World.start(self.place).graph(), self.trial.execution.worlds[0].graph())
+        return World.start(self.place).graph(), self.trial.execution.worlds[0].graph()
 
 
 def show(outcome: Outcome, explain: bool) -> None:
@@ -52,7 +67,7 @@ def show(outcome: Outcome, explain: bool) -> None:
     execution = outcome.trial.execution
     if outcome.as_it_is:
         output.line(f"  as it is, {outcome.as_it_is}")
-    for line in outcome.additions().lines():
+    for line in outcome.added_lines():
         output.line(f"  {line}")
     _print_binding(execution)
     _print_steps(execution, explain)
@@ -61,6 +76,8 @@ def show(outcome: Outcome, explain: bool) -> None:
         output.line(f"Done: {output.counted(done, 'step')}.")
         return
     output.line(stop_reason(execution))
+    if _sampling_helps(outcome):
+        output.line(SAMPLE)
     if outcome.unsampled:
         output.line(f"Sampling does not help: {outcome.unsampled}")
     left = len(execution.program.steps) - len(_reached(execution))
@@ -78,7 +95,7 @@ def document(outcome: Outcome, explain: bool) -> dict[str, Any]:
     return {
         "home": outcome.place.name,
         "executable": execution.executable,
-        "failure": _failure(execution),
+        "failure": _failure(outcome),
         "sampled": bool(outcome.as_it_is),
         "as_it_is": outcome.as_it_is or None,
         "not_sampled": outcome.unsampled or None,
@@ -93,16 +110,27 @@ def document(outcome: Outcome, explain: bool) -> dict[str, Any]:
     }
 
 
-def _failure(execution: Execution) -> dict[str, Any] | None:
-    from hearth.repair.remedies import remedy, stop_reason
-    from hearth.schemas.failure_words import step_number, why
+def _sampling_helps(outcome: Outcome) -> bool:
+    """Return whether an object is missing that `--sample` may add, and the option is not given already."""
+    from hearth.schemas.failures import Code
 
+    failure = outcome.trial.execution.failure
+    if failure is None or failure.code != Code.UNBOUND or outcome.sampling:
+        return False
+    return failure.actual == "it has none" or failure.actual.startswith("other objects")
+
+
+def _failure(outcome: Outcome) -> dict[str, Any] | None:
+    from hearth.repair.remedies import remedy, stop_reason
+    from hearth.schemas.failure_words import why
+
+    execution = outcome.trial.execution
     failure = execution.failure
     if failure is None:
         return None
-    number = step_number(execution.program, failure)
-    words = {"message": stop_reason(execution), "why": why(failure), "remedy": remedy(execution) or None}
-    return {"code": failure.code, "step": number, **asdict(failure), **words}
+    advice = remedy(execution) or (SAMPLE if _sampling_helps(outcome) else None)
+    words = {"message": stop_reason(execution), "why": why(failure), "remedy": advice}
+    return {**(failure_document(failure, execution.program) or {}), **words}
 
 
 def _explained(execution: Execution) -> Iterator[dict[str, Any]]:
@@ -215,13 +243,3 @@ def _text(steps: tuple[Step, ...]) -> str:
     from hearth.schemas.syntax import print_step
 
     return " | ".join(print_step(step, show_agent=len(steps) > 1) for step in steps)
-
-
-def failed(failure: Failure, program: Program) -> str:
-    """Return why no start could be sampled, with the step where the failure is about one."""
-    from hearth.schemas.failure_words import sentence, step_number
-    from hearth.schemas.syntax import print_step
-
-    number = step_number(program, failure) if failure.action else 0
-    step = print_step(program.steps[number - 1]) if 0 < number <= len(program.steps) else ""
-    return sentence(failure, number if step else 0, step)

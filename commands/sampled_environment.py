@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.commands.inputs import read_goals
 from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failure_words import in_program, sentence
 from hearth.schemas.failures import Code, Failure
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def _for_program(program: Program, home: Home, seed: int, size: Size) -> Drawn:
 
     found = sample(program, home, seed, program.title, size=size)
     if isinstance(found, Failure):
-        raise _failed(found)
+        raise _failed(found, in_program(found, program, code=False))
     environment, _ = found
     objects = {ref.key: ref.node for ref in environment.program.objects()}
     return Drawn(environment.world, {
@@ -59,7 +60,7 @@ def _for_goal(goal: Goal, home: Home, seed: int, size: Size) -> Drawn:
 
     found = sample_for_goal(goal, home, seed, size=size)
     if isinstance(found, Failure):
-        raise _failed(found)
+        raise _failed(found, sentence(found, code=False))
     environment, progress = found
     rows = [{"predicate": str(predicate), "wanted": wanted, "met": met}
             for (predicate, wanted), met in zip(goal, progress.counts, strict=True)]  # fmt: skip
@@ -68,9 +69,6 @@ def _for_goal(goal: Goal, home: Home, seed: int, size: Size) -> Drawn:
     return Drawn(environment.world, {"goal": rows})
 
 
-def _failed(failure: Failure) -> HearthError:
+def _failed(failure: Failure, message: str) -> HearthError:
     hint = "another home, fewer of them, or another goal"
-    message = failure.message()
-    if not failure.action:
-        message = f"{', '.join(failure.names)}: expected {failure.expected}, found {failure.actual}"
     return HearthError(Diagnostic(failure.code, message, suggestion=hint))

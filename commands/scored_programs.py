@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from hearth.commands import inputs
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring.environments import GRAPH, HOME
@@ -55,7 +56,9 @@ def _unplaced(pair: Pair) -> dict[str, object]:
 
 def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults, fuzzy: Fuzzy) -> Iterator[Pair]:
     number = 0
-    for found in inputs.read_programs(path, known, name, "", fuzzy):
+    with recognizing(known):
+        programs = list(inputs.read_programs(path, known, name, "", fuzzy))
+    for found in programs:
         if isinstance(found, Reject):
             rejects.reject(found.diagnostics)
         elif not found.program.steps and all(fault.code is Code.EMPTY for fault in found.faults):

@@ -1,7 +1,7 @@
 """Errors of Hearth in place of those that reading a damaged dataset raises."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -59,13 +59,13 @@ _OF_FILES = frozenset({"InvalidInputException", "ConversionException"})
 """Errors of DuckDB that are about a file, where they name one: it is damaged, or its columns have other types."""
 
 
-def refused_question(error: Exception, folder: Path, names: Iterable[str] = ()) -> HearthError:
+def refused_question(error: Exception, folder: Path, names: Mapping[str, Sequence[str]]) -> HearthError:
     """Return the error of a question that DuckDB did not answer: it, or a table of the folder, is at fault.
 
     Args:
         error: DuckDB's error.
         folder: of the dataset.
-        names: of all columns, tables and views, which may have been meant by an unknown one.
+        names: of all columns, of all tables and views, and of all functions, by `column`, `table` and `function`.
     """
     message = str(error).split("\n\n", 1)[0]
     if "Required module" in message:
@@ -100,8 +100,12 @@ def too_big(message: str) -> HearthError:
                           suggestion=remedy)  # fmt: skip
 
 
-def _unknown(name: str, kind: str, names: Iterable[str]) -> HearthError:
-    near = near_names(name, {key_of(each): each for each in names})
+def _unknown(name: str, kind: str, names: Mapping[str, Sequence[str]]) -> HearthError:
+    kind = "table" if kind == "view" else kind
+    near = near_names(name, {key_of(each): each for each in names.get(kind, ()) if key_of(each) != key_of(name)})
+    other = next((each for each, known in names.items() if each != kind and name.lower() in known), "")
     meant = f"did you mean {' or '.join(f'`{each}`' for each in near)}?" if near else ""
+    if other:
+        meant = f"{meant} `{name.lower()}` is a {other}".strip()
     remedy = meant or "`DESCRIBE programs` prints the columns of a table, `SHOW TABLES` the tables"
     return HearthError(Diagnostic(Code.BAD_ARGUMENT, f"there is no {kind} `{name}`", found=name, suggestion=remedy))

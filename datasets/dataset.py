@@ -210,11 +210,15 @@ class Dataset:
                     raise KeyboardInterrupt from error
                 raise refused_question(error, self.folder, self._names()) from error
 
-    def _names(self) -> list[str]:
-        """Every name of a column, table or view, for questions that name none."""
-        query = "SELECT column_name FROM duckdb_columns() UNION SELECT view_name FROM duckdb_views()"
-        query += " UNION SELECT function_name FROM duckdb_functions() WHERE NOT internal"
-        return [name for (name,) in self.connection.execute(query).fetchall()]
+    def _names(self) -> dict[str, list[str]]:
+        """Every name of a column, a table or view, and a function, for questions that name none."""
+        query = "SELECT 'column', column_name FROM duckdb_columns() UNION SELECT 'table', view_name FROM duckdb_views()"
+        query += " UNION SELECT 'table', table_name FROM duckdb_tables()"
+        query += " UNION SELECT 'function', function_name FROM duckdb_functions() WHERE NOT internal"
+        found: dict[str, list[str]] = {}
+        for kind, name in self.connection.execute(f"{query} ORDER BY ALL").fetchall():
+            found.setdefault(kind, []).append(name)
+        return found
 
     def _explains(self, query: str) -> bool:
         return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
@@ -278,9 +282,13 @@ class Dataset:
         )
 
     def _unknown(self, program_id: str) -> str:
-        """Return the message for an id that no program has: ids like it, or where ids are found."""
+        """Return the message for an id that no program has: the program of an execution, or ids like it."""
         query = "SELECT program_id FROM programs ORDER BY jaro_winkler_similarity(program_id, $id) DESC, 1 LIMIT 3"
         near = ", ".join(f"`{row['program_id']}`" for row in self._rows(query, str(program_id)))
+        runs = self._rows("SELECT program_id FROM executions WHERE execution_id = $id", str(program_id))
+        if runs:
+            program = runs[0]["program_id"]
+            return f"`{program_id}` is an execution of a program: dataset[{program!r}].runs has its executions"
         return f"no program `{cut(str(program_id), 80)}` among {len(self):,}; the nearest ids are {near or 'none'}"
 
     @property

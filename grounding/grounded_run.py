@@ -32,8 +32,8 @@ class Trial:
     refused: Failure | None = None
 
 
-LEAST = Size(0, 0, 0)
-"""Of an environment to which nothing is added but what the program needs."""
+LEAST = Size(0, 0, 0, sparing=True)
+"""Of an environment to which nothing is added but what the program needs and the home has nowhere."""
 
 
 def as_given(program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT) -> Trial:

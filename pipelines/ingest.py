@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 
 from hearth.datasets.format.codecs import graph_of
 from hearth.datasets.format.shared_homes import write_home
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.description_lookup import Described
 from hearth.pipelines.crowd.duplicate_records import Repeated
@@ -164,6 +165,11 @@ def _scanned(entry: Recognised, columns: Asked) -> Iterator[Item]:
 
 def partitions(job: Job) -> Iterator[Partition]:
     """Shares of the sources, each of one source."""
+    with recognizing(knowledge(job.settings)):
+        yield from _partitions(job)
+
+
+def _partitions(job: Job) -> Iterator[Partition]:
     share: list[tuple[str, Item]] = []
     weight = 0
     number = 0
@@ -250,7 +256,8 @@ class Context(NamedTuple):
 
 def process(record: Found, context: Context) -> list[IngestedRow | Reject]:
     """Read one record; a scene that is not a home in which something can run is refused."""
-    found = read(record["item"], record["source"], context.salt)
+    with recognizing(knowledge(context.settings)):
+        found = read(record["item"], record["source"], context.salt)
     for row in found:
         if not isinstance(row, Reject) and row["kind"] == "scene":
             scene_graphs.check(row, knowledge(context.settings))

@@ -6,9 +6,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.step_phrases import say
 from hearth.repair.handlers.common import Edit, RepairContext, tick_start
 from hearth.repair.handlers.registry import HANDLERS
-from hearth.schemas.failure_words import listed, sentence, step_number
+from hearth.schemas.failure_words import in_program, listed, step_number
 from hearth.schemas.program import Step
-from hearth.schemas.syntax import print_step
 from hearth.simulation.engine import Execution
 
 MOST_STEPS = 4
@@ -18,12 +17,7 @@ MOST_STEPS = 4
 def stop_reason(execution: Execution) -> str:
     """Return why an execution stopped and the remedy, as one sentence; "" where it did not stop."""
     failure = execution.failure
-    if failure is None:
-        return ""
-    number = step_number(execution.program, failure)
-    steps = execution.program.steps
-    step = print_step(steps[number - 1]) if number <= len(steps) else ""
-    return sentence(failure, number, step, remedy(execution))
+    return "" if failure is None else in_program(failure, execution.program, remedy(execution))
 
 
 def remedy(execution: Execution) -> str:

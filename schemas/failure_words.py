@@ -3,26 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
+from hearth.schemas.spoken_words import fact_words, requirement_words, spoken
+from hearth.schemas.syntax import print_step
 
 MOST_NAMED = 4
 """Things that a sentence names."""
 
 
-def sentence(failure: Failure, number: int = 0, step: str = "", remedy: str = "") -> str:
+NO_USUAL_PLACE = "a usual place"
+"""The fact that NO_PLACE expects, for classes without placements."""
+
+
+def sentence(failure: Failure, number: int = 0, step: str = "", remedy: str | None = "", code: bool = True) -> str:
     """Return a failure in words: `step 3 failed: [Open] <fridge> (1.5): the fridge is open; leave it out (IS_OPEN)`.
 
     Args:
         failure: of any code.
         number: of the step, from 1; 0 where the failure is about no step.
         step: as the program has it.
-        remedy: what would fix it here; else what usually does.
+        remedy: what would fix it here; else what usually does. None: nothing is advised.
+        code: whether the code stands at the end.
     """
-    said = "; ".join(filter(None, (why(failure), remedy or REMEDIES.get(failure.code, ""))))
+    said = "; ".join(filter(None, (why(failure), "" if remedy is None else remedy or usual_remedy(failure))))
     begin = f"step {number} failed" if number else ""
-    return ": ".join(filter(None, (begin, step, f"{said} ({failure.code})")))
+    return ": ".join(filter(None, (begin, step, f"{said} ({failure.code})" if code else said)))
+
+
+def in_program(failure: Failure, program: Program, remedy: str = "", code: bool = True) -> str:
+    """Return a failure in words, with the step that it is about, if it is about one of the program."""
+    number = step_number(program, failure) if failure.action else 0
+    step = print_step(program.steps[number - 1]) if 0 < number <= len(program.steps) else ""
+    return sentence(failure, number if step else 0, step, remedy, code)
+
+
+def usual_remedy(failure: Failure) -> str:
+    """Return what usually helps; "" where nothing does. Of a step that no earlier one prevents, what helps the step."""
+    code = failure.code
+    if code is Code.CONTRADICTION and " by no step" in failure.actual:
+        code = Code.__members__.get(failure.expected.partition(":")[0], code)
+    return REMEDIES.get(code, "")
 
 
 def step_number(program: Program, failure: Failure) -> int:
@@ -55,11 +78,6 @@ def listed(names: Sequence[str]) -> str:
     rest = len(names) - len(shown)
     last = f"{rest} more thing{'s' * (rest > 1)}" if rest else shown.pop() if shown else "something"
     return f"{', '.join(shown)} and {last}" if shown else last
-
-
-def spoken(name: str) -> str:
-    """Return a class as people say it: `coffee maker`."""
-    return name.replace("_", " ")
 
 
 def _names(failure: Failure) -> tuple[str, str]:
@@ -113,6 +131,22 @@ def _conflict(failure: Failure) -> str:
     return f"{inner}, after the other character's act in the same step"
 
 
+def _not_afforded(failure: Failure) -> str:
+    needed = requirement_words(failure.expected) or "another"
+    return f"[{failure.action}] does not work with the {_names(failure)[0]}: its object must be {needed}"
+
+
+def _contradiction(failure: Failure) -> str:
+    """Return the words for a step that an earlier one makes impossible, or the start of any home."""
+    code, _, _ = failure.expected.partition(":")
+    known = Code.__members__.get(code)
+    if known is None:
+        return _facts("the program contradicts itself")(failure)
+    inner = why(replace(failure, code=known, expected="", actual=""))
+    _, by, step = failure.actual.rpartition("made impossible by ")
+    return f"{inner} after {step}" if by else f"{inner}, and no start of the home makes that possible"
+
+
 def _no_room(failure: Failure) -> str:
     if failure.expected.startswith("a home with"):
         return f"this takes {failure.expected}; {failure.actual}"
@@ -136,7 +170,7 @@ def _facts(words: str) -> Callable[[Failure], str]:
 
     def said(failure: Failure) -> str:
         known = (("needed", failure.expected), ("found", failure.actual))
-        facts = ", ".join(f"{word} {fact}" for word, fact in known if fact)
+        facts = ", ".join(f"{word} {fact_words(fact)}" for word, fact in known if fact)
         return f"{words}: {facts}" if facts else words
 
     return said
@@ -155,6 +189,10 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
     (Code.NOT_FACING, "the seat facing it"): "the seat does not face the {0}",
     (Code.NOT_AFFORDED, "two different things"): "the {0} is named twice, and this takes two different things",
     (Code.NO_PATH, "something with a place"): "nobody knows where the {0} stands",
+    (
+        Code.NO_PLACE,
+        NO_USUAL_PLACE,
+    ): "nobody knows where a {0} belongs: the home has none, and no place is usual for it",
     (Code.NO_PLACE, "a home with geometry"): "the home does not say where in the room things are",
     (Code.CONFLICT, "one instruction an agent and tick"): "one character is to do two things at the same time",
     (Code.NOT_SIMULATED, "a character at a place"): "the home does not say where the character stands",
@@ -192,7 +230,7 @@ WHY: Mapping[Code, Words] = {
     Code.FUZZY_MATCH: "this was read as something similar",
     Code.NO_STEP: "this line was left out: it is not numbered as the steps are",
     # Objects of an action
-    Code.NOT_AFFORDED: "[{action}] does not work with the {0}: its object must be {expected}",
+    Code.NOT_AFFORDED: _not_afforded,
     Code.NOT_SIMULATED: "[{action}] can be written, but the simulator does not execute it",
     # A program as a whole
     Code.NEAR_DUPLICATE: "it is nearly the same as another program",
@@ -233,7 +271,7 @@ WHY: Mapping[Code, Words] = {
     Code.UNKNOWN_AGENT: _agent,
     # Grounding
     Code.UNBOUND: _unbound,
-    Code.CONTRADICTION: _facts("the program contradicts itself"),
+    Code.CONTRADICTION: _contradiction,
     Code.NO_PLACE: _no_place,
     Code.CONDITION_UNMET: _facts("no home could be made in which a condition holds"),
     # Augmenting
@@ -288,7 +326,7 @@ MEANINGS: Mapping[Code, str] = {
 """Words for a code alone, where those of a failure need its facts."""
 
 REMEDIES: Mapping[Code, str] = {
-    Code.UNBOUND: "use another object or home, or `--sample` to add it",
+    Code.UNBOUND: "use another object or home",
     Code.NOT_AFFORDED: "use another object or action",
     Code.NOT_SIMULATED: "use an action that is executed",
     Code.UNKNOWN_ACTION: "use an action of the grammar",
@@ -297,7 +335,7 @@ REMEDIES: Mapping[Code, str] = {
     Code.NO_PATH: "go another way",
     Code.NO_ROOM: "use a home with such a room, or put the thing into one",
     Code.NO_PLACE: "use another place",
-    Code.CONTRADICTION: "leave one of the two out",
+    Code.CONTRADICTION: "leave one of these steps out",
     Code.CONDITION_UNMET: "use another home",
     Code.HELD_ALREADY: "leave this step out",
     Code.NOT_CLOSE: "walk to it first",

@@ -8,6 +8,15 @@ from typing import Any, Final
 NEEDED: Final = {"nodes": ("id", "class_name"), "edges": ("from_id", "relation_type", "to_id")}
 """Keys that every node and every edge has."""
 
+ELSEWHERE: Final = {
+    "id": ("node_id", "nodeid", "uid", "key", "object_id", "objectid"),
+    "class_name": ("class", "classname", "label", "type", "name", "object_type"),
+    "from_id": ("from", "source", "src", "subject", "head", "fromid", "source_id", "from_node", "start", "u"),
+    "relation_type": ("relation", "predicate", "rel", "type", "label", "relationtype", "edge_type", "name", "key"),
+    "to_id": ("to", "target", "dst", "object", "tail", "toid", "target_id", "to_node", "end", "v"),
+}
+"""The names that other projects' graphs have for these keys, in lower case."""
+
 REMEDY: Final = "nodes need id and class_name; edges need from_id, relation_type and to_id"
 
 _SHOWN = 6
@@ -35,7 +44,18 @@ def _lacks(data: Any) -> Iterator[str]:
             if not isinstance(entry, Mapping):
                 yield f"{kind} {number} is {str(entry)[:40]!r} instead of an object with {', '.join(keys)}"
             elif missing := [f"`{key}`" for key in keys if key not in entry]:
-                yield f"{kind} {number} has no {' and no '.join(missing)}; it has {_keys(entry)}"
+                yield f"{kind} {number} has no {' and no '.join(missing)}; it has {_keys(entry)}{_renamed(keys, entry)}"
+
+
+def _renamed(keys: Sequence[str], entry: Mapping[str, Any]) -> str:
+    """Return which of its keys to rename, where others call the missing ones so."""
+    lower = {str(key).lower(): str(key) for key in entry}
+    found = [
+        f"`{lower[other][:40]}` to `{key}`"
+        for key in keys
+        if key not in entry and (other := next((each for each in ELSEWHERE[key] if each in lower), ""))
+    ]
+    return f": rename {', '.join(found)}" if found else ""
 
 
 def _keys(entry: Mapping[str, Any]) -> str:

@@ -13,6 +13,7 @@ from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
@@ -100,7 +101,8 @@ def _read(dataset: Dataset, file: Path, rejects: FirstFaults | None = None, fuzz
     """Return a pair for each execution of a dataset; `line` is 0 where the file lacks it."""
     opened.cache_clear()
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
-    return read_pairs(file, known, LineReader(dataset.knowledge, fuzzy), _named(dataset), rejects)
+    with recognizing(dataset.knowledge):
+        return read_pairs(file, known, LineReader(dataset.knowledge, fuzzy), _named(dataset), rejects)
 
 
 def score_steps(

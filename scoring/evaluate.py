@@ -20,7 +20,17 @@ from hearth.scoring.metrics import executability as running
 from hearth.scoring.metrics.executability import ErrorClass, Executability, executability
 from hearth.scoring.metrics.goal_progress import Achieved, GoalScore, of_given, signatures_of
 from hearth.scoring.metrics.goals import goal_of
-from hearth.scoring.metrics.graph_f1 import FAILED, MATCH, SCOPE, GraphScore, MatchBy, Scope, f1_signature, named
+from hearth.scoring.metrics.graph_f1 import (
+    FAILED,
+    MATCH,
+    SCOPE,
+    GraphScore,
+    MatchBy,
+    Scope,
+    f1_signature,
+    named,
+    written_f1_signature,
+)
 from hearth.scoring.metrics.graph_f1 import score as graph_score
 from hearth.scoring.metrics.lcs import LEVELS, LcsScore, lcs_signature, score_pairs
 from hearth.scoring.metrics.parsability import SIGNATURE as PARSABLE
@@ -110,6 +120,11 @@ def _whole(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
     return float(value(scored.goal)) if scored.goal else None
 
 
+def _f1(value: Callable[[GraphScore], float]) -> Callable[[Scored], float | None]:
+    """Return an F1 of final graphs, which is 0 for a prediction without steps."""
+    return lambda scored: None if scored.graph is None else 0.0 if scored.empty else value(scored.graph)
+
+
 def _lcs(level: str, by_instance: bool = False) -> Callable[[Scored], float | None]:
     def value(scored: Scored) -> float | None:
         found: float = getattr(scored.by_instance if by_instance else scored.lcs, level)
@@ -162,9 +177,12 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
     "parsable_names": lambda s: float(s.parse is not None and s.parse.named),
     "executable": _executable,
     "executable_filled": lambda s: None if s.empty else _executable(s),
-    "f1_state": lambda s: s.graph.states.f1 if s.graph else None,
-    "f1_relation": lambda s: s.graph.relations.f1 if s.graph else None,
-    "f1": lambda s: s.graph.both.f1 if s.graph else None,
+    "f1_state": _f1(lambda found: found.states.f1),
+    "f1_relation": _f1(lambda found: found.relations.f1),
+    "f1": _f1(lambda found: found.both.f1),
+    "f1_state_published": lambda s: s.graph.states.f1 if s.graph else None,
+    "f1_relation_published": lambda s: s.graph.relations.f1 if s.graph else None,
+    "f1_published": lambda s: s.graph.both.f1 if s.graph else None,
     "goal": lambda s: _left(s, lambda found: found.reached),
     "goal_fraction": lambda s: _left(s, lambda found: found.fraction),
     "goal_whole": lambda s: _whole(s, lambda found: found.whole),
@@ -172,8 +190,11 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
 }
 """Every score by name, from 0 to 1; None if it does not apply.
 
-`goal` counts only literals that did not hold at the start. `goal_whole` is the reading before version 2, which counts
-all. To add a scorer: a module, a row here, a test.
+`f1` of an empty prediction is 0. In the thesis's reading, `f1_published`, an empty program runs: it shares the
+character's place with its reference, or has no state as its reference. `goal` counts only literals that did not hold at
+the start. `goal_whole` is the reading before version 2, which counts all.
+
+To add a scorer: a module, a row here, a test.
 """
 
 
@@ -220,7 +241,8 @@ def signatures(options: Options, own: int = 0) -> dict[str, str]:
         **{f"lcs_{level}_instances": lcs_signature(level, True) for level in ("step", "object")},
         "parsable": PARSABLE,
         "executable": running.SIGNATURE,
-        "f1": f1_signature(options.match, options.scope),
+        "f1": written_f1_signature(options.match, options.scope),
+        "f1_published": f1_signature(options.match, options.scope),
         **signatures_of(own),
     }
 

@@ -17,6 +17,7 @@ from hearth.datasets.format.codecs import (
 )
 from hearth.grounding.environments.home_thinning import without
 from hearth.grounding.environments.sampling import Environment
+from hearth.schemas.failure_words import sentence
 from hearth.schemas.graph import Edge
 from hearth.schemas.graph_change import Change, State
 from hearth.schemas.row_types import DifferenceRow
@@ -124,7 +125,7 @@ def difference_on_replay(case: CaseRow, homes: Source) -> str:
     execution = rerun(case, homes)
     if (execution.failure and failure_row(execution.failure)) != case["failure"]:
         expected = case["failure"]["code"] if case["failure"] else "no failure"
-        found = execution.failure.message() if execution.failure else "it runs to its end"
+        found = sentence(execution.failure) if execution.failure else "it runs to its end"
         return f"the row says {expected}, but {found}"
     changes = execution.changes()
     if len(changes) != len(case["ticks"]):

@@ -10,8 +10,10 @@ from typing import NamedTuple
 from hearth.grounding.environments.home_thinning import superfluous, without
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failure_words import NO_USUAL_PLACE
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge
+from hearth.schemas.spoken_words import spoken
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import extended
@@ -107,13 +109,17 @@ class Base:
             if self.instances(name):
                 return None
             rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)})) or "none"
-            return Code.NO_ROOM, f"a home with a {name}, or a room that serves as one", f"{home.name} has {rooms}"
+            return (
+                Code.NO_ROOM,
+                f"a home with a {spoken(name)}, or a room that serves as one",
+                f"{home.name} has {rooms}",
+            )
         known = knowledge.object_class(name)
         if known is None or known.category in WITHOUT_PLACE or known.rooms or self.instances(name):
             return None
         if knowledge.placements(name):
             return None
-        return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
+        return Code.NO_PLACE, NO_USUAL_PLACE, "none"
 
     def _spots(self, name: str) -> Spots:
         """Return where a thing of a class belongs in this home, by the knowledge's placements and their weights.

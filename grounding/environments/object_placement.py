@@ -12,6 +12,10 @@ from hearth.schemas.program import Program
 from hearth.simulation.actions.origins import remembered
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+
+USUAL_PLACE = 4
+"""The weight of a placement that is usual; rarer ones are for homes that differ: milk in a trashcan."""
 
 _LINKS = {"in": "ON", "inside": "INSIDE", "atreach": "CLOSE", "together": "", "facing": "FACING"}
 
@@ -109,20 +113,26 @@ def _chosen(partial: PartialEnvironment, requirements: Requirements, key: Key) -
     if candidates and placing is None:
         # Being at reach, facing or in one room can be arranged without moving anything.
         return home.ids[partial.rng.choice(candidates)]
-    movable = [
-        i for i in candidates if home.properties["GRABBABLE"] >> i & 1 and not home.bears[i] and not home.contents[i]
-    ]
+    movable = _movable(home, candidates)
+    if not movable and partial.sparing:
+        movable = _movable(home, _candidates(partial, requirements, key, -1, in_sight=False))
     if movable:
         node_id = home.ids[partial.rng.choice(movable)]
+        settled = room if room >= 0 else partial.room_of(node_id)
         partial.lift(node_id)
-        partial.settle(node_id, room if room >= 0 else partial.room_of(node_id))
+        partial.settle(node_id, settled)
     else:
         node_id = partial.add(key[0], room if room >= 0 else _any_room(partial, key))
     if placing is not None:
         partial.put(node_id, _LINKS[placing.name], partial.binding[_anchor(placing)])
-    elif node_id in partial.new:
+    elif node_id in partial.new or node_id in partial.room:
         put_where_it_belongs(partial, key[0], node_id, room, must=_put_back(requirements, key))
     return node_id
+
+
+def _movable(home: Home, candidates: Sequence[int]) -> list[int]:
+    """Return the things that can be taken elsewhere, with nothing on or in them."""
+    return [i for i in candidates if home.properties["GRABBABLE"] >> i & 1 and not home.bears[i] | home.contents[i]]
 
 
 def _wanted_room(partial: PartialEnvironment, requirements: Requirements, key: Key, links: Sequence[Condition]) -> int:
@@ -212,6 +222,9 @@ def put_where_it_belongs(partial: PartialEnvironment, name: str, node_id: int, r
             for i in indices(surfaces)
             if room < 0 or (base.room[i] >= 0 and home.ids[base.room[i]] == room)
         ]
+    if partial.sparing:
+        usual = min(USUAL_PLACE, max((weight for _, _, weight in good), default=0))
+        good = [each for each in good if each[2] >= usual]
     if good:
         ((i, relation, _),) = partial.rng.choices(good, [weight for _, _, weight in good])
         if room < 0 and base.room[i] >= 0:

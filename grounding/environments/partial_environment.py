@@ -27,12 +27,15 @@ class PartialEnvironment:
         movable: the random things, which come last.
         first_id: the first new node's; those after it are numbered on.
         made_bed: whether beds stay made, as by the rule of that name.
+        sparing: whether things of the home are moved to where they are needed before others are added. New things
+            then stand in usual places.
     """
 
-    def __init__(self, base: Base, rng: Random, made_bed: bool = True) -> None:
+    def __init__(self, base: Base, rng: Random, made_bed: bool = True, sparing: bool = False) -> None:
         self.base = base
         self.rng = rng
         self.made_bed = made_bed
+        self.sparing = sparing
         self.nodes: list[Node] = []
         self.added: list[Edge] = []
         self.removed: list[Edge] = []

@@ -92,12 +92,14 @@ class Size:
         least, most: the number is drawn from between.
         some: how many random ones are added at most to a home that is larger.
         thin: whether a larger home loses some of its nodes instead.
+        sparing: whether things of the home are moved to where they are needed before others are added.
     """
 
     least: int = 280
     most: int = 300
     some: int = 12
     thin: bool = False
+    sparing: bool = False
 
     @classmethod
     def about(cls, nodes: int) -> Size:
@@ -198,7 +200,7 @@ def draw(
 ) -> Environment:
     """One environment in which the conditions hold; the program was not run in it yet."""
     generator = rng(seed, "sample", base.home.name, record_id, attempt)
-    partial = PartialEnvironment(base, generator, rules.made_bed)
+    partial = PartialEnvironment(base, generator, rules.made_bed, size.sparing)
     bind(partial, requirements_of(program, conditions, base.knowledge))
     fulfil(partial, conditions)
     settle_character(partial, program, conditions)
@@ -207,7 +209,10 @@ def draw(
 
 
 def settle_character(partial: PartialEnvironment, program: Program, conditions: Preconditions) -> None:
-    """Return where its conditions want the character, else in another room than the program starts in."""
+    """Put the character where its conditions want it, else in another room than the program starts in.
+
+    A sparing environment leaves it in its room.
+    """
     base = partial.base
     home = base.home
     me = base.character
@@ -217,6 +222,8 @@ def settle_character(partial: PartialEnvironment, program: Program, conditions: 
         room = partial.room[me]
     elif near:
         room = partial.room_of(partial.binding[near[0]])
+    elif partial.sparing and base.start.agents[0].inside & home.rooms:
+        room = home.ids[next(indices(base.start.agents[0].inside & home.rooms))]
     else:
         first = next((ref.key for step in program.steps for ref in step.objects), None)
         begin = partial.binding.get(first, -1) if first else -1

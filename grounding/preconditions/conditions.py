@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from hearth.schemas.literals import Key, Literal
 from hearth.schemas.short_repr import brief
+from hearth.schemas.spoken_words import spoken
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +44,7 @@ class Condition:
 
     def in_words(self) -> str:
         """For people: `cup (1) is on table (1)`."""
-        subject, *others = (f"{name} ({instance})" for name, instance in self.objects)
+        subject, *others = (f"{spoken(name)} ({instance})" for name, instance in self.objects)
         return " ".join((subject, "is", _IN_WORDS.get(self.name, self.name), *others[: self.name not in _ABOUT_ONE]))
 
 

@@ -5,7 +5,9 @@ that needs it, and a contradictory program is reported with the step that fails 
 condition (thesis 5.5.2: the function Phi).
 """
 
+from collections.abc import Set
 from dataclasses import replace
+from itertools import islice
 
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
@@ -14,7 +16,7 @@ from hearth.grounding.preconditions.minimal_home import SketchHome, sketch
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key, Literal
-from hearth.schemas.program import Program
+from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.world import World
@@ -40,17 +42,20 @@ def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Pre
     """
     program = program.numbered()
     conditions, execution, step = _inferred(program, knowledge, rules)
-    return conditions if execution.failure is None else _contradiction(program, conditions, execution, step, knowledge)
+    if execution.failure is None:
+        return conditions
+    return _contradiction(program, conditions, execution, step, knowledge, rules)
 
 
 def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> tuple[int, ...]:
-    """Return the steps of a contradiction: one, or the one that violates another's condition and that other."""
+    """Return the steps of a contradiction: one that no start makes possible, or it and those that prevent it."""
     program = program.numbered()
     conditions, execution, step = _inferred(program, knowledge, rules)
     if execution.failure is None:
         return ()
-    culprit = None if execution.failure.code in CAUSED_BY_START else _culprit(program, conditions, step, knowledge)
-    return (step,) if culprit is None else (culprit, step)
+    if execution.failure.code in CAUSED_BY_START:
+        return (step,)
+    return (*_culprits(program, conditions, execution.failure.code, step, knowledge, rules), step)
 
 
 def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> tuple[Preconditions, Execution, int]:
@@ -136,23 +141,67 @@ def _step_of(program: Program, tick: int) -> int:
 
 
 def _contradiction(
-    program: Program, conditions: Preconditions, execution: Execution, step: int, knowledge: Knowledge
+    program: Program, conditions: Preconditions, execution: Execution, step: int, knowledge: Knowledge, rules: Rules
 ) -> Failure:
     failure = execution.failure
     assert failure is not None
     if failure.code in CAUSED_BY_START:
         return failure
-    culprit = _culprit(program, conditions, step, knowledge)
-    by = (
-        "by no step" if culprit is None else f"made impossible by step {culprit + 1}, [{program.steps[culprit].action}]"
-    )
+    culprits = _culprits(program, conditions, failure.code, step, knowledge, rules)
+    named = " and ".join(f"step {number + 1}, [{program.steps[number].action}]" for number in culprits)
+    by = f"made impossible by {named}" if culprits else "by no step"
     needed = f"{failure.code}: {failure.expected} at step {step + 1}"
     return replace(failure, code=Code.CONTRADICTION, expected=needed, actual=f"{failure.actual}; {by}")
 
 
-def _culprit(program: Program, conditions: Preconditions, step: int, knowledge: Knowledge) -> int | None:
-    """Return the step that needed or did the opposite: the one a condition on the same object stems from, else the last
-    earlier step about that object, else the last that moved the character.
+def _culprits(
+    program: Program, conditions: Preconditions, code: Code, step: int, knowledge: Knowledge, rules: Rules
+) -> tuple[int, ...]:
+    """Return the earlier steps that make a step impossible: without one of them, some start makes it possible.
+
+    Where no single one does, the last step is named without which, and without those after it, the step is possible;
+    none where no start makes the step alone possible, unless without a step about the same object it is. A step that
+    needs a free hand has a culprit for each hand.
+    """
+    guess = _likely_culprit(program, conditions, step, knowledge)
+    alone = _possible(_until(program, step, {*range(step)}), knowledge, rules)
+    before = [n for n in range(step - 1, -1, -1) if alone or _share(program.steps[n], program.steps[step])]
+    order = dict.fromkeys([*([] if guess is None else [guess]), *before])
+    needed = (number for number in order if _possible(_until(program, step, {number}), knowledge, rules))
+    found = tuple(sorted(islice(needed, 2 if code is Code.NO_FREE_HAND else 1)))
+    if found:
+        return found
+    suffixes = ({*range(first, step)} for first in range(step - 1, -1, -1) if alone)
+    last = next((left for left in suffixes if _possible(_until(program, step, left), knowledge, rules)), None)
+    return () if last is None else (min(last),)
+
+
+def _share(one: Step, other: Step) -> bool:
+    """Return whether two steps are about the same object."""
+    return not {ref.key for ref in one.objects}.isdisjoint(ref.key for ref in other.objects)
+
+
+def _until(program: Program, step: int, left_out: Set[int]) -> Program:
+    """Return the program up to a step, without some of the steps before."""
+    steps: list[Step] = []
+    for number, each in enumerate(program.steps[: step + 1]):
+        if number not in left_out:
+            begins = each.joins and (not steps or number - 1 in left_out)
+            steps.append(replace(each, joins=False) if begins else each)
+    return program.with_steps(steps)
+
+
+def _possible(program: Program, knowledge: Knowledge, rules: Rules) -> bool:
+    """Return whether some start makes a program run."""
+    _, execution, _ = _inferred(program, knowledge, rules)
+    return execution.failure is None
+
+
+def _likely_culprit(program: Program, conditions: Preconditions, step: int, knowledge: Knowledge) -> int | None:
+    """Return the step that probably needed or did the opposite, which is tried first.
+
+    The one a condition on the same object stems from, else the last earlier step about that object, else the last that
+    moved the character.
     """
     keys = {ref.key for ref in program.steps[step].objects}
     changing = frozenset[str]().union(*map(knowledge.group, ("operates", "takes", "frees_hand", "dresses")))

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hearth.kb.language.program_names import action_of
-from hearth.kb.loading.load import default
+from hearth.kb.language.recognition_knowledge import recognition
 from hearth.kb.spelling import key_of
 
 ACTIONS = (
@@ -30,7 +30,7 @@ OBJECTS = frozenset({
 
 def names_action(name: str, things: Sequence[str] = ()) -> bool:
     """Return whether a name is that of an action, or one that programs use for it with these things."""
-    return default().action(name) is not None or bool(action_of(default(), name, things))
+    return recognition().action(name) is not None or bool(action_of(recognition(), name, things))
 
 
 def action_key(value: Mapping[str, Any]) -> str:
@@ -39,8 +39,8 @@ def action_key(value: Mapping[str, Any]) -> str:
     found = next((name for name in ACTIONS if name in texts), "")
     if found in _WITH_OBJECTS | _WITH_KNOWN and not any(map(holds_object, value)):
         return ""
-    if found in _WITH_KNOWN and default().action(verb := last_name(value[texts[found]])) is None:
-        return texts[found] if key_of(verb) in default().called else ""
+    if found in _WITH_KNOWN and recognition().action(verb := last_name(value[texts[found]])) is None:
+        return texts[found] if key_of(verb) in recognition().called else ""
     return texts[found] if found else ""
 
 

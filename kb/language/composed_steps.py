@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.program_names import action_of, words_of
-from hearth.kb.loading.load import default
+from hearth.kb.language.recognition_knowledge import recognition
 
 
 def composed_step(name: str, objects: Sequence[str], relation: str = "") -> str:
@@ -18,12 +18,12 @@ def composed_step(name: str, objects: Sequence[str], relation: str = "") -> str:
     words = words_of(name)
     if not objects and " " in words:
         return words.lower()
-    return written(action_of(default(), name, objects, relation) or name, list(map(class_of, objects)))
+    return written(action_of(recognition(), name, objects, relation) or name, list(map(class_of, objects)))
 
 
 def class_of(name: str) -> str:
     """Return the class of a thing that programs do not call so, and people do, as `the ice cream`; else the name."""
-    known = default()
+    known = recognition()
     if known.object_class(name) or known.is_room(name):
         return name
     return thing_of(known, name.replace("_", " ").lower()) or name

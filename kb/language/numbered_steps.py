@@ -21,6 +21,7 @@ from hearth.kb.language.plan_lines import (
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import REMEMBERED, Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
 from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
 from hearth.kb.language.step_phrases import say
 from hearth.kb.language.step_understanding import Candidate, Understood
@@ -54,6 +55,13 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuz
         known: the grammar.
         fuzzy: how far a line may be from one that is known.
     """
+    if is_recognizing(known):
+        return _parsed(text, before, place, known, fuzzy)
+    with recognizing(known):
+        return _parsed(text, before, place, known, fuzzy)
+
+
+def _parsed(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy) -> ParsedSteps:
     parser = _StepParser(known, place, fuzzy)
     raw = text.split("\n")
     lines = lines_of_program(text)

@@ -1,13 +1,12 @@
 """Steps as operators write them: a name and its things in any brackets, after keys, or in the tag of an element."""
 
 import re
-from functools import lru_cache
 
 from hearth.kb.language.action_keys import action_key, bare_key, holds_object, last_name, names_action
 from hearth.kb.language.composed_steps import composed_step, written
 from hearth.kb.language.lexicon import is_verb
 from hearth.kb.language.noun_phrases import thing_of
-from hearth.kb.loading.load import default
+from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
 
 _DOES = r"(?:(?:do|exec(?:ute)?|run|call|perform|invoke)\s+)?"
 _NAME = r"(?P<name>[A-Za-z][A-Za-z0-9]*(?:[_ .-][A-Za-z][A-Za-z0-9]*){0,3})"
@@ -38,7 +37,7 @@ _ELEMENT = re.compile(r"\s*<(?P<tag>[A-Za-z]\w*)\s+(?P<inner>[^<>]*?)/?>\s*(?:</
 _LONGEST = 300
 
 
-@lru_cache(maxsize=65_536)
+@recognized_cache(maxsize=65_536)
 def operator_step(text: str) -> str:
     """Return the step of a line that is an action with its things, in the syntax of programs; empty for another line.
 
@@ -62,7 +61,7 @@ def _of_words(text: str) -> str:
     name, things = plain["name"], plain["things"].lower().split()
     is_name = not name.isalpha() or not (name.islower() or name.istitle())
     if not things:
-        action = default().action(name) if is_name else None
+        action = recognition().action(name) if is_name else None
         return written(action.name, []) if action and not action.arity else ""
     if not _SMALL.isdisjoint(things):
         return ""
@@ -118,4 +117,4 @@ def _relation(pairs: list[tuple[str, str]]) -> str:
 
 def names_thing(name: str) -> bool:
     """Return whether a name is that of a thing or a room."""
-    return thing_of(default(), name.strip().replace("_", " ").lower()) is not None
+    return thing_of(recognition(), name.strip().replace("_", " ").lower()) is not None

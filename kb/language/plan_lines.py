@@ -3,9 +3,9 @@
 import html
 import re
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
+from hearth.kb.language.recognition_knowledge import recognized_cache
 from hearth.schemas.program_boundaries import TITLE, is_sentence
 
 _COUNTED = (
@@ -195,7 +195,7 @@ _SHORT = 200
 """Characters of a line that is remembered: a file is read several times, and plans say the same again and again."""
 
 
-@lru_cache(maxsize=16_384)
+@recognized_cache(maxsize=16_384)
 def _short_line(raw: str) -> PlanLine:
     return _line(raw)
 
@@ -329,7 +329,7 @@ def _header(found: tuple[PlanLine, ...]) -> Header:
     return Header(title, "\n".join([*above, *(line.text for line in found[at + 1 :])]))
 
 
-_short_header = lru_cache(maxsize=16_384)(_header)
+_short_header = recognized_cache(maxsize=16_384)(_header)
 
 
 def asked_title(line: str) -> str:

@@ -4,7 +4,6 @@ import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
-from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.language.forms import form_of, form_of_line
@@ -15,6 +14,7 @@ from hearth.kb.language.marked_lines import marked
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
+from hearth.kb.language.recognition_knowledge import recognized_cache
 from hearth.kb.language.unmarked_lines import (
     are_steps,
     chained,
@@ -102,7 +102,7 @@ def _plain(raw: str) -> tuple[tuple[PlanLine, Kind], ...]:
     return tuple((part, Kind.STEP) for part in _parts(line) if not _END.fullmatch(part.text))
 
 
-_short_plain = lru_cache(maxsize=16_384)(_plain)
+_short_plain = recognized_cache(maxsize=16_384)(_plain)
 
 
 def header(text: str) -> Header:
@@ -140,7 +140,7 @@ def _reading(lines: tuple[str, ...]) -> tuple[Unwrap | None, Form | None]:
     return unwrap, form_of([unwrap(line) for line in first]) if unwrap else None
 
 
-_short_reading = lru_cache(maxsize=512)(_reading)
+_short_reading = recognized_cache(maxsize=512)(_reading)
 
 _FEW = 8_000
 """Characters of first lines that are remembered: a file is recognized, parted, titled and read, each by its form."""

@@ -8,8 +8,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_noun, is_verb
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN
+from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
 from hearth.kb.language.typos import near_words
-from hearth.kb.loading.load import default
 from hearth.schemas.program_boundaries import is_sentence
 
 _SUBJECT = r"(?:i|you|he|she|we|they|the (?:robot|person|agent|character|man|woman|child|user))"
@@ -63,7 +63,7 @@ _HOW = re.compile(
 )
 
 
-@lru_cache(maxsize=65_536)
+@recognized_cache(maxsize=65_536)
 def is_like_step(text: str) -> bool:
     """Return whether words begin as a step does, with a verb that somebody does or is asked to do."""
     lead = _LEAD.match(text)
@@ -78,7 +78,7 @@ def is_like_step(text: str) -> bool:
 
 def _is_ours(word: str) -> bool:
     """Return whether a word begins an action as Hearth says it, which the lexicon may not have as a verb: `texts`."""
-    return not _beginnings(default()).isdisjoint((word, word.removesuffix("s")))
+    return not _beginnings(recognition()).isdisjoint((word, word.removesuffix("s")))
 
 
 @lru_cache(maxsize=8)
@@ -92,7 +92,7 @@ def _is_misspelled_verb(word: str) -> bool:
     """Return whether a word that English lacks is near a verb of actions."""
     if len(word) < _SHORTEST or is_noun(word) or not word.isascii():
         return False
-    return any(map(_is_ours, near_words(default(), word)))
+    return any(map(_is_ours, near_words(recognition(), word)))
 
 
 _SHORTEST = 4

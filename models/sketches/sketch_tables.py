@@ -34,8 +34,9 @@ TABLES = ("5.2", "5.3", "5.4", "5.5")
 PREDICTED = ("5.4", "5.5")
 """Tables of sketches that are predicted, from texts and from demonstrations."""
 
-COLUMNS = {"lcs": "lcs_step", "lcs_instances": "lcs_step_instances", "f1_relation": "f1_relation",
-           "f1_state": "f1_state", "f1": "f1", "goal": "goal", "goal_fraction": "goal_fraction",
+COLUMNS = {"lcs": "lcs_step", "lcs_instances": "lcs_step_instances",
+           "f1_relation": "f1_relation_published", "f1_state": "f1_state_published", "f1": "f1_published",
+           "goal": "goal", "goal_fraction": "goal_fraction",
            "executable": "executable", "parsable": "parsable", "goal_whole": "goal_whole"}  # fmt: skip
 """Columns of the tables, and the scores that they show; the thesis's LCS is by instance. Those of
 `PREDICTED` have `sketch`, too."""

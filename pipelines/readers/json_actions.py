@@ -9,7 +9,7 @@ from typing import Any
 from hearth.kb.language.action_keys import ACTIONS, action_key, bare_key, holds_object, last_name
 from hearth.kb.language.composed_steps import class_of
 from hearth.kb.language.program_names import action_of
-from hearth.kb.loading.load import default
+from hearth.kb.language.recognition_knowledge import recognition
 from hearth.pipelines.readers.placed_texts import Pairs, Text, composed, pairs_of, pieces_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -120,7 +120,7 @@ def _step(action: str, names: Sequence[str], relation: str = "") -> str:
     *verb, last = re.split(r"[\s_-]+", action.strip())
     if len(names) == 2 and verb and last.lower() in _BETWEEN:
         return composed(" ".join(verb), " ", names[0], f" {last} ", names[1])
-    meant = action_of(default(), action, names, relation) if names and are_names else ""
+    meant = action_of(recognition(), action, names, relation) if names and are_names else ""
     if meant:
         return _written(meant, [(class_of(name), "1") for name in names])
     if len(names) == 2 and relation in _BETWEEN:
@@ -135,7 +135,7 @@ _BETWEEN = frozenset({"on", "in", "into", "onto", "to", "from", "at", "with", "i
 def _takes(action: str, count: int) -> bool:
     """Return whether a word is the name of an action with no fewer objects."""
     name = _plain(action)
-    return any(each.arity >= count for each in default().actions.values() if each.name.lower() == name)
+    return any(each.arity >= count for each in recognition().actions.values() if each.name.lower() == name)
 
 
 def _plain(action: str) -> str:
@@ -144,7 +144,8 @@ def _plain(action: str) -> str:
 
 def is_known(action: str, objects: Sequence[str] = ()) -> bool:
     """Return whether a word is the name of an action, or one that programs use for it with these objects."""
-    return _plain(action) in {name.lower() for name in default().actions} or bool(action_of(default(), action, objects))
+    known = recognition()
+    return _plain(action) in {name.lower() for name in known.actions} or bool(action_of(known, action, objects))
 
 
 def _written(action: str, objects: Iterable[tuple[str, str]]) -> str:
@@ -192,7 +193,7 @@ def steps_of_mapping(value: dict[str, Any], source: str = "") -> list[str]:
                 known = nodes.setdefault(objects[-1][0], [])
                 known += [] if name in known else [str(name)]
                 objects[-1] = (objects[-1][0], f"{known.index(name) + 1}.{name}")
-        meant = "" if _takes(action, len(objects)) else action_of(default(), action, [name for name, _ in objects])
+        meant = "" if _takes(action, len(objects)) else action_of(recognition(), action, [name for name, _ in objects])
         found.append(_written(meant or action, objects))
     return found
 

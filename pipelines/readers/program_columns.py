@@ -1,13 +1,12 @@
 """The choice of a table's program column when no name decides: the column whose cells read as several steps."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.program_lines import is_plan, lines_of_program
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.kb.loading.load import default
+from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
 from hearth.pipelines.readers.step_texts import numbered, steps_of
 from hearth.schemas.diagnostics import HearthError
 
@@ -54,7 +53,7 @@ def _first(cells: Iterable[str]) -> list[str]:
     return [str(cell) for cell in cells if cell.strip()][:MOST_CELLS]
 
 
-@lru_cache(maxsize=4096)
+@recognized_cache(maxsize=4096)
 def _reading(text: str) -> Reading:
     if len(text) > _LONGEST or " " not in text.strip():
         return Reading(0, 1)
@@ -63,5 +62,5 @@ def _reading(text: str) -> Reading:
     except HearthError:
         return Reading(0, 1)
     lines = text if is_plan(steps) else numbered(steps, _NO_WORDS)[0]
-    found = parse_steps(lines, 0, "", default(), Fuzzy.OFF)
+    found = parse_steps(lines, 0, "", recognition(), Fuzzy.OFF)
     return Reading(len(found.program.steps), len(found.faults))

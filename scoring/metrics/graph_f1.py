@@ -61,6 +61,11 @@ def f1_signature(match: MatchBy = MATCH, scope: Scope = SCOPE) -> str:
     return signature("f1", match=match, scope=scope, empty=1)
 
 
+def written_f1_signature(match: MatchBy = MATCH, scope: Scope = SCOPE) -> str:
+    """Return the signature of a score by this module that is 0 for a program without steps."""
+    return signature("f1", 2, match=match, scope=scope, empty=1, no_steps=0)
+
+
 def named(program: Program) -> frozenset[int]:
     """Return the nodes that a bound program names."""
     return frozenset(ref.node for step in program.steps for ref in step.objects if ref.node is not None)

@@ -113,6 +113,9 @@ def test_nothing_outside_the_folder_is_read_or_written(dataset, tmp_path, monkey
         ("SELECT p.titel FROM programs p", "there is no column `titel` did you mean `title`"),
         ("SELECT * FROM program", "there is no table `program` did you mean `programs`"),
         ("SELECT progam_text('a')", "there is no function `progam_text` did you mean `program_text`"),
+        ("SELECT * FROM step", "there is no table `step` did you mean `steps`? `step` is a column"),
+        ("SELECT * FROM title", "there is no table `title`"),
+        ("SELECT * FROM STEP", "there is no table `STEP` did you mean `steps`?"),
         ("SELECT zzzzzz FROM programs", "there is no column `zzzzzz` `DESCRIBE programs` prints the columns"),
     ],
 )
@@ -120,6 +123,17 @@ def test_an_unknown_name_is_no_fault_of_syntax_and_has_near_names(dataset, sql, 
     result = run(dataset, sql)
     assert result.exit_code == 1 and "BAD_ARGUMENT" in result.output
     assert said in " ".join(result.output.replace("=", " ").split())
+
+
+def test_no_hint_is_the_unknown_name_itself(dataset):
+    """Every name of one kind, asked for as another: columns as tables, tables and functions as columns."""
+    names = hearth.load(dataset)._names()
+    asked = {"table": "SELECT * FROM {0}", "column": "SELECT {0} FROM ledger", "function": "SELECT {0}(1)"}
+    for kind, sql in asked.items():
+        for name in sorted({each for other, known in names.items() if other != kind for each in known})[::7]:
+            said = " ".join(run(dataset, sql.format(f'"{name}"')).output.split())
+            meant = said.partition("did you mean")[2].partition("?")[0]
+            assert f"`{name.lower()}`" not in meant.lower(), said
 
 
 def test_a_fault_of_syntax_stays_one(dataset):

@@ -47,7 +47,10 @@ def test_json_says_the_same(monkeypatch):
     assert [one["kind"] for one in pair["perturbations"]] == ["plugged", "door", "pet"]
     assert pair["attempts"][0]["before"] == pair["original"]
     for attempt in pair["attempts"]:
-        assert f"{attempt['attempt'] + 1:3}  {attempt['failure']['code']}" in page
+        assert (
+            f"{attempt['attempt']:3}  step {attempt['step']} failed: {attempt['before'][attempt['step'] - 1]}" in page
+        )
+        assert f"({attempt['failure']['code']})" in page
     for step in pair["repaired"]:
         assert step in page
 

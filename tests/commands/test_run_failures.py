@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from hearth.cli import app
-from hearth.commands.run_additions import additions
+from hearth.commands.run_additions import additions, names_of
 from hearth.grounding.grounded_run import LEAST, as_given, attempt
 from hearth.repair.remedies import stop_reason
 from hearth.schemas.failures import Code
@@ -94,7 +95,8 @@ def test_the_second_object_of_a_step_is_the_one_that_fails(tmp_path):
 def test_as_it_is_nothing_is_added(tmp_path):
     for options in ((), ("--as-is",)):
         found = json.loads(call(tmp_path, "[Walk] <sofa> (1)\n", "--json", *options, status=0))
-        assert found["added"] == {"objects": 0, "states": 0, "moved": 0} and not found["added_nodes"]
+        assert set(found["added"]) == {"objects", "states", "moved", "edges", "removed_edges"}
+        assert not any(found["added"].values()) and not found["added_nodes"]
     call(tmp_path, "[Walk] <sofa> (1)\n", "--as-is", "--sample", status=2)
 
 
@@ -153,6 +155,55 @@ def test_what_is_printed_is_the_difference_of_the_graphs(maple, lines, seed):
         moved = {e for e in set(after.edges) - set(start.edges) if e.source in old and e.target in old}
         loud = {e for e in moved if e.relation not in ("CLOSE", "FACING")}
         assert len([line for line in found.moved if "no longer" not in line]) == len(loud)
+        assert set(found.edges) == set(after.edges) - set(start.edges)
+        assert set(found.removed_edges) == set(start.edges) - set(after.edges)
+        assert_every_edge_is_printed(found, names_of(start, after))
+
+
+def assert_every_edge_is_printed(found, names):
+    """Each edge stands in the lines, once for a pair that is CLOSE in both directions, and the counts add up."""
+    text = list(found.lines(names))
+    for word, edges in (("added", found.edges), ("removed", found.removed_edges)):
+        heads = [n for n, line in enumerate(text) if re.match(rf"{word} \d+ edges?: ", line)]
+        assert len(heads) == bool(edges)
+        if not edges:
+            continue
+        head = text[heads[0]]
+        counts = [int(number) for number in re.findall(r"(\d+) [A-Z]", head)]
+        assert sum(counts) == len(edges) == int(head.split()[1])
+        block = list(takewhile(lambda line: line.startswith("  "), text[heads[0] + 1 :]))
+        printed = set()
+        for line in block:
+            source, _, relations = line.strip().partition(": ")
+            for part in relations.split("; "):
+                relation, _, targets = part.partition(" ")
+                printed |= {(source, relation, target) for target in targets.split(", ")}
+        assert printed | {(b, r, a) for a, r, b in printed if r == "CLOSE"} >= {
+            (names[e.source], e.relation, names[e.target]) for e in edges
+        }
+        assert len(printed) == len({(*sorted((a, b)), r) if r == "CLOSE" else (a, b, r) for a, r, b in printed})
+
+
+def test_a_run_that_samples_prints_every_edge_and_never_advises_sampling(tmp_path):
+    for page in PAGES:
+        if page == "two_characters":
+            continue
+        file = tmp_path / "p.txt"
+        file.write_text(f"A plan\n\n\n{PAGES[page]}")
+        text = CliRunner().invoke(app, ["run", str(file), "--sample"]).stdout
+        found = json.loads(CliRunner().invoke(app, ["run", str(file), "--sample", "--json"]).stdout)
+        assert "--sample" not in text and "--sample" not in json.dumps(found)
+        for key, word in (("edges", "added"), ("removed_edges", "removed")):
+            count = found["added"][key]
+            assert count == len(found["additions"][key])
+            assert (f"  {word} {count} edge" in text) == bool(count)
+
+
+def test_a_run_as_it_is_advises_sampling_where_it_may_help(tmp_path):
+    assert "`--sample`" in call(tmp_path, PAGES["missing"])
+    assert "`--sample`" in json.loads(call(tmp_path, PAGES["missing"], "--json"))["failure"]["remedy"]
+    assert "--sample" not in call(tmp_path, PAGES["not_close"])
+    assert "--sample" not in call(tmp_path, "[Walk] <sofa> (1)\n[Drink] <sofa> (1)\n")
 
 
 def test_no_place_is_said_in_plain_words():

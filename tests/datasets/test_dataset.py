@@ -326,7 +326,14 @@ def test_an_unknown_id_names_those_that_are_like_it(ds):
         _ = ds["x" * 10_000]
 
 
-@pytest.mark.parametrize("key", [0, None, slice(0, 2), ("a", "b")])
+def test_the_id_of_an_execution_is_answered_with_its_program(ds):
+    for execution, program in ds.rows("SELECT execution_id, program_id FROM executions ORDER BY 1")[1][:5]:
+        with pytest.raises(KeyError) as caught:
+            _ = ds[execution]
+        assert f"an execution of a program: dataset[{program!r}].runs" in str(caught.value.args[0])
+
+
+@pytest.mark.parametrize("key", [0, -1, None, slice(0, 2), ("a", "b")])
 def test_a_key_that_is_not_an_id_is_answered_with_the_keys_that_there_are(made, key):
     ds = hearth.load(made.out / "publish")
     first = next(iter(ds))

@@ -4,7 +4,7 @@ import pytest
 
 from hearth.datasets.format.case_rows import run_row
 from hearth.grounding.grounded_run import Trial, attempt
-from hearth.grounding.preconditions.precondition_inference import infer
+from hearth.grounding.preconditions.precondition_inference import at_odds, infer
 from hearth.kb import action_grammar
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
@@ -127,3 +127,27 @@ def test_an_action_that_is_not_executed_stays_that(knowledge):
 
 def test_the_character_has_a_name_of_its_own(knowledge):
     assert conditions_of(knowledge, "[StandUp]").has("sitting", CHARACTER)
+
+
+@pytest.mark.parametrize(
+    ("steps", "needing", "violating"),
+    [
+        # A walk between two acts of the hands does not belong to the contradiction.
+        (["[Walk] <sofa> (1)", "[Sit] <sofa> (1)", "[Touch] <sofa> (1)", "[Walk] <kitchen> (1)"], 4, (2,)),
+        (["[Grab] <cup> (1)", "[Grab] <plate> (1)", "[Walk] <sofa> (1)", "[Grab] <book> (1)"], 4, (1, 2)),
+        (["[Walk] <tv> (1)", "[SwitchOn] <tv> (1)", "[Walk] <sofa> (1)", "[SwitchOn] <tv> (1)"], 4, (2,)),
+        (["[Walk] <tv> (1)", "[SwitchOn] <tv> (1)", "[Find] <cup> (1)", "[SwitchOn] <tv> (1)"], 4, (2,)),
+        (["[Walk] <tv> (1)", "[Watch] <tv> (1)"], 2, ()),
+        (["[StandUp]", "[Walk] <bed> (1)", "[StandUp]"], 3, (1,)),
+    ],
+)
+def test_a_contradiction_names_the_steps_that_make_it(knowledge, steps, needing, violating):
+    """Without one of the named steps, the program up to the failing step runs from some start."""
+    program = read(knowledge, *steps)
+    found = infer(program, knowledge)
+    assert isinstance(found, Failure) and found.code is Code.CONTRADICTION, found
+    assert at_odds(program, knowledge) == (*(number - 1 for number in violating), needing - 1), found
+    until = program.steps[:needing]
+    for number in violating if steps[0] != "[StandUp]" else ():  # there, only both steps before it together prevent it
+        rest = [step for k, step in enumerate(until) if k != number - 1]
+        assert not isinstance(infer(program.with_steps(rest), knowledge), Failure)

@@ -19,15 +19,9 @@ READS = {
 """Files below that read knowledge because something names it."""
 
 RECOGNISES = {
-    "pipelines/readers/json_actions.py": "whether a key of JSON is an action, before the build's knowledge checks it",
-    "kb/language/forms/action_pairs.py": "whether pairs of words are actions with objects",
-    "kb/language/composed_steps.py": "which action a name in a program calls, as `pick_up`",
-    "kb/language/action_keys.py": "whether a key of a mapping names an action",
-    "kb/language/operators.py": "whether a line is an action with its objects",
-    "kb/language/unmarked_lines.py": "whether a plain line begins as an action does",
-    "pipelines/readers/program_columns.py": "whether cells of an unnamed column read as steps",
+    "kb/language/recognition_knowledge.py": "how forms of text are recognized where no reading was given a knowledge",
 }
-"""Readers that only recognize the form of a file; the steps are checked by the knowledge that a build was given."""
+"""The one file in which readers find the knowledge that a command or build gave to a reading."""
 
 NAMED = {
     "challenges/household.py": "tasks that are named by their ids alone",

@@ -47,3 +47,21 @@ def test_the_message_names_what_is_lacking_and_no_python_error(name):
     (fault,) = caught.value.diagnostics
     assert str(fault.code) == "BAD_GRAPH" and "from_id" in fault.suggestion
     assert "Error" not in fault.message
+
+
+@pytest.mark.parametrize("names", [("from", "relation", "to"), ("source", "relation_type", "target"),
+                                   ("subject", "predicate", "object"), ("from_id", "rel", "To")])  # fmt: skip
+def test_keys_of_others_are_named_with_ours(names):
+    """What the message says to rename makes the graph readable."""
+    graph = {"nodes": [NODE], "edges": [dict(zip(names, (1, "ON", 1), strict=True))]}
+    with pytest.raises(HearthError) as caught:
+        from_release(graph)
+    said = dict(re.findall(r"`([^`]+)` to `([^`]+)`", caught.value.diagnostics[0].message))
+    assert said
+    edge = {said.get(name, name): value for name, value in graph["edges"][0].items()}
+    assert from_release({**graph, "edges": [edge]}).edges[0] == (1, "ON", 1)
+
+
+def test_a_node_of_others_too():
+    with pytest.raises(HearthError, match="rename `uid` to `id`, `label` to `class_name`"):
+        from_release({"nodes": [{"uid": 1, "label": "kitchen"}], "edges": []})

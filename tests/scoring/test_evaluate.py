@@ -7,6 +7,8 @@ from hearth.scoring.line_reader import LineReader
 from hearth.scoring.line_sequences import read
 from hearth.scoring.metrics.executability import ErrorClass
 from hearth.scoring.predictions import Pair
+from hearth.scoring.refused_rows import FirstFaults
+from hearth.simulation.world.world import World
 
 REFERENCE = read(["[Walk] <fridge> (1)", "[Open] <fridge> (1)"])
 
@@ -42,6 +44,8 @@ def values(scored, metric):
         ("parsable_names", (1, 1, 0, 0, 0, 1)),
         ("executable", (1, 0, 0, 0, 0, 1)),
         ("executable_filled", (1, 0, None, 0, 0, 1)),
+        ("f1_state", (1, 0, 0, 0, 0, None)),
+        ("f1_published", (1, 0, 0, 0, 0, None)),
         ("goal", (1, 0, 0, 0, 0, None)),
         ("goal_fraction", (1, 0, 0, 0, 0, None)),
         ("goal_whole", (1, 0, 0, 0, 0, None)),
@@ -92,11 +96,47 @@ def test_parts_by_a_field(scored):
 
 
 def test_every_score_says_what_it_is():
-    assert signatures(Options())["f1"] == "f1|match:swap1|scope:own|empty:1|v1"
+    assert signatures(Options())["f1"] == "f1|match:swap1|scope:own|empty:1|no_steps:0|v2"
+    assert signatures(Options())["f1_published"] == "f1|match:swap1|scope:own|empty:1|v1"
     found = signatures(Options(match="best", scope="either", instances=True))
-    assert found["f1"] == "f1|match:best|scope:either|empty:1|v1"
+    assert found["f1"] == "f1|match:best|scope:either|empty:1|no_steps:0|v2"
+    assert found["f1_published"] == "f1|match:best|scope:either|empty:1|v1"
     assert found["lcs_step"] == found["lcs_step_instances"] == "lcs|norm:max|level:step|instances:named|v1"
     assert {name.split("_")[0] for name in METRICS} == {name.split("_")[0] for name in found}
+
+
+FORMER = {name for name in METRICS if name.endswith("_published") or name.startswith("goal_whole")}
+"""Scores as the thesis reads them, each under a name of its own."""
+
+NULL_REFERENCES = [
+    "[Walk] <sofa> (1)", "[Walk] <kitchen> (1)", "[TurnTo] <television> (1)", "[Walk] <floor> (1)",
+    "[Walk] <fridge> (1)\n[Open] <fridge> (1)", "[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n[StandUp]",
+    "[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[SwitchOff] <television> (1)",
+]  # fmt: skip
+NULL_GOALS = [None, "CLOSED(fridge)", "not HOLDS(agent, milk)", "OPEN(fridge)", "ON(unicorn, table)"]
+
+
+@pytest.mark.parametrize("reference", NULL_REFERENCES)
+def test_no_score_is_won_by_an_empty_program(knowledge, maple, reference):
+    """Every score of it is 0, or left out; what the published readings give it has a name of its own."""
+    for number, goal in enumerate(NULL_GOALS):
+        more = {} if goal is None else {"goal": goal}
+        rejects = FirstFaults()
+        start = World.start(maple)
+        (found,) = evaluate(
+            [pair("empty", [], read(reference), **more)], knowledge, lambda _, w=start: w, rejects=rejects
+        )
+        assert found.empty and found.placed
+        won = {name: value for name, metric in METRICS.items() if (value := metric(found))}
+        assert set(won) <= FORMER, (goal, won)
+        if number == 0 and found.graph:
+            assert METRICS["f1_published"](found) == found.graph.both.f1 and METRICS["f1"](found) == 0
+
+
+def test_a_program_with_steps_has_the_same_f1_by_both_readings(scored):
+    for name in ("f1", "f1_state", "f1_relation"):
+        ours, published = values(scored, name), values(scored, f"{name}_published")
+        assert {k: v for k, v in ours.items() if k != "empty"} == {k: v for k, v in published.items() if k != "empty"}
 
 
 def test_a_reference_of_several_predictions_runs_once(knowledge, world):

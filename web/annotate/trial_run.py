@@ -12,6 +12,7 @@ from hearth.datasets.report.drawn_plans import draw
 from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failure_words import sentence
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.optional_libraries import library as library_of
 from hearth.schemas.program import Program
@@ -65,7 +66,7 @@ def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str
     trial = _trial(lines, title, home, known)
     if isinstance(trial, Failure):
         at = numbers[trial.tick] if trial.tick < len(numbers) else -1
-        return {"home": home, "ran": False, "why": trial.message(), "step": at, "ticks": [], "start": None}
+        return {"home": home, "ran": False, "why": sentence(trial, code=False), "step": at, "ticks": [], "start": None}
     return {"home": home, **_reported(trial, numbers, lines)}
 
 
@@ -81,7 +82,7 @@ def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[
     library_of("trimesh")
     trial = _trial(_lines(draft)[1], title, home, known)
     if isinstance(trial, Failure):
-        raise WebError(Code.NOT_RENDERED, "home", "a program that begins to run there", trial.message())
+        raise WebError(Code.NOT_RENDERED, "home", "a program that begins to run there", sentence(trial, code=False))
     graph = library.load_graph(home, known)
     return {"home": f"/annotate/shapes/{home}", "run": run_shapes(trial.execution, graph, known)}
 
@@ -127,7 +128,7 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
         }
         for tick in range(len(worlds) - 1)
     ]
-    why = failure.message() if failure else ""
+    why = sentence(failure, code=False) if failure else ""
     at = numbers[failure.tick] if failure and failure.tick < len(numbers) else -1
     start = _where(placed(worlds[0]).agents[0].pose)
     added = trial.environment is not None

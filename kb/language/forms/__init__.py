@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Sequence
-from functools import lru_cache
 
 from hearth.kb.language.forms.action_pairs import PAIRS
 from hearth.kb.language.forms.alfworld_commands import COMMANDS
@@ -24,6 +23,7 @@ from hearth.kb.language.forms.text_games import PROMPTS
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
 from hearth.kb.language.forms.todo_lists import TODO_LISTS
 from hearth.kb.language.forms.yaml_lists import YAML
+from hearth.kb.language.recognition_knowledge import recognized_cache
 
 __all__ = ["FORMS", "YAML", "form_of", "form_of_line"]
 
@@ -76,6 +76,6 @@ def form_of_line(line: str) -> Form | None:
 _SHORT = 200
 
 
-@lru_cache(maxsize=16_384)
+@recognized_cache(maxsize=16_384)
 def _form_of_short(line: str) -> Form | None:
     return form_of([line])

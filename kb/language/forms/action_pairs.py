@@ -7,7 +7,7 @@ from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_names import action_of
-from hearth.kb.loading.load import default
+from hearth.kb.language.recognition_knowledge import recognition
 from hearth.schemas.program_boundaries import TITLE
 
 _PAIR = re.compile(
@@ -51,7 +51,8 @@ def _are_loose(lines: Sequence[str]) -> bool:
 
 
 def _is_known(parts: list[str]) -> bool:
-    return bool(parts) and (default().action(parts[0]) is not None or bool(action_of(default(), parts[0], parts[1:])))
+    known = recognition()
+    return bool(parts) and (known.action(parts[0]) is not None or bool(action_of(known, parts[0], parts[1:])))
 
 
 def _fits(lines: Sequence[str]) -> bool:
