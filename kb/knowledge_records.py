@@ -279,7 +279,7 @@ class StateGroup:
         table: those that stand in table A.2.
         needs: a thing must have one of these properties to be in them.
         given_by: a thing with one of these properties may be in them without saying so.
-        harm: those that spoil a thing, or use it up, where nothing undoes them.
+        harm: those that ruin a thing, or use it up, where nothing undoes them.
     """
 
     name: str

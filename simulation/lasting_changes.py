@@ -36,7 +36,7 @@ class Lasting(NamedTuple):
 
 
 def irreversible(execution: Execution) -> tuple[Lasting, ...]:
-    """Return the things that were spoilt or used up, and that no act or process makes whole, in the order of steps."""
+    """Return the things that were harmed or used up, and that no act or process makes whole, in the order of steps."""
     home = execution.worlds[0].home
     groups = home.knowledge.state_groups.values()
     numbers = [EVERY_STATE_ID[name] for each in groups for name in each.harm if name in EVERY_STATE_ID]
