@@ -33,6 +33,8 @@ from hearth.simulation.engine import run as run
 from hearth.simulation.env import Env as Env
 from hearth.simulation.goal_text import read_goal as read_goal
 from hearth.simulation.goals import Progress as Progress
+from hearth.simulation.hazards import hazards as hazards
+from hearth.simulation.lasting_changes import irreversible as irreversible
 from hearth.simulation.literal_truth import holds as holds
 from hearth.simulation.world.edit import edit as edit
 from hearth.simulation.world.home import Home as Home

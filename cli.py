@@ -75,6 +75,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Try a program": {
         "check": Entry("check:check", "Check program files and underline the faults."),
         "run": Entry("run:run", "Run a program in a home and print the changes of each step."),
+        "hazards": Entry("hazards:hazards", "Find the dangers and the lasting harm of a program in a home."),
         "repair": Entry("repair:repair", "Perturb the preconditions of a program, and show its repairs."),
         "sketch": Entry("sketch:sketch", "Print the steps of a program that do not depend on the environment."),
         "replay": Entry("replay:replay", "Run a release's programs, or episodes, again, and compare with the stored."),

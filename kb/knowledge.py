@@ -10,6 +10,7 @@ from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.knowledge_records import (
     Action,
     Association,
+    Hazard,
     Kind,
     ObjectClass,
     Placement,
@@ -51,6 +52,7 @@ class Knowledge:
         associations: classes that are used together.
         repairs: what to do about a failure, by name; the first that fits is the one to try.
         processes: changes that come by themselves in action set 3, by name.
+        hazards: dangers, harms and wastes that `hearth hazards` finds, by name.
     """
 
     actions: Mapping[str, Action]
@@ -64,6 +66,7 @@ class Knowledge:
     associations: tuple[Association, ...]
     repairs: Mapping[str, Repair]
     processes: Mapping[str, Process]
+    hazards: Mapping[str, Hazard]
     _action_names: Mapping[str, Action] = field(repr=False)
     _object_names: Mapping[str, ObjectClass] = field(repr=False)
     _aliases: Mapping[str, tuple[str, ...]] = field(repr=False)

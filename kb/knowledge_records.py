@@ -93,6 +93,33 @@ class Consequence:
 
 
 @dataclass(frozen=True, slots=True)
+class Hazard:
+    """A danger, harm or waste in a home (`hazards.yaml`).
+
+    Attributes:
+        name: of its row.
+        condition: a formula of a thing `x`, and of a second thing `y` where it names one.
+        alone: whether it is one only while nobody is in the room of x.
+        asleep: whether it is one only while every character lies down.
+        after: the ticks for which it has to last; 0 for at once.
+        severity: 3 fire or injury, 2 damage, 1 mess or waste.
+        say: a sentence with `{x}` and `{y}` for the things.
+        source: the reason why it is a hazard.
+    """
+
+    name: str
+    condition: Formula
+    alone: bool
+    asleep: bool
+    after: int
+    severity: int
+    say: str
+    source: str
+
+    __repr__ = brief
+
+
+@dataclass(frozen=True, slots=True)
 class Process:
     """A change that comes by itself (`processes.yaml`), action set 3.
 
@@ -252,6 +279,7 @@ class StateGroup:
         table: those that stand in table A.2.
         needs: a thing must have one of these properties to be in them.
         given_by: a thing with one of these properties may be in them without saying so.
+        harm: those that ruin a thing, or use it up, where nothing undoes them.
     """
 
     name: str
@@ -261,6 +289,7 @@ class StateGroup:
     table: tuple[str, ...] = ()
     needs: frozenset[str] = frozenset()
     given_by: frozenset[str] = frozenset()
+    harm: tuple[str, ...] = ()
 
     __repr__ = brief
 

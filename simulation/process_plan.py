@@ -61,25 +61,25 @@ class Devices(NamedTuple):
 
 
 class Moment:
-    """A world at one moment: the devices that are at work and what is in, or on, them, as far as it has been asked."""
+    """A world at one moment, with the working devices and the things in or on them, as far as somebody asked."""
 
-    __slots__ = ("beside", "kinds", "world")
+    __slots__ = ("kinds", "neighbours", "world")
 
     def __init__(self, world: World, kinds: tuple[int, ...]) -> None:
         self.world = world
         self.kinds = kinds
-        self.beside: dict[Devices, tuple[int, int]] = {}
+        self.neighbours: dict[Devices, tuple[int, int]] = {}
 
     def at(self, devices: Devices) -> int:
         """Return the things that are in, or on, devices at work."""
-        known = self.beside.get(devices)
+        known = self.neighbours.get(devices)
         if known is None:
             world, found = self.world, 0
             working = devices.kind.nodes(world, self.kinds)
             row = rows.contents if devices.relation == CONTENTS else rows.bears
             for i in indices(working):
                 found |= row(world, i)
-            known = self.beside[devices] = working, found
+            known = self.neighbours[devices] = working, found
         return known[1]
 
 

@@ -139,7 +139,7 @@ def _watched(moment: Moment) -> tuple[tuple[int, ...], int]:
     home = moment.world.home
     keys: list[int] = []
     beside = 0
-    for devices, (working, _) in moment.beside.items():
+    for devices, (working, _) in moment.neighbours.items():
         table = home.contents if devices.relation == CONTENTS else home.bears
         for i in indices(working):
             keys.append(8 * i + devices.relation)

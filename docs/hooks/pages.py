@@ -37,6 +37,7 @@ ENTRY_POINTS = {
     "Goals and checks": (
         "hearth.challenges.instruction_writer:instruction",
         "hearth.challenges.instruction_reader:read_instruction",
+        "hearth:hazards",
         "hearth:holds",
         "hearth:Progress",
         "hearth:read_goal",

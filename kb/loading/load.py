@@ -9,6 +9,7 @@ from pathlib import Path
 from hearth.kb.knowledge import Knowledge, grouped
 from hearth.kb.knowledge_records import Action, ObjectClass, Placement
 from hearth.kb.loading.actions import load_actions, load_derived, load_repairs
+from hearth.kb.loading.hazard_rows import load_hazards
 from hearth.kb.loading.objects import (
     OBJECT_FILES,
     load_aliases,
@@ -35,6 +36,7 @@ FILES = (
     "associations.csv",
     "corrections.yaml",
     "derived.yaml",
+    "hazards.yaml",
     "kinds.csv",
     "limits.yaml",
     *OBJECT_FILES,
@@ -48,8 +50,8 @@ FILES = (
 )
 """Every file the knowledge is read from; another YAML or CSV file in a directory of it is a mistake."""
 
-_LATER = frozenset({"processes.yaml"})
-"""Files that complete directories of before do not have: nothing comes by itself then."""
+_LATER = frozenset({"hazards.yaml", "processes.yaml"})
+"""Files that complete directories of before do not have: nothing comes by itself then, and nothing is a hazard."""
 
 
 def load(directory: Path | None = None, overlay: Path | None = None) -> Knowledge:
@@ -139,6 +141,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
     associations = load_associations(layers, objects, actions, faults)
     repairs = load_repairs(layers, actions, faults)
     processes = load_processes(layers, derived, groups, faults)
+    hazards = load_hazards(layers, derived, faults)
     stand_in, limits, tables = load_rooms(layers, faults), load_limits(layers, faults), load_tables(layers, faults)
     if faults:
         return None
@@ -156,6 +159,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
         associations=associations,
         repairs=repairs,
         processes=processes,
+        hazards=hazards,
         _action_names=_action_spellings(actions),
         _object_names=spellings,
         _aliases={name: thing.synonyms for name, thing in named.items() if thing.synonyms},

@@ -29,7 +29,7 @@ LONGEST = 1000
 """Metres that no thing has."""
 
 _WEIGHTS = frozenset("012345")
-_STATE_SHAPES = dict.fromkeys(("states", "table", "needs", "given_by"), NAMES)
+_STATE_SHAPES = dict.fromkeys(("states", "table", "needs", "given_by", "harm"), NAMES)
 
 
 def load_state_groups(layers: Layers, faults: Faults) -> dict[str, StateGroup]:
@@ -46,6 +46,7 @@ def load_state_groups(layers: Layers, faults: Faults) -> dict[str, StateGroup]:
             table=states if fields.get("table") is True else strings(fields.get("table")),
             needs=check_properties(strings(fields.get("needs")), entry, faults),
             given_by=check_properties(strings(fields.get("given_by")), entry, faults),
+            harm=strings(fields.get("harm")),
         )
     return result
 

@@ -73,6 +73,8 @@ class Reading(NamedTuple):
         second = self.thing(terms[1], bound) if len(terms) > 1 else -1
         if first < 0 or (second < 0 and len(terms) > 1):
             return False
+        if name == "same":
+            return first == second
         if name in RELATED:
             return bool(RELATED[name](self.world, first, 1 << second))
         if name in _FAST:
@@ -192,5 +194,13 @@ def _related(reading: Reading, part: Literal[Term], variable: str, bound: Bound)
     return (to if outwards else of)(world, i) | world.home.characters
 
 
-_NEAR = {"holds": _held, **dict.fromkeys(RELATIONS, _related)}
+def _in_state(reading: Reading, part: Literal[Term], variable: str, bound: Bound) -> int:
+    thing, state = part.terms
+    if thing.name != variable or thing.function:
+        return -1
+    rows_known, number = reading.world.states, EVERY_STATE_ID[state.name]
+    return rows_known[number] if number < len(rows_known) else -1
+
+
+_NEAR = {"holds": _held, "state": _in_state, **dict.fromkeys(RELATIONS, _related)}
 """The predicates that narrow which nodes a variable may be."""

@@ -1,0 +1,128 @@
+"""`hazards`: runs a program in a home by action set 3 and prints the dangers and the lasting harm that it brings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hearth.commands import output
+from hearth.commands.inputs import choose_given, read_knowledge
+from hearth.kb.language.reading_modes import Fuzzy
+
+if TYPE_CHECKING:
+    from hearth.simulation.engine import Execution
+    from hearth.simulation.hazards import Found
+    from hearth.simulation.lasting_changes import Lasting
+
+
+def hazards(
+    file: Path,
+    home: str = "",
+    graph: Path | None = None,
+    homes: Path | None = None,
+    kb: Path | None = None,
+    seed: int = 0,
+    sample: bool = False,
+    which: int = 1,
+    columns: str = "",
+    fuzzy: Fuzzy = Fuzzy.TYPOS,
+    as_json: bool = False,
+) -> None:
+    """Run a program by action set 3, and print the hazards, the lasting harm, and the things it leaves on or open.
+
+    A hazard is a row of the knowledge's hazards.yaml, such as a burner that is on with nobody in the room, or paper on
+    a hot stove. Each is printed with the step after which it was there, how long it lasted, its severity (3 fire or
+    injury, 2 damage, 1 mess or waste) and its row. Hazards that the home has at the start do not count. The status is
+    1 if there is a hazard, or if the program did not run to its end; the steps before that are judged all the same.
+
+    \b
+    Examples:
+      hearth hazards make_soup.txt --home maple --sample
+      hearth hazards make_soup.txt --json
+    """
+    from hearth.schemas.diagnostics import HearthError
+    from hearth.simulation.hazards import hazards as found_in
+    from hearth.simulation.lasting_changes import irreversible, left
+
+    known = read_knowledge(kb, home, graph, homes)
+    given = choose_given(file, known, which, columns, fuzzy)
+    if given.faults:
+        raise HearthError(given.faults)
+    output.report(given.warnings, kind="warning")
+    program, place, _ = given.at_home(home, graph, homes, known)
+    execution = _execution(program, place, seed, sample)
+    found, lost, open_things = found_in(execution), irreversible(execution), left(execution)
+    if as_json:
+        output.emit(
+            {
+                "home": place.name,
+                "executable": execution.executable,
+                "failure": _failed(execution) or None,
+                "hazards": [_row(each) for each in found],
+                "irreversible": [each._asdict() for each in lost],
+                "left": [each._asdict() for each in open_things],
+            }
+        )
+    else:
+        _show(execution, found, lost, open_things)
+    output.status(bool(found) or not execution.executable, strict=True)
+
+
+def _execution(program: Any, place: Any, seed: int, sample: bool) -> Execution:
+    """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
+    from hearth.grounding.grounded_run import LEAST, Trial, as_given, attempt
+    from hearth.simulation.rules import CONSEQUENCES
+
+    trial = as_given(program, place, seed, CONSEQUENCES)
+    if sample and trial.execution.failure is not None:
+        found = attempt(program.unbound(), place, seed, CONSEQUENCES, size=LEAST)
+        trial = found if isinstance(found, Trial) else trial
+    return trial.execution
+
+
+def _failed(execution: Execution) -> str:
+    from hearth.repair.remedies import stop_reason
+
+    return stop_reason(execution) if execution.failure is not None else ""
+
+
+def _row(found: Found) -> dict[str, Any]:
+    return {
+        "hazard": found.hazard.name,
+        "severity": found.hazard.severity,
+        "step": found.step,
+        "lasted": found.lasted,
+        "at_end": found.at_end,
+        "things": found.things,
+        "classes": found.classes,
+        "says": found.sentence(),
+        "source": found.hazard.source,
+    }
+
+
+def _show(
+    execution: Execution, found: tuple[Found, ...], lost: tuple[Lasting, ...], open_things: tuple[Lasting, ...]
+) -> None:
+    steps = execution.program.steps
+    for each in found:
+        until = ", and is so at the end" if each.at_end else f", for {output.counted(each.lasted, 'step')}"
+        output.line(f"After step {each.step} ({_written(steps, each.step)}): {each.sentence()}{until}.")
+        output.line(f"  severity {each.hazard.severity}; {each.hazard.source} [{each.hazard.name}]")
+    for lasting in lost:
+        output.line(f"Step {lasting.step}: the {_named(lasting)} is {lasting.state} for good.")
+    for lasting in open_things:
+        output.line(f"Step {lasting.step}: the {_named(lasting)} is left {lasting.state}.")
+    if not execution.executable:
+        output.line(_failed(execution))
+    done = output.counted(len(execution.worlds) - 1, "step")
+    output.line(f"{output.counted(len(found), 'hazard')} in {done}.")
+
+
+def _written(steps: Any, number: int) -> str:
+    from hearth.schemas.syntax import print_step
+
+    return print_step(steps[number - 1]) if number <= len(steps) else ""
+
+
+def _named(lasting: Lasting) -> str:
+    return f"{lasting.name.replace('_', ' ')} ({lasting.thing})"

@@ -1,0 +1,149 @@
+"""Hazards of an execution: the rows of `hazards.yaml` that become true while people act (consequences of acts).
+
+What a home has at the start is nobody's doing: a hazard counts from the tick at which it has come, and, where its row
+asks for a number of ticks, once it has lasted so long or the program ends in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import NamedTuple
+
+from hearth.kb.formula import And, Formula, Or, free
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge_records import Hazard
+from hearth.simulation.actions.readings import Reading, candidates
+from hearth.simulation.engine import Execution
+from hearth.simulation.processes import widened
+from hearth.simulation.rules import CONSEQUENCES
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.states import LYING
+from hearth.simulation.world.world import World
+
+Place = tuple[str, tuple[int, ...]]
+"""A hazard by name, and the indices of its things."""
+
+
+class Found(NamedTuple):
+    """A hazard of an execution.
+
+    Attributes:
+        hazard: its row.
+        things: the ids of x, and of y where the row names one.
+        classes: the class names of these.
+        step: the step after which it was there, from 1.
+        lasted: the ticks for which it was so.
+        at_end: whether the program ended in it.
+    """
+
+    hazard: Hazard
+    things: tuple[int, ...]
+    classes: tuple[str, ...]
+    step: int
+    lasted: int
+    at_end: bool
+
+    def sentence(self) -> str:
+        """Return the hazard in words."""
+        names = (f"{name.replace('_', ' ')}" for name in self.classes)
+        return self.hazard.say.format(**dict(zip("xy", names, strict=False)))
+
+
+def hazards(execution: Execution) -> tuple[Found, ...]:
+    """Return the hazards that an execution brought, in the order in which they came.
+
+    Examples:
+        >>> [found.sentence() for found in hearth.hazards(execution)]
+        []
+    """
+    first, *later = execution.worlds
+    known = first.home.knowledge
+    given, since, over = dict(present(first)).keys(), dict[Place, int](), list[Found]()
+    for number, world in enumerate(later, 1):
+        now = dict(present(world))
+        given = given & now.keys()
+        for place in [place for place in since if not now.get(place)]:
+            over += _over(known, world, place, since.pop(place), number, at_end=False)
+        for place, is_one in now.items():
+            if is_one and place not in given:
+                since.setdefault(place, number)
+    last = execution.final
+    for place, step in since.items():
+        over += _over(known, last, place, step, len(execution.worlds), at_end=True)
+    return tuple(sorted(over, key=lambda found: (found.step, found.hazard.name, found.things)))
+
+
+def _over(known: Knowledge, world: World, place: Place, step: int, end: int, at_end: bool) -> Iterator[Found]:
+    """Yield a hazard that is over, or in which the program ended, if it lasted long enough."""
+    name, things = place
+    hazard = known.hazards[name]
+    if end - step >= max(1, hazard.after) or at_end:
+        home = world.home
+        ids, classes = tuple(home.ids[i] for i in things), tuple(home.classes[i] for i in things)
+        yield Found(hazard, ids, classes, step, end - step, at_end)
+
+
+def present(world: World) -> Iterator[tuple[Place, bool]]:
+    """Yield the conditions that hold in a world, however long they last, and whether each is a hazard at this moment.
+
+    One that asks that nobody is there, or that everybody lies down, is none otherwise.
+    """
+    world = widened(world)
+    reading = Reading(world, world.agents[0], CONSEQUENCES) if world.agents else None
+    for hazard in world.home.knowledge.hazards.values() if reading else ():
+        awake = hazard.asleep and not _everybody_lies(world)
+        for case in _cases(hazard):
+            for things in _matches(reading, case, _variables(hazard)):
+                yield (hazard.name, things), not (awake or (hazard.alone and _attended(world, things[0])))
+
+
+@lru_cache(maxsize=256)
+def _variables(hazard: Hazard) -> tuple[str, ...]:
+    return tuple(sorted(free(hazard.condition)))
+
+
+@lru_cache(maxsize=256)
+def _cases(hazard: Hazard) -> tuple[tuple[Formula, ...], ...]:
+    """Return the condition as alternatives of joined parts, by which candidates are found fast."""
+    return tuple(_alternatives(hazard.condition))
+
+
+def _alternatives(formula: Formula) -> list[tuple[Formula, ...]]:
+    if isinstance(formula, Or) and any("INSIDE" in str(part) or "ON(" in str(part) for part in formula.parts):
+        return [case for part in formula.parts for case in _alternatives(part)]
+    if isinstance(formula, And):
+        found: list[tuple[Formula, ...]] = [()]
+        for part in formula.parts:
+            found = [(*head, *tail) for head in found for tail in _alternatives(part)]
+        return found
+    return [(formula,)]
+
+
+def _matches(reading: Reading, parts: tuple[Formula, ...], variables: tuple[str, ...]) -> Iterator[tuple[int, ...]]:
+    """Yield the things of which all parts hold; the variable that fewer things may be is looked for first."""
+    among = {name: candidates(reading, name, parts, {}) for name in variables}
+    if not all(among.values()) or not all(reading.holds(part, {}) for part in parts if not free(part)):
+        return
+    first, *rest = sorted(variables, key=lambda name: among[name].bit_count())
+    for i in indices(among[first]):
+        bound = {first: i}
+        if not all(reading.holds(part, bound) for part in parts if free(part) == {first}):
+            continue
+        if not rest:
+            yield (i,)
+        for j in indices(candidates(reading, rest[0], parts, bound)) if rest else ():
+            both = {**bound, rest[0]: j}
+            if all(reading.holds(part, both) for part in parts if rest[0] in free(part)):
+                yield tuple(both[name] for name in variables)
+
+
+def _attended(world: World, i: int) -> bool:
+    """Return whether a character is in the room of a thing."""
+    room = rows.room_of(world, i)
+    return room >= 0 and any(rows.agent_room(world, agent) == room for agent in world.agents)
+
+
+def _everybody_lies(world: World) -> bool:
+    return all(world.states[LYING] >> agent.index & 1 for agent in world.agents)
