@@ -56,7 +56,7 @@ def hazards(execution: Execution) -> tuple[Found, ...]:
 
     Examples:
         >>> [found.sentence() for found in hearth.hazards(execution)]
-        []
+        ['the fridge stands open']
     """
     first, *later = execution.worlds
     known = first.home.knowledge
