@@ -18,12 +18,12 @@ from hearth.schemas.syntax import normal_name
 _NAME = re.compile(r"[A-Za-z][\w .'-]*")
 _ACTION = re.compile(r"[A-Z][A-Z_]+", re.ASCII)
 _FENCED = r"(?:[^{}\[\]`]*+```\w*+\s*+|\s*+)"
-"""What stands before an answer: nothing, or a fence and perhaps the words before it."""
+"""The text before an answer: empty, or a fence and perhaps words above it."""
 
 _FENCE = re.compile(rf"{_FENCED}(?=[{{\[])")
 _OF_MAPPING = re.compile(rf"""{_FENCED}(?:\[\s*+)?\{{\s*+["'][A-Z][A-Z_]+["']\s*:\s*\[""")
 _BELOW = re.compile(r"\s*+(?:```[^{}\[\]`]*+)?")
-"""What stands below it: nothing, or the end of the fence and perhaps words."""
+"""The text below an answer: empty, or the end of the fence and perhaps words."""
 
 
 def is_action(value: Any) -> bool:

@@ -225,7 +225,7 @@ class _Block:
             self._size += len(raw) + 1
 
     def _is_comment(self, line: PlanLine) -> bool:
-        """Return whether a line is a comment right below a step in brackets, in a program whose title is no heading."""
+        """Return whether a line is a comment below a step in brackets, in a program without a heading as title."""
         if not line.heading or line.number is not None or not self._bracketed or not self._has_top:
             return False
         return bool(self.lines[-1].strip())

@@ -65,7 +65,7 @@ CODE = (
             "Let me know!",
         ),
         (TEA,),
-        broken="a call with two words behind one of one word, and a comment behind it, is no step below words",
+        broken="below words, a call such as switch_on() with a comment behind it is not read",
     ),
     Plan("62", "b.md", lines("```", "1. Walk to the kettle", "2. Turn on the kettle", "```"), (TEA,)),
     Plan(
