@@ -196,8 +196,7 @@ def _graph_data(path: Path, which: str) -> Mapping[str, Any]:
 
     try:
         data = orjson.loads(read_input(path))
-        if isinstance(data, dict):
-            data = data[which] if which in data else graph_in(data) or data
+        data = data[which] if isinstance(data, dict) and which in data else graph_in(data) or data
         orjson.dumps(data)  # what is read may stand deeper in one another than can be written
     except (orjson.JSONDecodeError, orjson.JSONEncodeError) as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error

@@ -1,4 +1,4 @@
-"""Objects that hold a scene graph: a pair of a release, a log of a simulator."""
+"""Values that hold a scene graph: a pair of a release, a log or an answer of a simulator."""
 
 from typing import Any
 
@@ -13,6 +13,8 @@ def graph_in(value: Any, which: str = "") -> dict[str, Any] | None:
         value: of a file.
         which: the key to prefer.
     """
+    if isinstance(value, list) and len(value) == 2 and value[0] is True:
+        value = value[1]  # a simulator's answer: whether it succeeded, and the graph
     if not isinstance(value, dict):
         return None
     for key in (which, *WRAPPERS):

@@ -7,7 +7,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import verb_lemmas
 from hearth.kb.language.noun_phrases import thing_of
 
-_GOING = "go walk move head come step navigate proceed return travel pop nip wander stroll"
+_GOING = "go walk move head come step navigate proceed continue return travel pop nip wander stroll"
 _PUTTING = "put place set lay stick leave position deposit pop"
 _SELF = "(?:(?:your|my|him|her|it|one)self|themselves|ourselves)"
 _WAY = (
@@ -43,6 +43,7 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     ("retrieve collect snatch obtain gather", r"(?:up )?(.+)", "grab {0}"),
     ("gather", r"(.+) up", "grab {0}"),
     ("pick grab", r"(.+) up", "grab {0}"),
+    ("pick grab lift take", r"(.+?) up (?:from|off of|off) (.+)", "grab {0} from {1}"),
     ("pick choose", r"(?!up )(.+)", "grab {0}"),
     ("pick choose", r"out (.+)", "grab {0}"),
     ("get", r"(?:a )?hold of (.+)", "grab {0}"),

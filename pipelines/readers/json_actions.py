@@ -17,8 +17,13 @@ from hearth.schemas.syntax import normal_name
 
 _NAME = re.compile(r"[A-Za-z][\w .'-]*")
 _ACTION = re.compile(r"[A-Z][A-Z_]+", re.ASCII)
-_FENCE = re.compile(r"\s*(?:```\w*[ \t]*\n?)?\s*(?=\{)")
-_OF_MAPPING = re.compile(r"""\s*(?:```\w*\s*)?\{\s*["'][A-Z][A-Z_]+["']\s*:\s*\[""")
+_FENCED = r"(?:[^{}\[\]`]*+```\w*+\s*+|\s*+)"
+"""The text before an answer: empty, or a fence and perhaps words above it."""
+
+_FENCE = re.compile(rf"{_FENCED}(?=[{{\[])")
+_OF_MAPPING = re.compile(rf"""{_FENCED}(?:\[\s*+)?\{{\s*+["'][A-Z][A-Z_]+["']\s*:\s*\[""")
+_BELOW = re.compile(r"\s*+(?:```[^{}\[\]`]*+)?")
+"""The text below an answer: empty, or the end of the fence and perhaps words."""
 
 
 def is_action(value: Any) -> bool:
@@ -203,21 +208,23 @@ def _as_is(value: Any) -> str:
 
 
 def looks_like_mapping(text: str) -> bool:
-    """Return whether a text begins a mapping of actions, perhaps in a code fence."""
+    """Return whether a text begins a mapping of actions or a list of them, perhaps in a code fence below words."""
     return _OF_MAPPING.match(text) is not None
 
 
 def mapping_in(text: str) -> dict[str, Any] | None:
     """Return the mapping of a text, as JSON or as Python writes it; None if it is cut off or is something else."""
     start = _FENCE.match(text)
-    end = text.rfind("}") + 1
+    end = max(text.rfind("}"), text.rfind("]")) + 1
     inner = text[start.end() : end] if start else ""
-    if text[end:].strip() not in ("", "```"):
+    if not _BELOW.fullmatch(text[end:]):
         return None
     try:
         found = json.loads(inner, object_pairs_hook=Pairs)
     except (ValueError, RecursionError):
         found = _of_python(inner)
+    if isinstance(found, list) and all(map(is_mapping, found)):
+        found = Pairs([pair for each in found for pair in pairs_of(each)])
     return found if isinstance(found, dict) and is_mapping(found) else None
 
 

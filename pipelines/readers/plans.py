@@ -186,7 +186,7 @@ class _Block:
         self._bulleted, self._by_headings = True, False
         self._level = self._deepest = self._number = 0
         self._texts: list[PlanLine] = []
-        self._has_heading_below = self._is_titled = False
+        self._has_heading_below = self._is_titled = self._has_top = self._bracketed = False
 
     @property
     def first(self) -> int:
@@ -194,7 +194,11 @@ class _Block:
 
     def add(self, number: int, raw: str, line: PlanLine, most: int) -> None:
         """Add a line, unless the block is blank or full."""
+        if self._is_comment(line):
+            line = line._replace(text="", heading=False)
         if line.number is not None:
+            self._has_top = self._has_top or (not self._last and bool(self._texts))
+            self._bracketed = line.bracketed and (self._bracketed or not self._last) and not self._is_titled
             self._bulleted = self._bulleted and not line.numbered
             self._number = line.number if line.numbered else self._number
             self._by_headings = self._by_headings or line.heading
@@ -220,12 +224,24 @@ class _Block:
             self.numbers.append(number)
             self._size += len(raw) + 1
 
+    def _is_comment(self, line: PlanLine) -> bool:
+        """Return whether a line is a comment below a step in brackets, in a program without a heading as title."""
+        if not line.heading or line.number is not None or not self._bracketed or not self._has_top:
+            return False
+        return bool(self.lines[-1].strip())
+
     def _may_be_below(self, line: PlanLine) -> bool:
         """Return whether a line stands below the steps, and is none that only lacks its mark."""
         is_apart = bool(self.lines) and not self.lines[-1].strip()
         if line.heading or is_apart:
             return True
-        return not line.indent and not ((self._is_titled or line.text.endswith(".")) and is_order(line.text))
+        is_likely_step = self._is_titled or self._is_untitled_list or line.text.endswith(".")
+        return not line.indent and not (is_likely_step and is_order(line.text))
+
+    @property
+    def _is_untitled_list(self) -> bool:
+        """Return whether a list began without a title, so that a line between its entries hardly is one."""
+        return self._bulleted and not self._has_top
 
     @property
     def has_steps(self) -> bool:
