@@ -10,7 +10,8 @@ from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.pronouns import Mentioned
 
 _LONGEST = 3
-_THE = r"(?:the|this|that|these|those|my|your|his|her|their|our)"
+_ARTICLES = frozenset(("the", "this", "that", "these", "those", "my", "your", "his", "her", "their", "our"))
+_THE = f"(?:{'|'.join(sorted(_ARTICLES))})"
 _NAMED = re.compile(rf"\b({_THE}) ([a-z]+)\b(?:(?= ([a-z]+))|(?=[^ ]|$))", re.IGNORECASE)
 _WITHIN = frozenset(
     ("for", "of", "in", "on", "with", "to", "at", "from", "the", "a", "an", "and", "into", "onto", "up")
@@ -107,7 +108,7 @@ def _singular(noun: str) -> set[str]:
 
 def may_repeat(known: Knowledge, words: str) -> frozenset[str]:
     """Return the classes that nouns of a line may mean where a compound of them was said before."""
-    nouns = _nouns(known, words)
+    nouns = () if _ARTICLES.isdisjoint(words.lower().split()) else _nouns(known, words)
     return frozenset().union(*(classes for _, _, classes in nouns)) if nouns else _NONE
 
 

@@ -290,7 +290,7 @@ class _StepParser:
 
     def _add(self, asked: Asked, words: str, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        mentioned = Mentioned(action, names, asked.instance, 0, asked.second, words)
+        mentioned = Mentioned(action, names, asked.instance, number, asked.second, words)
         self._append(_step(action, names, asked.instance, asked.second), mentioned, number)
         if asked.along:
             self._before.carry(asked.along)

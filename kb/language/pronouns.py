@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import takewhile
 from typing import NamedTuple
 
@@ -68,6 +69,12 @@ EARLIER = "..."
 """The action that ends the steps of which a pronoun may speak; nouns may speak of the things behind it."""
 
 
+@lru_cache(maxsize=65_536)
+def has_pronoun(words: str) -> bool:
+    """Return whether a clause speaks of things that it does not name."""
+    return PRONOUN.search(words) is not None
+
+
 def within_reach(said: Sequence[Mentioned]) -> list[Mentioned]:
     """Return the steps of which a pronoun may speak: those since the last line that may have named another thing."""
     return list(takewhile(lambda each: each.names or each.action not in (UNREAD, EARLIER), said))
@@ -75,16 +82,24 @@ def within_reach(said: Sequence[Mentioned]) -> list[Mentioned]:
 
 def is_hidden(words: str, said: Sequence[Mentioned]) -> bool:
     """Return whether a pronoun of some words may mean a thing of a line that was not understood."""
-    last = next((each.action for each in said if each.action in (UNREAD, EARLIER) and not each.names), "")
-    return last == UNREAD and PRONOUN.search(words) is not None
+    if not has_pronoun(words):
+        return False
+    return next((each.action for each in said if each.action in (UNREAD, EARLIER) and not each.names), "") == UNREAD
 
 
 def with_place(known: Knowledge, words: str, said: Sequence[Mentioned]) -> str:
     """Return `put it inside`, `put it in there` and `put it there` with the name of the place that is meant."""
     words = _of_both(words) if words.endswith("both") else words
+    put = _put(words)
+    place = _place(known, said, is_in=put[1]) if put else None
+    return f"{put[0]} {place}" if put and place else words
+
+
+@lru_cache(maxsize=65_536)
+def _put(words: str) -> tuple[str, bool] | None:
+    """Return how a clause begins that puts a thing `there`, and whether it is put in that place."""
     put = _PLACED.fullmatch(words)
-    place = _place(known, said, is_in=bool(put["in"] or put["into"])) if put else None
-    return f"{put[1] or put[3] or put[4]} {place}" if put and place else words
+    return (put[1] or put[3] or put[4], bool(put["in"] or put["into"])) if put else None
 
 
 def _of_both(words: str) -> str:
@@ -128,7 +143,7 @@ def several(known: Knowledge, words: str, said: Sequence[Mentioned]) -> list[tup
     They are the things of the last act, which a line or several did to one thing after another: `grab two forks`. Where
     lines did it, the last thing alone is meant if it is many, as shoes are.
     """
-    if not _THEM.search(words) or PRONOUN.search(_THEM.sub("", words)):
+    if not has_pronoun(words) or not _THEM.search(words) or PRONOUN.search(_THEM.sub("", words)):
         return []
     named = [each for each in within_reach(said) if each.names]
     acts = [each for each in named if each.action not in known.group(_WAYS)] or named
@@ -155,7 +170,7 @@ def _is_many(name: str) -> bool:
 
 def referred(known: Knowledge, words: str, said: Sequence[Mentioned]) -> Iterator[str]:
     """Yield a sentence with each thing that its pronoun may stand for, the likeliest first; itself without any."""
-    if not PRONOUN.search(words):
+    if not has_pronoun(words):
         yield words
         return
     of_things, of_people = _THINGS.search(words), _PEOPLE.search(words)

@@ -3,8 +3,11 @@
 from collections.abc import Iterable
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.pronouns import EARLIER, REMEMBERED, Mentioned
+from hearth.kb.language.pronouns import EARLIER, REMEMBERED, UNREAD, Mentioned
 from hearth.kb.language.refused_words import unread
+
+_OTHER = ("", UNREAD)
+"""Actions of the mentions of things by words that are no step."""
 
 _EARLIER = Mentioned(EARLIER, ())
 
@@ -36,7 +39,7 @@ class SaidBefore:
     def add_unread(self, words: str, line: int) -> None:
         """Add what a line that is not understood names."""
         if mentioned := unread(self._known, words):
-            self.mentions.append(mentioned._replace(line=line))
+            self.mentions.append(Mentioned(UNREAD, mentioned.names, 1, line, 1, words))
 
     def cut(self, size: int) -> None:
         """Forget the mentions from one on."""
@@ -70,7 +73,10 @@ class SaidBefore:
         lines = reversed(self._lines)
         acts, last = 0, ("", 0)
         for mentioned in reversed(self.mentions):
-            placed = mentioned if mentioned.line else mentioned._replace(line=next(lines))
+            action, names, instance, at, second, words = placed = mentioned
+            if action not in _OTHER:
+                line = next(lines)
+                placed = mentioned if at else Mentioned(action, names, instance, line, second, words)
             if (placed.action, placed.line) != last:
                 acts, last = acts + 1, (placed.action, placed.line)
             if acts > REMEMBERED:

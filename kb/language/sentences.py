@@ -10,7 +10,7 @@ from hearth.kb.language.counted_things import numbers
 from hearth.kb.language.head_nouns import may_repeat
 from hearth.kb.language.lexicon import is_verb
 from hearth.kb.language.noun_phrases import thing_of, things_in
-from hearth.kb.language.pronouns import PRONOUN, Mentioned, referred
+from hearth.kb.language.pronouns import Mentioned, has_pronoun, referred
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.refused_words import unread
 from hearth.kb.language.sentence_openings import verb_phrase
@@ -63,7 +63,7 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
 @lru_cache(maxsize=65_536)
 def plain_step(known: Knowledge, words: str) -> tuple[Asked, ...]:
     """Return the step of a line that reads exactly, whatever was said before: without pronoun and double plural."""
-    if _OBSERVED.match(words) or PRONOUN.search(words) or _double_plurals(known, words) or is_carrying(words):
+    if _OBSERVED.match(words) or has_pronoun(words) or _double_plurals(known, words) or is_carrying(words):
         return ()
     meant = understand_exactly(known, words).meant
     return (Asked(meant),) if meant else ()

@@ -17,6 +17,7 @@ from hearth.kb.language.pronouns import (
     UNREAD,
     Mentioned,
     count_meant,
+    has_pronoun,
     is_hidden,
     referred,
     several,
@@ -93,7 +94,9 @@ def clause_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy:
         read = _clause_about_said(known, words, said, fuzzy, many)
     else:
         read = _clause_itself(known, words, said, fuzzy)
-    return _with_first_act(known, read, said) if read and read[-1].left_out else read
+    if read and read[-1].left_out and _FIRST.fullmatch(read[-1].left_out):
+        return _with_first_act(known, read, said)
+    return read
 
 
 @lru_cache(maxsize=65_536)
@@ -203,7 +206,7 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
         if best is None and is_hidden(words, said):
             return ()  # a line that was not understood may have named the thing that is meant
         best = best or readings[0]
-        return (Asked(best, _number(best, said) if PRONOUN.search(words) else 1),)
+        return (Asked(best, _number(best, said) if has_pronoun(words) else 1),)
     return _ordered(known, words, said) or _counted(known, words, said)
 
 
