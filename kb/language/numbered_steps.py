@@ -196,7 +196,7 @@ class _StepParser:
 
     def _detail(self, words: str, raw: str, number: int) -> bool:
         """Add the steps of a line that may explain; return whether it reads exactly as steps."""
-        said = self._before.last_first()
+        said = self._before.last_first(words)
         if stays(self.known, words, said):
             self._idle.append((words, raw, number))
             return True
@@ -209,7 +209,8 @@ class _StepParser:
         """Add the steps of a line; the faults of one that is not understood."""
         if line.bracketed:
             return self._written(line.text, raw, number)
-        words, said = _ORDINAL.sub("", line.text, count=1), self._before.last_first()
+        words = _ORDINAL.sub("", line.text, count=1)
+        said = self._before.last_first(words)
         if stays(self.known, words, said):
             self._idle.append((words, raw, number))
             return []
@@ -250,7 +251,7 @@ class _StepParser:
 
     def _nearest(self, words: str, raw: str, number: int) -> list[Diagnostic]:
         """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
-        said = self._before.last_first()
+        said = self._before.last_first(words)
         whole = nearest_steps(self.known, words, said, self.fuzzy)
         reason = unclear(self.known, words, said)
         if not whole.meant or reason or words.endswith(":"):

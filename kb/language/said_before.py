@@ -3,11 +3,8 @@
 from collections.abc import Iterable
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.pronouns import EARLIER, REMEMBERED, UNREAD, Mentioned
+from hearth.kb.language.pronouns import EARLIER, REMEMBERED, UNREAD, Mentioned, has_pronoun
 from hearth.kb.language.refused_words import unread
-
-_OTHER = ("", UNREAD)
-"""Actions of the mentions of things by words that are no step."""
 
 _EARLIER = Mentioned(EARLIER, ())
 
@@ -37,9 +34,8 @@ class SaidBefore:
             self.counted.update(mentioned.names)
 
     def add_unread(self, words: str, line: int) -> None:
-        """Add what a line that is not understood names."""
-        if mentioned := unread(self._known, words):
-            self.mentions.append(Mentioned(UNREAD, mentioned.names, 1, line, 1, words))
+        """Add a line that is not understood; its things are looked for when a pronoun may mean them."""
+        self.mentions.append(Mentioned(UNREAD, (), 1, line, 1, words))
 
     def cut(self, size: int) -> None:
         """Forget the mentions from one on."""
@@ -67,16 +63,25 @@ class SaidBefore:
         self._seen = len(self.mentions)
         return not depends.isdisjoint(self._names) or not self.counted.isdisjoint(names)
 
-    def last_first(self) -> tuple[Mentioned, ...]:
-        """Return the mentions, the last first: those of which a pronoun may speak, and one of each thing before."""
+    def last_first(self, line: str) -> tuple[Mentioned, ...]:
+        """Return the mentions, the last first: those of which a pronoun may speak, and one of each thing before.
+
+        Lines that were not understood are among them only if the given line has a pronoun.
+        """
+        is_about_unread = has_pronoun(line)
         recent: list[Mentioned] = []
         lines = reversed(self._lines)
         acts, last = 0, ("", 0)
         for mentioned in reversed(self.mentions):
             action, names, instance, at, second, words = placed = mentioned
-            if action not in _OTHER:
-                line = next(lines)
-                placed = mentioned if at else Mentioned(action, names, instance, line, second, words)
+            if action == UNREAD:
+                other = unread(self._known, words) if is_about_unread else None
+                if other is None:
+                    continue
+                placed = other
+            elif action:
+                at_line = next(lines)
+                placed = mentioned if at else Mentioned(action, names, instance, at_line, second, words)
             if (placed.action, placed.line) != last:
                 acts, last = acts + 1, (placed.action, placed.line)
             if acts > REMEMBERED:

@@ -118,9 +118,13 @@ def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
         return ()
     clauses = _clauses(verb_phrase(" ".join(_plurals_of_said(known, words, said).split())))
     found: list[Asked | str] = []
-    at = 0
+    at, speaks = 0, has_pronoun(words)
     while at < len(clauses) <= _CLAUSES:
-        now = (each.mentioned if isinstance(each, Asked) else unread(known, each) for each in reversed(found))
+        now = (
+            each.mentioned if isinstance(each, Asked) else unread(known, each)
+            for each in reversed(found)
+            if speaks or isinstance(each, Asked)
+        )
         before = (*filter(None, now), *said)
         if found and isinstance(found[-1], Asked) and stays(known, clauses[at], before):
             found[-1:] = _with_left_out((found[-1],), clauses[at : at + 1])
