@@ -47,11 +47,11 @@ def plurals(known: Knowledge, words: str, many: Mapping[str, Sequence[int]]) -> 
     is_whole = without_all(words) != words
     tokens = without_all(words).split()
     named = ((at, size) for at in range(len(tokens)) for size in range(1, min(_LONGEST, len(tokens) - at) + 1))
-    found = set()
+    found: set[str] = set()
     for at, size in named:
         last = tokens[at + size - 1].strip(".,;:!?")
         name = thing_of(known, " ".join((*tokens[at : at + size - 1], last)))
-        if name in many and not _ONE.search(" ".join(tokens[:at])) and (is_whole or _is_plural(known, last)):
+        if name and name in many and not _ONE.search(" ".join(tokens[:at])) and (is_whole or _is_plural(known, last)):
             found.add(name)
     return found
 

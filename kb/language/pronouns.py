@@ -137,8 +137,8 @@ def _spelt(name: str) -> str:
     return name.replace("_", " ")
 
 
-def several(known: Knowledge, words: str, said: Sequence[Mentioned]) -> list[tuple[str, int]]:
-    """Return the clauses for each of the things that `them` stands for, with their numbers; none for one thing.
+def several(known: Knowledge, words: str, said: Sequence[Mentioned]) -> list[tuple[str, str, int]]:
+    """Return the clauses for each of the things that `them` stands for, with their classes and numbers; none for one.
 
     They are the things of the last act, which a line or several did to one thing after another: `grab two forks`. Where
     lines did it, the last thing alone is meant if it is many, as shoes are.
@@ -151,7 +151,7 @@ def several(known: Knowledge, words: str, said: Sequence[Mentioned]) -> list[tup
     if any(each.line != last[0].line for each in last) and _is_many(last[0].names[0]):
         last = [each for each in last if each.line == last[0].line]
     things = dict.fromkeys((each.names[0], each.instance) for each in reversed(last))
-    return [(_THEM.sub(_spelt(name), words), number) for name, number in things] if len(things) > 1 else []
+    return [(_THEM.sub(_spelt(name), words), name, number) for name, number in things] if len(things) > 1 else []
 
 
 def count_meant(words: str) -> int:

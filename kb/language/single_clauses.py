@@ -196,8 +196,9 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
     """Return the exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
     words = with_place(known, words, said)
     if many := several(known, words, said):
-        meant = [(understand_exactly(known, clause).meant, number) for clause, number in many]
-        return tuple(Asked(each, number) for each, number in meant if each) if all(each for each, _ in meant) else ()
+        meant = [(understand_exactly(known, clause).meant, name, number) for clause, name, number in many]
+        steps = tuple(_numbered(each, name, number) for each, name, number in meant if each)
+        return steps if len(steps) == len(meant) else ()
     found = (understand_exactly(known, clause).meant for clause in referred(known, words, said))
     readings = [each for each in found if each and (len(each.names) < 2 or each.names[0] != each.names[1])]
     if readings:
@@ -208,6 +209,11 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
         best = best or readings[0]
         return (Asked(best, _number(best, said) if has_pronoun(words) else 1),)
     return _ordered(known, words, said) or _counted(known, words, said)
+
+
+def _numbered(meant: Candidate, name: str, number: int) -> Asked:
+    """Return a step in which the thing of a class has a number: `fill both mugs` has the mugs second."""
+    return Asked(meant, second=number) if meant.names[1:] == (name,) != meant.names[:1] else Asked(meant, number)
 
 
 def _number(meant: Candidate, said: Sequence[Mentioned]) -> int:
@@ -226,7 +232,8 @@ def _counted(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[A
     if meant is None or not meant.names:
         return ()
     if number := _COUNTS.get(count[1].lower()):
-        return tuple(Asked(meant, each) for each in range(1, number + 1))
+        counted = next(iter(things_in(known, words[count.end() :].lower())), meant.names[0])
+        return tuple(_numbered(meant, counted, each) for each in range(1, number + 1))
     before = [each.instance for each in said if each.names[:1] == meant.names[:1]]
     if count[1].lower() == "the other":
         return (Asked(meant, other),) if (other := _other(before)) else ()

@@ -54,6 +54,10 @@ def test_counted_things_are_remembered_for_the_whole_program(knowledge):
     [
         ("Grab two glasses / Pour juice into the glasses",
          ["[Pour] <juice> (1) <glass> (1)", "[Pour] <juice> (1) <glass> (2)"]),
+        ("Take two mugs / Fill both mugs with coffee",
+         ["[Pour] <coffee> (1) <mug> (1)", "[Pour] <coffee> (1) <mug> (2)"]),
+        ("Take two mugs / Fill them with coffee",
+         ["[Pour] <coffee> (1) <mug> (1)", "[Pour] <coffee> (1) <mug> (2)"]),
         ("Take two plates and wash the plates",
          ["[Grab] <plate> (1)", "[Grab] <plate> (2)", "[Wash] <plate> (1)", "[Wash] <plate> (2)"]),
         ("Take three cups / Wash all three", [f"[Wash] <cup> ({number})" for number in (1, 2, 3)]),
