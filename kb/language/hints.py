@@ -1,7 +1,7 @@
 """Hints for a sentence that is not understood: the steps that may be meant, or the word that Hearth does not know."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import islice, product
 from typing import NamedTuple
@@ -21,6 +21,9 @@ _SHORTEST_ENGLISH = 5
 _SHORTEST = 4
 _LONG = 7
 _NAME = re.compile(r"[a-z][a-z'’-]*(?: [a-z][a-z'’-]*)*")
+_TOOL = re.compile(r"(.+?) (?:with|using|by|by means of|through) (.+)")
+"""A thing, and the tool with which, or the way in which, something is done to it."""
+
 _JOINED = frozenset((
     "a", "and", "are", "at", "by", "down", "everything", "for", "from", "in", "into", "is", "it", "no", "not", "of",
     "off", "on", "onto", "or", "out", "over", "something", "that", "the", "them", "then", "this", "to", "under", "up",
@@ -52,6 +55,12 @@ def hints(known: Knowledge, text: str) -> Hints:
     if not words or len(words) > _MOST_WORDS or changes_act(text):
         return Hints()
     found = [parse for phrasing in (text, *phrasings(known, text)) for parse in parses(known, phrasing)]
+    if (tool := _tool_of(known, found)) and thing_of(known, tool) is None and _is_name(tool):
+        return Hints(unknown=tool)
+    if tool:
+        found = [(action, _without_tool(names)) for action, names in found]
+        if known_step := next(filter(lambda parse: _is_afforded(known, parse), found), None):
+            return Hints((_with_classes(known, known_step),))
     lacking = [(action, names, _unknown(known, names)) for action, names in found]
     lacking = sorted((each for each in lacking if each[2]), key=lambda each: len(each[2]))
     steps = dict.fromkeys(step for action, names, _ in lacking for step in _steps(known, (action, names)))
@@ -63,6 +72,31 @@ def hints(known: Knowledge, text: str) -> Hints:
     is_act = not found and is_verb(words[0]) and thing_of(known, text) is None
     is_unknown_verb = is_act and not _is_known_verb(known, words[0])
     return Hints(unknown=words[0], is_action=True) if is_unknown_verb else Hints()
+
+
+def _tool_of(known: Knowledge, found: Sequence[Parse]) -> str:
+    """Return the tool with which, or the way in which, a thing is acted on; empty where a sentence has none."""
+    ends = (_TOOL.fullmatch(names[-1].replace("_", " ")) for _, names in found if names)
+    parts = (match for match in ends if match and (_is_name(bare_words(match[1])) or thing_of(known, match[1])))
+    return next((bare_words(match[2]) for match in parts), "")
+
+
+def _without_tool(names: tuple[str, ...]) -> tuple[str, ...]:
+    match = _TOOL.fullmatch(names[-1].replace("_", " ")) if names else None
+    return (*names[:-1], match[1]) if match else names
+
+
+def _with_classes(known: Knowledge, parse: Parse) -> Parse:
+    action, names = parse
+    return action, tuple(thing_of(known, name.replace("_", " ")) or name for name in names)
+
+
+def _is_afforded(known: Knowledge, parse: Parse) -> bool:
+    action, names = _with_classes(known, parse)
+    return all(
+        thing_of(known, name.replace("_", " ")) and known.affords(action.name, place, name)
+        for place, name in enumerate(names)
+    )
 
 
 def _is_known_verb(known: Knowledge, word: str) -> bool:

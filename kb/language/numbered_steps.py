@@ -19,10 +19,13 @@ from hearth.kb.language.plan_lines import (
     unexplained,
 )
 from hearth.kb.language.program_lines import Kind, lines_of_program
-from hearth.kb.language.pronouns import REMEMBERED, Mentioned
+from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
-from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
+from hearth.kb.language.said_before import SaidBefore
+from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, nearest_steps, plain_step
+from hearth.kb.language.single_clauses import Asked, unclear
+from hearth.kb.language.staying import stays
 from hearth.kb.language.step_phrases import say
 from hearth.kb.language.step_understanding import Candidate, Understood
 from hearth.kb.language.unmarked_lines import is_like_step, is_order
@@ -115,15 +118,19 @@ class _StepParser:
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
-        self._mentioned: list[Mentioned] = []
+        self._before = SaidBefore(known, self.lines)
+        self._idle: list[tuple[str, str, int]] = []
         self._notes: list[tuple[str, str, int]] = []
         self._is_open = self._is_heading = False
 
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
-        if kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
+        sure = _sure_step(self.known, line.text) if kind is Kind.STEP else None
+        if sure and not ((sure[2] or self._before.counted) and self._before.changes(sure[1].names, sure[2])):
             self._is_open = self._is_heading = False
-            self._append(*sure, number)
+            self.steps.append(sure[0])
+            self.lines.append(number)
+            self._before.mentions.append(sure[1])
         elif kind is Kind.STEP:
             before = len(self.steps)
             found = self._read(line, raw, number)
@@ -132,10 +139,10 @@ class _StepParser:
             self.faults += found
         elif kind == Kind.MISSING:
             self._is_open = False
-            self.faults += [] if self._detail(line.text, number) else self._nearest(line.text, raw, number, self._said)
+            self.faults += [] if self._detail(line.text, raw, number) else self._nearest(line.text, raw, number)
         elif line.number is not None and self._is_open:
             self._take_item(line, raw, number)
-        elif kind == Kind.DETAIL and not self._detail(line.text, number) and not self._lacks(line, raw, number):
+        elif kind == Kind.DETAIL and not self._detail(line.text, raw, number) and not self._lacks(line, raw, number):
             self._is_open = self._is_open and line.indent > 0
             self._note(line, raw, number)
         elif kind == Kind.TEXT and line.text:
@@ -159,6 +166,7 @@ class _StepParser:
         return True
 
     def _take_item(self, line: PlanLine, raw: str, number: int) -> None:
+        said = len(self._before.mentions)
         found = self._read(line, raw, number)
         if not found and not self._is_heading:
             self._is_heading = True
@@ -168,6 +176,7 @@ class _StepParser:
         if self._is_heading or is_order(line.text):
             self.faults += found
         elif found:
+            self._before.cut(said)
             self._note(line, raw, number)
 
     def _note(self, line: PlanLine, raw: str, number: int) -> None:
@@ -176,7 +185,14 @@ class _StepParser:
             self._notes.append((line.text, raw, number))
 
     def explained(self) -> list[Diagnostic]:
-        """Return a warning that counts the lines that explain steps and are none, if there are any."""
+        """Return warnings that count the lines that ask for nothing, and those that explain steps and are none."""
+        return [*self._stayed(), *self._noted()]
+
+    def _stayed(self) -> list[Diagnostic]:
+        message = "nothing to do: the thing stays as the last step has left it"
+        return [self._diagnostic(Code.NO_STEP, message, raw, words, number) for words, raw, number in self._idle]
+
+    def _noted(self) -> list[Diagnostic]:
         if not self._notes:
             return []
         words, raw, number = self._notes[0]
@@ -186,18 +202,26 @@ class _StepParser:
         )
         return [self._diagnostic(Code.NO_STEP, message, raw, words, number, "number it if it is a step")]
 
-    def _detail(self, words: str, number: int) -> bool:
+    def _detail(self, words: str, raw: str, number: int) -> bool:
         """Add the steps of a line that may explain; return whether it reads exactly as steps."""
-        asked = asked_steps(self.known, words, self._said, Fuzzy.OFF)
+        said = self._before.last_first(words)
+        if stays(self.known, words, said):
+            self._idle.append((words, raw, number))
+            return True
+        asked = asked_steps(self.known, words, said, Fuzzy.OFF)
         for each in asked:
-            self._add(each, number)
+            self._add(each, words, number)
         return bool(asked)
 
     def _read(self, line: PlanLine, raw: str, number: int) -> list[Diagnostic]:
         """Add the steps of a line; the faults of one that is not understood."""
         if line.bracketed:
             return self._written(line.text, raw, number)
-        words, said = _ORDINAL.sub("", line.text, count=1), self._said
+        words = _ORDINAL.sub("", line.text, count=1)
+        said = self._before.last_first(words)
+        if stays(self.known, words, said):
+            self._idle.append((words, raw, number))
+            return []
         asked = asked_steps(self.known, words.removesuffix(":"), said, Fuzzy.OFF)
         if not asked and self.fuzzy is not Fuzzy.OFF:
             shorter = unexplained(words)
@@ -217,13 +241,13 @@ class _StepParser:
         faults: list[Diagnostic] = []
         for part in parts or (words,):
             if isinstance(part, str):
-                faults += self._nearest(part, raw, number, self._said)
+                faults += self._nearest(part, raw, number)
             else:
                 self._take_asked(part, raw, words, number)
         return faults
 
     def _take_asked(self, asked: Asked, raw: str, words: str, number: int) -> None:
-        self._add(asked, number)
+        self._add(asked, words, number)
         if asked.fuzzy:
             self.warnings.append(self._fuzzy(asked, raw, words, number))
 
@@ -233,12 +257,15 @@ class _StepParser:
         left_out = f"{first.left_out}, the explanation".lstrip(", ") if first else ""
         return (first._replace(left_out=left_out), *others) if first else ()
 
-    def _nearest(self, words: str, raw: str, number: int, said: tuple[Mentioned, ...]) -> list[Diagnostic]:
+    def _nearest(self, words: str, raw: str, number: int) -> list[Diagnostic]:
         """Add the step that a line most resembles where that is enough; else the fault, with the nearest steps."""
+        said = self._before.last_first(words)
         whole = nearest_steps(self.known, words, said, self.fuzzy)
-        if not whole.meant or words.endswith(":"):
-            return [self._fault(whole, raw, words, number)]
-        self._add(Asked(whole.meant), number)
+        reason = unclear(self.known, words, said)
+        if not whole.meant or reason or words.endswith(":"):
+            self._before.add_unread(words, number)
+            return [self._fault(whole, raw, words, number, reason)]
+        self._add(Asked(whole.meant), words, number)
         self.warnings.append(self._fuzzy(Asked(whole.meant), raw, words, number))
         return []
 
@@ -252,8 +279,11 @@ class _StepParser:
             program, faults = action_grammar.check(written, self.known, self.place, [text])
             if not faults:
                 self.steps += program.steps
-                self._mentioned += [_mentioned(step)._replace(line=number) for step in program.steps]
                 self.lines += [number] * len(found)
+                for step in program.steps:
+                    self._before.add(_mentioned(step))
+            else:
+                self._before.add_unread(text, number)
         return [self._placed(fault, text, raw, number) for fault in faults]
 
     def _placed(self, fault: Diagnostic, text: str, raw: str, number: int) -> Diagnostic:
@@ -267,23 +297,20 @@ class _StepParser:
             fault, file=self.place, line=number, column=start + 1, length=len(found), found=found, source=raw[:200]
         )
 
-    def _add(self, asked: Asked, number: int) -> None:
+    def _add(self, asked: Asked, words: str, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
-        self._append(_step(action, names, asked.instance, asked.second), asked.mentioned, number)
-        if asked.left_out.startswith("with it"):
+        mentioned = Mentioned(action, names, asked.instance, number, asked.second, words)
+        self._append(_step(action, names, asked.instance, asked.second), mentioned, number)
+        if asked.along:
+            self._before.carry(asked.along)
+        elif asked.left_out.startswith(("with it", "with them")):
             # What one walks with was spoken of last: `rinse it` after `walk to the sink with it` is not about the sink.
-            self._mentioned[-2:] = reversed(self._mentioned[-2:])
+            self._before.swap_last()
 
     def _append(self, step: Step, mentioned: Mentioned, number: int) -> None:
         self.steps.append(step)
         self.lines.append(number)
-        self._mentioned.append(mentioned)
-
-    @property
-    def _said(self) -> tuple[Mentioned, ...]:
-        """The steps of which a pronoun may speak, the last first."""
-        last = zip(self._mentioned[: -REMEMBERED - 1 : -1], reversed(self.lines), strict=False)
-        return tuple(each if each.line else each._replace(line=line) for each, line in last)
+        self._before.add(mentioned)
 
     def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
         message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"
@@ -291,7 +318,9 @@ class _StepParser:
             message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
-    def _fault(self, whole: Understood, line: str, words: str, number: int) -> Diagnostic:
+    def _fault(self, whole: Understood, line: str, words: str, number: int, reason: str) -> Diagnostic:
+        if reason and not whole.unknown:
+            return self._diagnostic(Code.AMBIGUOUS, reason, line, words, number, "name the thing in full")
         code = Code.AMBIGUOUS if whole.ambiguous else Code.NOT_UNDERSTOOD
         message = "words that may mean several things" if whole.ambiguous else "could not read this line as a step"
         return self._diagnostic(code, message, line, words, number, _remedy(whole))
@@ -303,18 +332,21 @@ class _StepParser:
 
 
 @lru_cache(maxsize=65_536)
-def _sure_step(known: Knowledge, text: str) -> tuple[Step, Mentioned] | None:
-    """Return the step of a line that reads exactly as one, whatever was said before, as most lines do."""
-    asked = () if BRACKETED.match(text) else plain_step(known, _ORDINAL.sub("", text, count=1).removesuffix(":"))
+def _sure_step(known: Knowledge, text: str) -> tuple[Step, Mentioned, frozenset[str]] | None:
+    """Return the step of a line that reads exactly as one, as most lines do, and the classes on which that depends."""
+    words = _ORDINAL.sub("", text, count=1).removesuffix(":")
+    asked = () if BRACKETED.match(text) else plain_step(known, words)
     if len(asked) != 1 or asked[0].fuzzy:
         return None
     meant = asked[0].meant
-    return _step(meant.action.name, meant.names, 1, 1), asked[0].mentioned
+    mentioned = Mentioned(meant.action.name, meant.names, 1, 0, 1, words)
+    return _step(meant.action.name, meant.names, 1, 1), mentioned, depends(known, words)
 
 
 def _mentioned(step: Step) -> Mentioned:
     names = tuple(ref.name for ref in step.objects)
-    return Mentioned(step.action, names, step.objects[0].instance if names else 1)
+    instance, second = (*(ref.instance for ref in step.objects), 1, 1)[:2]
+    return Mentioned(step.action, names, instance, 0, second)
 
 
 @lru_cache(maxsize=65_536)

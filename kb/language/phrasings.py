@@ -27,7 +27,8 @@ _USUAL: tuple[tuple[str, str, str], ...] = (
     (_GOING, rf"(?:{_SELF} )?{_WAY}(?:to|into|inside) (.+)", "walk to {0}"),
     ("get", rf"(?:{_SELF} )?{_WAY}to (.+)", "walk to {0}"),
     ("move walk go head step", r"towards? (.+)", "walk towards {0}"),
-    ("get hop climb", r"(?:in|into) (.+)", "get into {0}"),
+    ("get hop climb jump crawl slip step", r"(?:back )?(?:in|into) (.+)", "get into {0}"),
+    ("hop climb jump crawl slip", r"(?:back )?out of (.+)", "get out of {0}"),
     ("climb", r"up (?:on |onto )?(.+)", "climb {0}"),
     ("glance stare peek peer gaze", r"(?:at|in|into|out of|out|through|inside) (.+)", "look at {0}"),
     ("kick slip pull", r"(?:off (.+)|(.+) off)", "take off {0}"),
@@ -128,6 +129,10 @@ _INTO = re.compile(r"(?:back )?(?:in)?to (.+)")
 _BROUGHT = re.compile(r"(.+?)(?: over| back)? to (.+)")
 _SURFACE, _SWITCH, _SEAT, _BED = "SURFACES", "HAS_SWITCH", "SITTABLE", "LIEABLE"
 _LEFT = re.compile(r"(off|out of) (.+)")
+_IN = re.compile(r"(?:back )?(?:in|into) (.+)")
+_BEDDING = ("get", "hop", "climb", "jump", "crawl", "slip", "fall", "step")
+"""Verbs of going to bed: one lies in it, where a tub or a shower is entered."""
+
 _PUT_ON = ("put", "pop", "stick")
 _SWITCHED = re.compile(r"(.+) (on|off)")
 """A thing and how it is to be, as notes have it: `lights off`."""
@@ -175,6 +180,8 @@ def _by_property(known: Knowledge, verb: str, rest: str) -> Iterator[str]:
     """Yield the phrasings that depend on the use of a thing: a device is not worn, a seat is not taken."""
     if _is_drawn(known, verb, rest):
         yield _DRAWN.sub(r"pull \1\2", rest)
+    if verb in _BEDDING and (match := _IN.fullmatch(rest)) and (thing := thing_of(known, match[1])):
+        yield from [f"lie on {thing.replace('_', ' ')}"] if known.has(thing, _BED) else []
     if verb in _PUT_ON and (match := _ON.fullmatch(rest)) and (thing := thing_of(known, match[1] or match[2])):
         yield from [f"switch on {thing.replace('_', ' ')}"] if known.has(thing, _SWITCH) else []
     if verb == "get" and (match := _LEFT.fullmatch(rest)) and (thing := thing_of(known, match[2])):

@@ -3,18 +3,21 @@
 import re
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.adjectives import without_adjective
-from hearth.kb.language.lexicon import is_verb, noun_lemmas
+from hearth.kb.language.carrying import is_carrying
+from hearth.kb.language.counted_things import numbers
+from hearth.kb.language.head_nouns import may_repeat
+from hearth.kb.language.lexicon import is_verb
 from hearth.kb.language.noun_phrases import thing_of, things_in
-from hearth.kb.language.pronouns import PRONOUN, Mentioned, referred, several, with_place
+from hearth.kb.language.pronouns import Mentioned, has_pronoun, referred
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.refused_words import unread
 from hearth.kb.language.sentence_openings import verb_phrase
+from hearth.kb.language.single_clauses import BETWEEN, COUNT, Asked, clause_steps, first_act
+from hearth.kb.language.staying import STAYS, stays
 from hearth.kb.language.step_understanding import Candidate, Understood, understand, understand_exactly
-from hearth.kb.language.trailing_words import changes_act, is_subordinate, shortened
-from hearth.kb.language.typos import corrected
+from hearth.kb.language.trailing_words import changes_act, is_subordinate
 
 _JOINTS = re.compile(
     r"(?:\s*[,;])?\s+(?:and then|then|and|&{1,2}|\+)\s+|\s*[;,]\s*(?:(?:and then|then|and)\s+)?|\.\s+(?=[A-Z])",
@@ -26,48 +29,11 @@ _OBSERVED = re.compile(
 )
 """A sentence about a person's observation asks for nothing."""
 
-_NUMBERS = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-_COUNTS = (
-    {"both": 2, "a couple": 2} | {name: n for n, name in enumerate(_NUMBERS, 2)} | {str(n): n for n in range(2, 11)}
-)
-_COUNT = re.compile(rf"\b({'|'.join(_COUNTS)})\s+(?:of\s+)?(?:the\s+|my\s+|your\s+)?(?=[a-z])", re.IGNORECASE)
-_ANOTHER = re.compile(r"\b(another|one more|the other|a second)\s+(?=[a-z])", re.IGNORECASE)
-_ORDINALS = {"first": 1, "second": 2, "third": 3, "fourth": 4, "fifth": 5}
-_ORDINAL = re.compile(rf"\bthe ({'|'.join(_ORDINALS)}|other)\s+(?=[a-z])", re.IGNORECASE)
-_BETWEEN = re.compile(r"\b(?:in|on|into|onto|with|to|at|inside)\b", re.IGNORECASE)
+_MINE = r"(?:the|these|those|my|your|his|her|their)"
 _TWO_TOOLS = re.compile(r" (?:with|using) (?:[a-z]+ ){1,3}and [a-z]+(?: [a-z]+)?$", re.IGNORECASE)
 """Two tools of one act, `with soap and water`."""
 
-_LEFT_OUT = 3
 _CLAUSES = 12
-_MISSPELLED = 0.9
-"""The similarity of a clause that has misspelled words and others that are left out."""
-
-
-class Asked(NamedTuple):
-    """A step that a sentence asks for.
-
-    Attributes:
-        meant: the step.
-        instance: the number of its first thing; two forks are fork 1 and fork 2.
-        left_out: words of the sentence that are left out of the step.
-        second: the number of its second thing.
-    """
-
-    meant: Candidate
-    instance: int = 1
-    left_out: str = ""
-    second: int = 1
-
-    @property
-    def fuzzy(self) -> bool:
-        """Return whether words were corrected or left out."""
-        return self.meant.score < 1 or bool(self.left_out)
-
-    @property
-    def mentioned(self) -> Mentioned:
-        """The step as later pronouns need it."""
-        return Mentioned(self.meant.action.name, self.meant.names, self.instance, 0, self.second)
 
 
 def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
@@ -79,28 +45,41 @@ def asked_steps(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: 
         said: the steps before, the last first.
         fuzzy: how far from known words a clause may be; off takes exact readings only.
     """
-    if plain := plain_step(known, words):
+    if (plain := plain_step(known, words)) and not _is_about_said(known, words, plain[0].meant, said):
         return plain
     if _OBSERVED.match(words):
         return ()
     words = verb_phrase(" ".join(_plurals_of_said(known, words, said).split()))
-    whole = _clause(known, words, said, Fuzzy.OFF)
+    whole = clause_steps(known, words, said, Fuzzy.OFF)
     if whole:
         return whole
     clauses = _clauses(words)
     if 1 < len(clauses) <= _CLAUSES and (joined := _joined(known, clauses, said, fuzzy)):
         return joined
     is_one = len(clauses) == 1 or _TWO_TOOLS.search(words) is not None
-    return _clause(known, words, said, fuzzy) if is_one and fuzzy is not Fuzzy.OFF else ()
+    return clause_steps(known, words, said, fuzzy) if is_one and fuzzy is not Fuzzy.OFF else ()
 
 
 @lru_cache(maxsize=65_536)
 def plain_step(known: Knowledge, words: str) -> tuple[Asked, ...]:
     """Return the step of a line that reads exactly, whatever was said before: without pronoun and double plural."""
-    if _OBSERVED.match(words) or PRONOUN.search(words) or _double_plurals(known, words):
+    if _OBSERVED.match(words) or has_pronoun(words) or _double_plurals(known, words) or is_carrying(words):
         return ()
     meant = understand_exactly(known, words).meant
     return (Asked(meant),) if meant else ()
+
+
+def _is_about_said(known: Knowledge, words: str, meant: Candidate, said: Sequence[Mentioned]) -> bool:
+    """Return whether a line that reads by itself may mean something else after the steps before it."""
+    if not said:
+        return False
+    many = numbers(said)
+    return any(name in many for name in meant.names) or any(_is_said(each, said) for each in may_repeat(known, words))
+
+
+def depends(known: Knowledge, words: str) -> frozenset[str]:
+    """Return the classes which change what a line means where they were said before; the empty one always does."""
+    return may_repeat(known, words) | ({""} if STAYS.match(words) else frozenset())
 
 
 def _plurals_of_said(known: Knowledge, words: str, said: Sequence[Mentioned]) -> str:
@@ -109,7 +88,8 @@ def _plurals_of_said(known: Knowledge, words: str, said: Sequence[Mentioned]) ->
     """
     for plural, own, singular, many in _double_plurals(known, words) if said else ():
         if _is_said(many, said) and not _is_said(own, said):
-            words = re.sub(rf"\b{plural}\b", singular, words, flags=re.IGNORECASE)
+            before, one = (rf"(?:{_MINE} )?", f"each {singular}") if many in numbers(said) else ("", singular)
+            words = re.sub(rf"\b(?<!both ){before}{plural}\b", one, words, flags=re.IGNORECASE)
     return words
 
 
@@ -138,14 +118,23 @@ def asked_in_part(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy
         return ()
     clauses = _clauses(verb_phrase(" ".join(_plurals_of_said(known, words, said).split())))
     found: list[Asked | str] = []
-    at = 0
+    at, speaks = 0, has_pronoun(words)
     while at < len(clauses) <= _CLAUSES:
-        now = tuple(each.mentioned for each in reversed(found) if isinstance(each, Asked))
-        read, size = _longest(known, clauses[at:], (*now, *said), fuzzy)
+        now = (
+            each.mentioned if isinstance(each, Asked) else unread(known, each)
+            for each in reversed(found)
+            if speaks or isinstance(each, Asked)
+        )
+        before = (*filter(None, now), *said)
+        if found and isinstance(found[-1], Asked) and stays(known, clauses[at], before):
+            found[-1:] = _with_left_out((found[-1],), clauses[at : at + 1])
+            at += 1
+            continue
+        read, size = _longest(known, clauses[at:], before, fuzzy)
         found += read or (clauses[at],)
         at += size
-    unread = [each for each in found if isinstance(each, str)]
-    return () if len(unread) == len(found) or any(changes_act(each.lower()) for each in unread) else tuple(found)
+    others = [each for each in found if isinstance(each, str)]
+    return () if len(others) == len(found) or any(changes_act(each.lower()) for each in others) else tuple(found)
 
 
 def _longest(
@@ -158,7 +147,7 @@ def _longest(
     for size in range(len(clauses), 1, -1):
         if read := _listed(known, clauses[:size], said):
             return read, size
-    return _clause(known, clauses[0], said, fuzzy), 1
+    return clause_steps(known, clauses[0], said, fuzzy), 1
 
 
 def _clauses(words: str) -> list[str]:
@@ -178,17 +167,33 @@ def _joined(known: Knowledge, clauses: list[str], said: Sequence[Mentioned], fuz
     What shares a verb, as `grab a cup and a plate`, is read together.
     """
     if fuzzy is not Fuzzy.OFF and len(clauses) > 1 and is_subordinate(known, clauses[0].lower()):
+        if first := first_act(known, clauses[0], said):
+            now = (*(each.mentioned for each in reversed(first)), *said)
+            return (*first, *rest) if (rest := _joined(known, clauses[1:], now, fuzzy)) else ()
         spoken = (Mentioned("", (thing,)) for thing in things_in(known, clauses[0].lower()))
         return _without_first(clauses[0], _joined(known, clauses[1:], (*spoken, *said), fuzzy))
     for size in range(1, len(clauses) + 1):
-        read = _clause(known, clauses[0], said, fuzzy) if size == 1 else _listed(known, clauses[:size], said)
-        if read and size == len(clauses):
+        read = clause_steps(known, clauses[0], said, fuzzy) if size == 1 else _listed(known, clauses[:size], said)
+        if not read:
+            continue
+        if size == len(clauses):
             return read
-        if read:
-            now = (each.mentioned for each in reversed(read))
-            if rest := _joined(known, clauses[size:], (*now, *said), fuzzy):
-                return (*read, *rest)
+        now = (*(each.mentioned for each in reversed(read)), *said)
+        end = size
+        while end < len(clauses) and STAYS.match(clauses[end]) and stays(known, clauses[end], now):
+            end += 1
+        read = _with_left_out(read, clauses[size:end]) if end > size else read
+        if end == len(clauses):
+            return read
+        if rest := _joined(known, clauses[end:], now, fuzzy):
+            return (*read, *rest)
     return ()
+
+
+def _with_left_out(read: tuple[Asked, ...], clauses: Sequence[str]) -> tuple[Asked, ...]:
+    """Return the steps of a line, the last without the clauses behind it."""
+    left_out = ", ".join(filter(None, (read[-1].left_out, *clauses)))
+    return (*read[:-1], read[-1]._replace(left_out=left_out))
 
 
 def _without_first(clause: str, read: tuple[Asked, ...]) -> tuple[Asked, ...]:
@@ -211,7 +216,7 @@ def _listed(known: Knowledge, parts: list[str], said: Sequence[Mentioned]) -> tu
         return ()  # `walk to the kitchen, fly` asks for another act
     found: list[Asked] = []
     for each in (" ".join(first[start:]), *middle, " ".join(last[:end])):
-        read = _clause(known, f"{verb} {each} {tail}".strip(), said, Fuzzy.OFF)
+        read = clause_steps(known, f"{verb} {each} {tail}".strip(), said, Fuzzy.OFF)
         if not read:
             return ()
         found += read
@@ -226,125 +231,8 @@ def _are_of_a_kind(known: Knowledge, one: str, other: str) -> bool:
 
 def _is_bare(known: Knowledge, words: str) -> bool:
     """Return whether words are a thing without the place where it is."""
-    return thing_of(known, _uncounted(words.split())) is not None and not _BETWEEN.search(words)
+    return thing_of(known, _uncounted(words.split())) is not None and not BETWEEN.search(words)
 
 
 def _uncounted(words: Sequence[str]) -> str:
-    return _COUNT.sub("", " ".join(words).lower())
-
-
-def _clause(known: Knowledge, words: str, said: Sequence[Mentioned], fuzzy: Fuzzy) -> tuple[Asked, ...]:
-    """Return the steps of one clause: exact, else with words left out, else with misspelled words corrected."""
-    if read := _exact(known, words, said):
-        return read
-    words = verb_phrase(words)
-    if fuzzy is Fuzzy.OFF:
-        return ()
-    if read := _shortened(known, words.lower(), said, ""):
-        return read
-    if changes_act(words.lower()):
-        return ()
-    for shorter, out in ((words, ""), *without_adjective(known, words.lower())):
-        for clause in referred(known, shorter, said):
-            meant = understand(known, clause, Fuzzy.TYPOS).meant
-            if meant and (clause == shorter or _affords(known, meant)):
-                return (Asked(meant, left_out=out),)
-    return _corrected(known, words.lower(), said)
-
-
-def _corrected(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """Return the step of a clause with misspelled words, of which others are left out; none where it may be several."""
-    sentences = next(iter(corrected(known, words)), ())
-    read = {found for each in sentences if each != words and (found := _shortened(known, each, said, ""))}
-    found = read.pop() if len(read) == 1 else ()
-    return tuple(each._replace(meant=each.meant._replace(score=_MISSPELLED)) for each in found)
-
-
-def _shortened(
-    known: Knowledge, words: str, said: Sequence[Mentioned], left_out: str, depth: int = 0
-) -> tuple[Asked, ...]:
-    for shorter, out in shortened(known, words):
-        without = f"{out} {left_out}".strip()
-        read = tuple(each._replace(left_out=without) for each in _exact(known, shorter, said))
-        if not read and depth + 1 < _LEFT_OUT:
-            read = _shortened(known, shorter, said, without, depth + 1)
-        if read:
-            return read
-    return ()
-
-
-def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """Return the exact reading of a clause, of as many things as it counts; `it` is the last thing that affords it."""
-    words = with_place(known, words, said)
-    if many := several(known, words, said):
-        meant = [(understand_exactly(known, clause).meant, number) for clause, number in many]
-        return tuple(Asked(each, number) for each, number in meant if each) if all(each for each, _ in meant) else ()
-    found = (understand_exactly(known, clause).meant for clause in referred(known, words, said))
-    readings = [each for each in found if each and (len(each.names) < 2 or each.names[0] != each.names[1])]
-    if readings:
-        afforded = (each for each in readings if _affords(known, each))
-        best = readings[0] if len(readings) == 1 else next(afforded, readings[0])
-        return (Asked(best, _number(best, said) if PRONOUN.search(words) else 1),)
-    return _ordered(known, words, said) or _counted(known, words, said)
-
-
-def _number(meant: Candidate, said: Sequence[Mentioned]) -> int:
-    """Return the number of the last thing of a class that was spoken of."""
-    return next((each.instance for each in said if each.names[:1] == meant.names[:1]), 1)
-
-
-def _counted(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """Return the steps of a clause that counts its things, as `two forks` and `another cup`."""
-    count = _COUNT.search(words) or _ANOTHER.search(words)
-    if not count or not count.start() or _BETWEEN.search(words[: count.start()].partition(" ")[2]):
-        return ()
-    meant = _of_one(known, words[: count.start()], words[count.end() :])
-    if meant is None or not meant.names:
-        return ()
-    if number := _COUNTS.get(count[1].lower()):
-        return tuple(Asked(meant, each) for each in range(1, number + 1))
-    before = [each.instance for each in said if each.names[:1] == meant.names[:1]]
-    if count[1].lower() == "the other":
-        return (Asked(meant, other),) if (other := _other(before)) else ()
-    return (Asked(meant, max(before, default=0) + 1),)
-
-
-def _other(said: Sequence[int]) -> int:
-    """Return the number of the other one of two things where the first was said last; 0 where it may be either."""
-    return 2 if said[:1] == [1] and max(said) <= 2 else 0
-
-
-def _ordered(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Asked, ...]:
-    """Return the step of a clause with one of several things: `the second cup`, `the other cup`."""
-    found = _ORDINAL.search(words)
-    if not found or not found.start() or len(_ORDINAL.findall(words)) > 1:
-        return ()
-    meant = understand_exactly(known, f"{words[: found.start()]}the {words[found.end() :]}").meant
-    thing = next(iter(things_in(known, words[found.end() :].lower())), "")
-    if not meant or meant.names.count(thing) != 1:
-        return ()
-    before = [
-        number
-        for each in said
-        for name, number in zip(each.names, (each.instance, each.second), strict=False)
-        if name == thing
-    ]
-    number = _ORDINALS.get(found[1].lower()) or _other(before)
-    if not number:
-        return ()
-    return (Asked(meant, number) if meant.names[0] == thing else Asked(meant, second=number),)
-
-
-def _of_one(known: Knowledge, before: str, counted: str) -> Candidate | None:
-    """Return the step for one of the things that are counted.
-
-    Two `glasses` are glasses to drink from, not spectacles.
-    """
-    noun, space, after = counted.partition(" ")
-    singular = (lemma for lemma in noun_lemmas(noun.lower()) if lemma != noun and thing_of(known, lemma))
-    sentences = (f"{before}{one}{space}{after}" for one in (*singular, noun))
-    return next((meant for each in sentences if (meant := understand_exactly(known, each).meant)), None)
-
-
-def _affords(known: Knowledge, meant: Candidate) -> bool:
-    return all(known.affords(meant.action.name, place, name) for place, name in enumerate(meant.names))
+    return COUNT.sub("", " ".join(words).lower())

@@ -33,8 +33,8 @@ _GRAB = "Grab"
 _POINTED = re.compile(r"point(?:s|ing|ed)? (?!at |to ).+ (?:at|to|towards?) .+")
 """A thing is pointed at another; only the other is an object of the step."""
 
-_OTHERWISE = {"take": "sit", "have": "sit", "insert": "put"}
-"""Verbs that mean the act of another: a seat is taken to sit."""
+_OTHERWISE = {"take": "sit", "have": "sit", "insert": "put"} | dict.fromkeys(("hop", "climb", "jump", "crawl"), "get")
+"""Verbs that mean the act of another: a seat is taken to sit, and one climbs out of bed as one gets out of it."""
 
 _ARTICLE = re.compile(r"\b(?:the|a|an|some|my|your|his|her|their)\b ")
 

@@ -45,7 +45,35 @@ def test_a_hint_has_the_verb_and_a_thing_that_may_be_meant(knowledge, sentence, 
     assert suggestion(knowledge, sentence) == f"did you mean {' or '.join(f'`{step}`' for step in steps)}?"
 
 
-@pytest.mark.parametrize("sentence", ["Turn on the TV with the spaceship", "Do not touch the stove", "Put it"])
+@pytest.mark.parametrize(
+    ("sentence", "unknown"),
+    [
+        ("Turn on the TV with the spaceship", "spaceship"),
+        ("Open the jar with a spanner", "spanner"),
+        ("Cut the bread using the sprocket", "sprocket"),
+        ("Open the can with the can opener", "can"),
+    ],
+)
+def test_an_unknown_tool_or_thing_is_named(knowledge, sentence, unknown):
+    assert (
+        suggestion(knowledge, sentence)
+        == f"`{unknown}` is not an object that Hearth knows; `hearth kb find` lists them"
+    )
+
+
+@pytest.mark.parametrize(
+    ("sentence", "step"),
+    [
+        ("Turn on the stove with the lighter", "Switch on stove"),
+        ("Turn on the TV using your phone", "Switch on television"),
+        ("Turn on the television by pressing the power button", "Switch on television"),
+    ],
+)
+def test_a_tool_is_no_thing_of_the_hint(knowledge, sentence, step):
+    assert suggestion(knowledge, sentence) == f"did you mean `{step}`?"
+
+
+@pytest.mark.parametrize("sentence", ["Do not touch the stove", "Put it"])
 def test_what_is_no_name_is_not_said_to_be_one(knowledge, sentence):
     assert suggestion(knowledge, sentence) == "write one step a line, as in `Walk to kitchen`"
 
