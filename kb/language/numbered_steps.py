@@ -21,6 +21,7 @@ from hearth.kb.language.plan_lines import (
 from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import REMEMBERED, Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.refusals import Refusal
 from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, nearest_steps, plain_step
 from hearth.kb.language.step_phrases import say
 from hearth.kb.language.step_understanding import Candidate, Understood
@@ -64,10 +65,14 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuz
         top = header_of(list(map(plan_line, raw)))
     else:
         top = header_of([line for _, line, _ in lines])
+    if parser.refused:
+        # The other lines are a part of the plan at most.
+        faults = sorted(dict.fromkeys((*parser.faults, *parser.refused)), key=lambda fault: (fault.line, fault.column))
+        return ParsedSteps(Program(top.title, top.description), tuple(faults), ())
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
-    parser.faults = _of_language(parser.faults, len(parser.steps))
+    parser.faults = _of_language(list(dict.fromkeys(parser.faults)), len(parser.steps))
     program = Program(top.title, top.description, tuple(parser.steps), tuple(parser.lines))
     return ParsedSteps(program, tuple(parser.faults), (*parser.warnings, *parser.explained()))
 
@@ -107,13 +112,16 @@ class _StepParser:
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
+        self.refused: list[Diagnostic] = []
         self._mentioned: list[Mentioned] = []
         self._notes: list[tuple[str, str, int]] = []
         self._is_open = self._is_heading = False
 
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
-        if kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
+        if line.why:
+            self.refused.append(self._refused(line.why, raw, number))
+        elif kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
             self._is_open = self._is_heading = False
             self._append(*sure, number)
         elif kind is Kind.STEP:
@@ -282,6 +290,9 @@ class _StepParser:
         if asked.left_out:
             message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
+
+    def _refused(self, why: Refusal, raw: str, number: int) -> Diagnostic:
+        return self._diagnostic(Code.SYNTAX, why.message, raw, raw.strip(), number, why.remedy)
 
     def _fault(self, whole: Understood, line: str, words: str, number: int) -> Diagnostic:
         code = Code.AMBIGUOUS if whole.ambiguous else Code.NOT_UNDERSTOOD

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from hearth.kb.language.refusals import Refusal
 from hearth.schemas.program_boundaries import TITLE, is_sentence
 
 _COUNTED = (
@@ -171,6 +172,7 @@ class PlanLine(NamedTuple):
         heading: whether Markdown marks it as a heading, or `Task:` does.
         numbered: whether the line has a number, which may be 0.
         prose: whether it is a sentence of several on a line, which nothing marks as a step.
+        why: why it is refused, and with it the plan.
     """
 
     text: str
@@ -179,6 +181,7 @@ class PlanLine(NamedTuple):
     heading: bool = False
     numbered: bool = False
     prose: bool = False
+    why: Refusal | None = None
 
     @property
     def bracketed(self) -> bool:

@@ -5,6 +5,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from hearth.kb.language.forms.code_calls import CODE
+from hearth.kb.language.forms.code_functions import plan_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
 from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
@@ -83,6 +85,8 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
     unwrap, form = reading_of([line for _, line in first])
     rest = ((number, bare(line, unwrap)) for number, line in itertools.chain(first, lines))
     looked_at = [bare(line, unwrap) for _, line in first]
+    if form is CODE:
+        return _blocks_of_code(rest)
     if form:
         return _blocks_of(form, rest)
     if is_unmarked(looked_at):
@@ -135,6 +139,22 @@ def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_0
         has_steps = has_steps or form.is_step(raw)
     if block:
         yield first, block
+
+
+def _blocks_of_code(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+    """Split code before each function, unless one calls another: then no function alone is a plan."""
+    first: list[tuple[int, str]] = []
+    size = 0
+    for each in lines:
+        first.append(each)
+        size += len(each[1])
+        if size > most:
+            return _blocks_of(CODE, itertools.chain(first, lines))
+    plan = plan_of([raw for _, raw in first])
+    if plan.called and any(raw.strip() for _, raw in first):
+        start = next(n for n, (_, raw) in enumerate(first) if raw.strip())
+        return iter([(first[start][0], [raw for _, raw in first[start:]])])
+    return _blocks_of(CODE, iter([(number, raw) for (number, _), raw in zip(first, plan.lines, strict=True)]))
 
 
 def blocks(
