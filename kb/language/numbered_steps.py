@@ -120,7 +120,9 @@ class _StepParser:
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
         if line.why:
-            self.refused.append(self._refused(line.why, raw, number))
+            (self.warnings if line.why.is_warning else self.refused).append(self._refused(line.why, raw, number))
+        if line.why and not line.why.is_warning:
+            self._is_open = self._is_heading = False
         elif kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
             self._is_open = self._is_heading = False
             self._append(*sure, number)
@@ -292,7 +294,8 @@ class _StepParser:
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
     def _refused(self, why: Refusal, raw: str, number: int) -> Diagnostic:
-        return self._diagnostic(Code.SYNTAX, why.message, raw, raw.strip(), number, why.remedy)
+        code = Code.AMBIGUOUS if why.is_warning else Code.SYNTAX
+        return self._diagnostic(code, why.message, raw, raw.strip(), number, why.remedy)
 
     def _fault(self, whole: Understood, line: str, words: str, number: int) -> Diagnostic:
         code = Code.AMBIGUOUS if whole.ambiguous else Code.NOT_UNDERSTOOD

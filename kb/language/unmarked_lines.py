@@ -8,6 +8,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_noun, is_verb
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN
+from hearth.kb.language.title_marks import goes_there, is_gerund
 from hearth.kb.language.typos import near_words
 from hearth.kb.loading.load import default
 from hearth.schemas.program_boundaries import is_sentence
@@ -159,7 +160,11 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
         return False
     if len(below) == 1 and is_like_step(text):
         return len(sentences(below[0])) > 1 or bool(chained(below[0]))
-    if is_apart or not is_like_step(text) or (" " not in text and is_noun(text.lower())):
+    if goes_there(text, below):
+        return False
+    if is_gerund(text) and not all(map(is_gerund, below)):
+        return True
+    if is_apart or text.endswith(":") or not is_like_step(text) or (" " not in text and is_noun(text.lower())):
         return True
     ends = sum(line.endswith((".", "!")) for line in below)
     if ends >= _WHOLE * len(below):
