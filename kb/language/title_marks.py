@@ -54,7 +54,7 @@ def doubted(placed: Sequence[Placed], plain: Iterable[int]) -> Iterator[tuple[in
     paragraphs = list(_paragraphs(placed, plain))
     first, *others = ([placed[n].line.text for n in part] for part in paragraphs)
     may_first = _may_be_title(first)
-    if may_first and not any(map(_may_be_title, others)) and first[0].split()[0].lower() not in _moves(default()):
+    if may_first and not any(map(_may_be_title, others)) and not _moves_things(first[0]):
         yield paragraphs[0][0], _FIRST
     for part, texts in zip(paragraphs[1:], others, strict=True):
         if _may_be_title(texts):
@@ -103,7 +103,7 @@ def _paragraphs(placed: Sequence[Placed], plain: Iterable[int]) -> Iterator[list
 
 
 def _may_be_title(texts: Sequence[str]) -> bool:
-    """Return whether the first of some lines may be their title: they go somewhere first, and it is shorter, or done."""
+    """Return whether the first of some lines may be their title: it is short, and they go somewhere."""
     first, *below = texts
     if (
         len(below) < 2
