@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from hearth.kb.language.asked_titles import asked_title
 from hearth.kb.language.refusals import Refusal
 from hearth.schemas.program_boundaries import TITLE, is_sentence
 
@@ -118,11 +119,6 @@ _ANSWER = re.compile(
     r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE
 )
 _ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s*:?\s+(\S.*)", re.IGNORECASE)
-_ASKED_FOR = re.compile(
-    r"(?:please\s+)?(?:write|give|make|create|generate|produce|provide|list|show)\b[^:]{0,40}"
-    r"\b(?:plan|steps|program|instructions)\s+(?:for|to)\s*:?\s+[\"'“]?(\S.*?)[\"'”.!]*",
-    re.IGNORECASE,
-)
 _USUAL = re.compile(
     r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
 )
@@ -333,12 +329,6 @@ def _header(found: tuple[PlanLine, ...]) -> Header:
 
 
 _short_header = lru_cache(maxsize=16_384)(_header)
-
-
-def asked_title(line: str) -> str:
-    """Return the title of a request, `Make tea` of `Write a plan for: Make tea`; else the line itself."""
-    asked = _ASKED_FOR.fullmatch(line.strip())
-    return asked[1] if asked else line
 
 
 ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)

@@ -71,10 +71,11 @@ _ONE = Refusal(
 
 def are_titles(first: Sequence[str], second: Sequence[str]) -> bool:
     """Return whether two paragraphs of steps begin with titles, as `Make tea` and `Watch TV`, which move no thing."""
-    both = (first, second)
-    return all(
-        texts and _may_be_title(texts) and texts[0].split()[0].lower() not in _moves(default()) for texts in both
-    )
+    return all(texts and _may_be_title(texts) and not _moves_things(texts[0]) for texts in (first, second))
+
+
+def _moves_things(text: str) -> bool:
+    return text.split(maxsplit=1)[0].lower() in _moves(default())
 
 
 @lru_cache(maxsize=8)

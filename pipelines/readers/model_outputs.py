@@ -3,10 +3,9 @@
 from typing import Any
 
 from hearth.kb.language.forms.orders import orders_in
-from hearth.kb.language.plan_lines import asked_title
 from hearth.kb.language.program_lines import is_plan
+from hearth.pipelines.readers.chat_titles import titled
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
-from hearth.schemas.program_boundaries import TITLE
 
 
 def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
@@ -30,16 +29,13 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the last answer of a chat, with the request before it as title."""
+    """Return the last answer of a chat, with the request that it answers as title."""
     if ordered := _ordered(messages):
         return {"steps": ordered}
     last = max((at for at, each in enumerate(messages) if each["role"] == "assistant"), default=None)
     asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
-    title = asked[-1] if asked else ""
     answer = _answer(messages[last]) if last is not None else {}
-    first, _, rest = title.strip().partition("\n")
-    first = asked_title(TITLE.sub("", first, count=1))
-    return {"title": first[:200], **({"description": rest.strip()} if rest.strip() else {}), **answer}
+    return {**titled(asked), **answer}
 
 
 def _ordered(messages: list[dict[str, Any]]) -> list[str]:
