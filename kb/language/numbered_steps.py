@@ -26,7 +26,7 @@ from hearth.kb.language.sentences import Asked, asked_in_part, asked_steps, near
 from hearth.kb.language.step_phrases import say
 from hearth.kb.language.step_understanding import Candidate, Understood
 from hearth.kb.language.unmarked_lines import is_like_step, is_order
-from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic, excerpt
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps as parse_ticks
@@ -256,18 +256,18 @@ class _StepParser:
                 self.steps += program.steps
                 self._mentioned += [_mentioned(step)._replace(line=number) for step in program.steps]
                 self.lines += [number] * len(found)
+        if text not in raw:  # in another form, whose faults all stand at its first word
+            faults = faults[:1]
         return [self._placed(fault, text, raw, number) for fault in faults]
 
     def _placed(self, fault: Diagnostic, text: str, raw: str, number: int) -> Diagnostic:
         """Place a fault of the syntax of programs; that of a line in another form stands at the line's first word."""
         at = raw.find(text)
-        if at >= 0:
-            return replace(fault, file=self.place, line=number, column=fault.column + at, source=raw[:200])
-        start = len(raw) - len(raw.lstrip())
-        found = raw.strip()[:200]
-        return replace(
-            fault, file=self.place, line=number, column=start + 1, length=len(found), found=found, source=raw[:200]
-        )
+        if at < 0:
+            at, found = len(raw) - len(raw.lstrip()), raw.strip()[:200]
+            fault = replace(fault, column=1, length=len(found), found=found)
+        source, before = excerpt(raw, fault.column + at)
+        return replace(fault, file=self.place, line=number, column=fault.column + at, source=source, before=before)
 
     def _add(self, asked: Asked, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
@@ -305,7 +305,8 @@ class _StepParser:
     def _diagnostic(self, code: Code, message: str, line: str, words: str, number: int, remedy: str = "") -> Diagnostic:
         at = line.find(words)
         column = max(at if at >= 0 else line.find(words.split(maxsplit=1)[0]), 0) + 1
-        return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, line[:200])
+        source, before = excerpt(line, column)
+        return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, source, before)
 
 
 @lru_cache(maxsize=65_536)

@@ -22,7 +22,7 @@ _PART = re.compile(
     re.IGNORECASE,
 )
 _POSTURE = re.compile(r"[a-z]+ (?:up|down|off|on|out|around|over|away|back|in)\b", re.IGNORECASE)
-"""What is done before one goes somewhere, `Stand up`, `Put on slippers`."""
+"""A step before a walk, `Stand up`, `Put on slippers`."""
 
 _THE = re.compile(r" (?:the|my|your|his|her|a|an) ", re.IGNORECASE)
 _WORD = re.compile(r"[a-z]+")
@@ -30,7 +30,7 @@ _FEW = 5
 
 
 def is_gerund(text: str) -> bool:
-    """Return whether a line is named by what is done, `Watching TV`."""
+    """Return whether a line names an activity, `Watching TV`."""
     found = _GERUND.fullmatch(text)
     return found is not None and found[1].lower() not in _NO_GERUND and is_verb(found[1].lower())
 

@@ -12,7 +12,7 @@ from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan, is_unmarked
 from hearth.pipelines.readers import plans
 from hearth.pipelines.readers.field_columns import Asked, FieldColumns, lacks
-from hearth.pipelines.readers.found_records import FIELDS, named, records_in
+from hearth.pipelines.readers.found_records import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.json_actions import is_action, step_of
 from hearth.pipelines.readers.json_documents import located, located_document
 from hearth.pipelines.readers.json_elements import located_entries
@@ -140,7 +140,7 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
         kind = type(value).__name__
         fault = Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         return refused(place, fault, name, line)
-    keys = [*value]
+    keys = value.keys_of_file if isinstance(value, Converted) else [*value]
     value = named(value, given)
     if FIELDS.isdisjoint(value):
         value[_KEYS] = keys

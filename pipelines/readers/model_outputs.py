@@ -18,14 +18,19 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
         return {**_answer(answered), **({"id": own} if isinstance(own, str) else {})}
     if isinstance(value.get("content"), list) and _used(value["content"]):
         return _answer(value)
-    chat = next((found for key in _CHATS if (found := _messages(value.get(key)))), None)
+    chat = chat_of(value)
     if chat:
-        return _chat(chat)
+        return _chat(_messages(value[chat]))
     if _are_calls(value.get("tool_calls")):
         return _answer(value)
     if "title" not in value and is_action(value) and ("function" in value or "object" in value):
         return {"steps": [value]}
     return None
+
+
+def chat_of(value: dict[str, Any]) -> str:
+    """Return the key of a record that holds the messages of a chat; empty where none does."""
+    return next((key for key in _CHATS if _messages(value.get(key))), "")
 
 
 def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
@@ -86,7 +91,7 @@ def is_message(value: Any) -> bool:
 _MOST_KEYS = 5
 _SPEAKERS = ("role", "from", "speaker", "sender", "author")
 _ROLES = {"human": "user", "gpt": "assistant", "model": "assistant", "bot": "assistant", "chatgpt": "assistant"}
-_CONTENTS = ("content", "value", "parts", "text", "message")
+_CONTENTS = ("content", "value", "parts", "text", "message", "utterance")
 
 
 def _messages(value: Any) -> list[dict[str, Any]]:

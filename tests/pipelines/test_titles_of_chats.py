@@ -59,3 +59,22 @@ def test_another_task_is_the_title(write, knowledge, second):
 )
 def test_the_title_of_a_request_is_its_task(write, knowledge, request_text):
     assert titles(write, knowledge, request_text)[0][0] == "Drink coffee"
+
+
+TURNS = [{"speaker": "Commander", "text": "Please drink"}, {"speaker": "assistant", "text": FIRST}]
+
+
+@pytest.mark.parametrize(("title", "chat"), [("task", "dialogue"), ("name", "messages"), ("goal", "conversation")])
+def test_the_task_beside_a_chat_is_its_title_and_its_keys_are_printed(write, knowledge, capsys, title, chat):
+    file = write("a.json", json.dumps([{title: "Drink", chat: TURNS}]))
+    (found,) = read_programs(file, knowledge, "a.json")
+    assert (found.program.title, len(found.program.steps)) == ("Drink", 2)
+    assert f"program={chat}, title={title}" in capsys.readouterr().err
+
+
+def test_a_chat_without_a_plan_is_refused_with_its_own_keys(write, knowledge):
+    file = write(
+        "a.json", json.dumps([{"task": "Drink", "dialogue": [{"speaker": "user", "text": "Hello there"}] * 2}])
+    )
+    (reject,) = read_programs(file, knowledge, "a.json")
+    assert "its keys are task, dialogue" in reject.diagnostics[0].message
