@@ -61,7 +61,8 @@ def _with_own_keys(value: dict[str, Any], record: dict[str, Any], given: FieldCo
     title = value.get(name) if chat and name else None
     if not name or not isinstance(title, str) or not title.strip():
         return Converted(record, value)
-    asked = "\n".join(filter(None, (record.get("title", ""), record.get("description", ""))))
+    is_program = not FIELDS.isdisjoint(record.keys() - {"description"})
+    asked = "\n".join(filter(None, (record.get("title"), record.get("description")))) if is_program else ""
     if isinstance(given, Asked):
         given.note(value, {"program": chat, "title": name, **({"description": chat} if asked else {})}, [])
     return Converted({**record, "title": title, **({"description": asked} if asked else {})}, value)

@@ -40,7 +40,7 @@ def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
     last = max((at for at, each in enumerate(messages) if each["role"] == "assistant"), default=None)
     asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
     answer = _answer(messages[last]) if last is not None else {}
-    return {**titled(asked), **answer}
+    return {**titled(asked if answer else asked[-1:]), **answer}
 
 
 def _ordered(messages: list[dict[str, Any]]) -> list[str]:
