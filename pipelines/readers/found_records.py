@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from hearth.kb.language.program_lines import is_plan
-from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, value_at
+from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, is_condition, is_formula, value_at
 from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner
 from hearth.pipelines.readers.model_outputs import chat_of, of_others
 from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
@@ -157,6 +157,7 @@ def named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
         found["program"] = "steps"
     if "program" in found and not {"title", "description"} & (found.keys() | given.keys() | value.keys()):
         rest = [key for key in texts if key not in found.values() and is_line(value[key])]
+        rest = [key for key in rest if not (is_condition(key, found) and is_formula(value[key]))]
         found.update({field: key for field, key in guessed(rest, {}).items() if field == "title"})
     if isinstance(given, Asked):
         given.note(value, found, texts)

@@ -1,7 +1,6 @@
 """Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
 import itertools
-import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +11,7 @@ from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_as
 from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
 from hearth.kb.language.unmarked_lines import are_steps, is_order
 from hearth.kb.language.wrappings import bare, raw_of
+from hearth.pipelines.readers.document_titles import without_document_titles
 from hearth.pipelines.readers.json_elements import located_entries
 from hearth.pipelines.readers.placed_texts import Text
 from hearth.pipelines.readers.reader_items import Item, fault_of, lines, record, refused
@@ -32,7 +32,7 @@ _LOOKED_AT = 60
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
     numbered = ((number, line) for number, (line, _) in enumerate(lines(path), 1))
-    for number, block in _without_document_title(_programs(numbered)):
+    for number, block in without_document_titles(_programs(numbered)):
         text = "\n".join(map(raw_of, block))
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
@@ -92,32 +92,6 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
     if is_unmarked(looked_at):
         return unmarked_blocks(rest)
     return blocks(rest, titles=titles_of(looked_at, list(map(plan_line, looked_at))))
-
-
-def _without_document_title(blocks: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, list[str]]]:
-    """Yield the programs, the first without the heading of a document whose sections are programs."""
-    first, second = next(blocks, None), next(blocks, None)
-    for block in (first, second):
-        if block is not None and block is first and second is not None:
-            yield _below_document_title(block, second[1])
-        elif block is not None:
-            yield block
-    yield from blocks
-
-
-def _below_document_title(block: tuple[int, list[str]], following: list[str]) -> tuple[int, list[str]]:
-    """Return a first program from its own heading on, where that has the level of the next one's, and another above."""
-    number, found = block
-    headings = [(n, level_of(raw)) for n, raw in enumerate(found) if _HEADING.match(raw)]
-    level = next((level_of(raw) for raw in following if _HEADING.match(raw)), 0)
-    if len(headings) < 2 or headings[0][1] >= headings[1][1] or headings[1][1] != level:
-        return block
-    if headings[0][0] or any(plan_line(raw).number is not None for raw in found[: headings[1][0]]):
-        return block
-    return number + headings[1][0], found[headings[1][0] :]
-
-
-_HEADING = re.compile(r"#{1,6}\s+\S")
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
