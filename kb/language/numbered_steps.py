@@ -123,6 +123,9 @@ class _StepParser:
             (self.warnings if line.why.is_warning else self.refused).append(self._refused(line.why, raw, number))
         if line.why and not line.why.is_warning:
             self._is_open = self._is_heading = False
+        elif kind is Kind.HEAD:
+            self._is_open = self._is_heading = True
+            self._note(line, raw, number)
         elif kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
             self._is_open = self._is_heading = False
             self._append(*sure, number)

@@ -10,15 +10,16 @@ from hearth.kb.language.lexicon import is_verb
 from hearth.kb.language.refusals import Refusal
 from hearth.kb.loading.load import default
 
-_GOES = re.compile(
+GOES = re.compile(
     r"(?:then |now )?(?:walk|go|head|move|run)s? (?:over |back )?(?:to|into|in|towards?)\b", re.IGNORECASE
 )
-_GOES_THERE = re.compile(rf"{_GOES.pattern} (?:the|my|your|his|her)\b", re.IGNORECASE)
+_GOES_THERE = re.compile(rf"{GOES.pattern} (?:the|my|your|his|her)\b", re.IGNORECASE)
 _GERUND = re.compile(r"([a-z]{2,}ing)(?: [\w'’-]+){0,5}[.:]?", re.IGNORECASE)
 _NO_GERUND = frozenset(("bring", "ring", "sing", "swing", "cling", "string", "spring", "fling", "sting", "wring"))
 _PART = re.compile(
     r"(?:in|at|on|to|from|after|before|with|for|by|when|once|if|first|second|third|then|next|finally|last|step|phase|part"
-    r"|section|stage|day|note|now)\b",
+    r"|section|stage|day|note|now|prep\w*|get\w* ready|finish\w*|start\w*|begin\w*|end|ending|wrap\w*|set ?up"
+    r"|clean\w* up|afterwards|later)\b",
     re.IGNORECASE,
 )
 _POSTURE = re.compile(r"[a-z]+ (?:up|down|off|on|out|around|over|away|back|in)\b", re.IGNORECASE)
@@ -37,7 +38,7 @@ def is_gerund(text: str) -> bool:
 
 def goes_there(text: str, below: Sequence[str]) -> bool:
     """Return whether a line walks to a place, `Walk to the fridge`, from which the lines below it go on."""
-    return _GOES_THERE.match(text) is not None and not (below and _GOES.match(below[0]))
+    return _GOES_THERE.match(text) is not None and not (below and GOES.match(below[0]))
 
 
 def is_part(text: str) -> bool:
@@ -110,8 +111,8 @@ def _may_be_title(texts: Sequence[str]) -> bool:
         len(below) < 2
         or len(first.split()) > _FEW
         or _POSTURE.match(first)
-        or _GOES.match(first)
-        or not _GOES.match(below[0])
+        or GOES.match(first)
+        or not GOES.match(below[0])
     ):
         return False
     are_marked = sum(_THE.search(line) is not None for line in below) == len(below) and not _THE.search(first)

@@ -144,7 +144,7 @@ def blocks(
     for number, raw in lines:
         line = plan_line(raw)
         line = next(titled([line], titles)) if titles != Titles.NONE else line
-        if line.number is not None:
+        if line.number is not None and not block.holds(line):
             if block.ends_before(line):
                 rest = block.split()
                 yield block.first, block.lines
@@ -178,7 +178,7 @@ class _Block:
         self.has_title_below = False
         self._last, self._below, self._size = 0, 0, 0
         self._bulleted, self._by_headings = True, False
-        self._level = self._deepest = self._number = 0
+        self._level = self._deepest = self._number = self._indent = 0
         self._texts: list[PlanLine] = []
         self._has_heading_below = self._is_titled = False
 
@@ -190,9 +190,10 @@ class _Block:
         """Add a line, unless the block is blank or full."""
         if line.number is not None:
             self._bulleted = self._bulleted and not line.numbered
-            self._number = line.number if line.numbered else self._number
+            self._number = line.number if line.numbered and not self.holds(line) else self._number
             self._by_headings = self._by_headings or line.heading
-            is_nested = self._by_headings and not line.heading
+            is_nested = (self._by_headings and not line.heading) or self.holds(line)
+            self._indent = self._indent if self._last else line.indent
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
             self._level, self._deepest, self._texts, self._has_heading_below = 0, 0, [], False
@@ -213,6 +214,10 @@ class _Block:
             self.lines.append(raw)
             self.numbers.append(number)
             self._size += len(raw) + 1
+
+    def holds(self, step: PlanLine) -> bool:
+        """Return whether a numbered step is an item of the one above, with numbers of its own."""
+        return step.numbered and self._last > 0 and not self._below and step.indent > self._indent + 1
 
     def _may_be_below(self, line: PlanLine) -> bool:
         """Return whether a line stands below the steps, and is none that only lacks its mark."""

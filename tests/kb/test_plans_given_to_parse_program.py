@@ -21,7 +21,7 @@ import hearth
 def test_the_error_names_the_reader_of_plans(text):
     with pytest.raises(hearth.HearthError) as raised:
         hearth.parse_program(text)
-    call, module, known, source = re.findall(r"`([^`]+)`", raised.value.diagnostics[0].suggestion)[:4]
+    call, module, _, known, source = re.findall(r"`([^`]+)`", raised.value.diagnostics[0].suggestion)[:5]
     names = {"text": text, "parse_steps": import_module(module).parse_steps}
     names["known"] = eval(known, {"default": import_module(source).default})
     assert len(eval(call, names).program.steps) == 2
