@@ -22,7 +22,7 @@ def is_head(line: PlanLine, below: Sequence[PlanLine]) -> bool:
         items += [each.text] if each.text else []
     if len(items) < 2 or not all(map(is_like_step, items)):
         return False
-    if line.text.endswith(":") or (GOES.match(items[0]) is not None):
+    if GOES.match(items[0]):
         return True
     return any(_words(line.text) <= _words(item) for item in items)
 

@@ -116,6 +116,7 @@ class _StepParser:
         self._mentioned: list[Mentioned] = []
         self._notes: list[tuple[str, str, int]] = []
         self._is_open = self._is_heading = False
+        self._indent = 0
 
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
@@ -124,8 +125,10 @@ class _StepParser:
         if line.why and not line.why.is_warning:
             self._is_open = self._is_heading = False
         elif kind is Kind.HEAD:
-            self._is_open = self._is_heading = True
+            self._is_open, self._is_heading, self._indent = True, True, line.indent
             self._note(line, raw, number)
+        elif kind is Kind.STEP and self._is_open and line.indent > self._indent:
+            self._take_item(line, raw, number)
         elif kind is Kind.STEP and (sure := _sure_step(self.known, line.text)):
             self._is_open = self._is_heading = False
             self._append(*sure, number)
@@ -134,6 +137,7 @@ class _StepParser:
             found = self._read(line, raw, number)
             is_unread = bool(found) and len(self.steps) == before
             self._is_open, self._is_heading = is_unread and not line.bracketed, False
+            self._indent = line.indent
             self.faults += found
         elif kind == Kind.MISSING:
             self._is_open = False

@@ -142,13 +142,17 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
         return refused(place, fault, name, line)
     keys = value.keys_of_file if isinstance(value, Converted) else [*value]
     value = named(value, given)
-    if not any(str(value.get(field) or "").strip() for field in FIELDS):
+    if all(_is_blank(value.get(field)) for field in FIELDS):
         value[_KEYS] = keys
     own = current_id(str(value.get("program_id") or value.get("id") or ""))
     wrong = id_fault(own, place, line)
     if wrong:
         return refused(place, wrong, name, line)
     return Item(own or f"{NAME}:{name}", NAME, place, value, _version(value), line=line)
+
+
+def _is_blank(part: Any) -> bool:
+    return not part or (isinstance(part, str) and not part.strip())
 
 
 def _version(value: dict[str, Any]) -> str:
@@ -197,7 +201,7 @@ def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Rejec
     if not text and not words["description"]:
         names = [as_text(key) for key in value.get(_KEYS, value)]
         empty = guessed(names, {}).get("program")
-        lacks_plan = f"`{empty}` is empty: " if empty and not str(value.get(empty) or "").strip() else ""
+        lacks_plan = f"`{empty}` is empty: " if empty and _is_blank(value.get(empty)) else ""
         message = f"{lacks_plan}neither steps nor a description; its keys are {', '.join(names)[:200] or 'none'}"
         return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, suggestion=_FORM)
     top = header if not in_sentences else plan_header
