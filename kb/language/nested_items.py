@@ -12,7 +12,7 @@ _SMALL = frozenset(("the", "a", "an", "my", "your", "to", "of"))
 
 
 def is_head(line: PlanLine, below: Sequence[PlanLine]) -> bool:
-    """Return whether a step only names the items below it, `Get the milk`: they begin with a walk, or do it again."""
+    """Return whether a step only names the items below it, `Get the milk`: they begin with a walk, or repeat it."""
     if line.heading or line.bracketed:
         return False
     items: list[str] = []
