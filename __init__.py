@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from hearth.datasets.dataset import Dataset
     from hearth.kb.knowledge import Knowledge
+    from hearth.schemas.diagnostics import Diagnostic
     from hearth.schemas.program import Program
     from hearth.simulation.env import Env
     from hearth.simulation.world.home import Home
@@ -217,7 +218,24 @@ def parse_program(text: str, knowledge: Knowledge | None = None) -> Program:
     from hearth.schemas.syntax import parse_program
 
     program, faults = parse_program(text)
+    faults = faults if program.steps else tuple(_with_reader_of_plans(text, fault) for fault in faults)
     checked, wrong = check(program, _or_ours(knowledge), source=text.splitlines())
     if faults or wrong:
         raise HearthError([*faults, *wrong])
     return checked
+
+
+def _with_reader_of_plans(text: str, fault: Diagnostic) -> Diagnostic:
+    """Return the fault of a text without steps; where it is a plan in words, with the function that reads those."""
+    from dataclasses import replace
+
+    from hearth.kb.language.program_lines import is_plan
+    from hearth.schemas.failures import Code
+
+    if fault.code not in (Code.EMPTY, Code.SYNTAX) or not is_plan(text.split("\n")):
+        return fault
+    remedy = (
+        'a plan in words is read by `parse_steps(text, 0, "", known)` of `hearth.kb.language.numbered_steps`, '
+        "where `known` is `default()` of `hearth.kb.loading.load`, or by `hearth check FILE`"
+    )
+    return replace(fault, suggestion=remedy)

@@ -25,7 +25,8 @@ def in_order(faults: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 def equal(fault: Diagnostic) -> Hashable:
     """Return the common key of equal faults, with the words at fault; lines of another language are one fault."""
-    words = "" if fault.suggestion == TRANSLATE else fault.source[max(0, fault.column - 1) :][: fault.length]
+    start = max(0, fault.column - fault.before - 1)
+    words = "" if fault.suggestion == TRANSLATE else fault.source[start : start + fault.length]
     return fault.code, fault.message, fault.suggestion, words
 
 

@@ -207,6 +207,7 @@ def read_programs(
     from hearth.storage.rejects import Reject
 
     tables: dict[str, FieldColumns] = {}
+    described: list[IngestedRow] = []
     for _, item in ingest.items([Source(name, path)], read_columns(columns), tables):
         for place in [place for place, found in tables.items() if found]:
             columns_of = tables.pop(place)
@@ -217,6 +218,18 @@ def read_programs(
                 yield row
             elif row["kind"] == "program":
                 yield _given(row, known, fuzzy)
+            elif row["kind"] == "description":
+                described.append({**row, "text": None})
+    if described:
+        _note_described(described)
+
+
+def _note_described(rows: Sequence[IngestedRow]) -> None:
+    """Say which records have a description and no plan: they are read, and nothing of them is checked."""
+    from hearth.commands import output
+
+    places = (f"{row['place']}:{row['line'] + 1}" if row["line"] is not None else row["place"] for row in rows)
+    output.note(f"{output.counted(len(rows), 'description')} without a plan: {_some(places, len(rows))}.")
 
 
 def name_of(file: Path) -> str:

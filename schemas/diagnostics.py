@@ -50,6 +50,19 @@ class Diagnostic:
         return f"{text} ({self.suggestion})" if self.suggestion else text
 
 
+LONGEST_SOURCE = 200
+"""Characters of a line at most that a fault holds."""
+
+
+def excerpt(line: str, column: int) -> tuple[str, int]:
+    """Return the part of a line around a column (from 1) for `source`, and the characters of the line `before` it."""
+    start = 0 if column <= LONGEST_SOURCE - _FOLLOWING else column - 1 - _LEADING
+    return line[start : start + LONGEST_SOURCE], start
+
+
+_LEADING, _FOLLOWING = 60, 60
+
+
 class HearthError(Exception):
     """Bad input, with every fault that was found. The command line prints it and exits with status 1,
     or with status 2 where a name on the command line is at fault.

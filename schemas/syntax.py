@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic, excerpt
 from hearth.schemas.failures import Code
 from hearth.schemas.malformed_steps import explain, special
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -180,7 +180,8 @@ def _parse_block(block: _Block, file: str) -> tuple[Program, list[Diagnostic]]:
 
 
 def _placed(fault: Diagnostic, file: str, number: int, line: str) -> Diagnostic:
-    return replace(fault, file=file, line=number, source=line.rstrip("\n")[:200])
+    source, before = excerpt(line.rstrip("\n"), fault.column)
+    return replace(fault, file=file, line=number, source=source, before=before)
 
 
 @lru_cache(maxsize=65_536)

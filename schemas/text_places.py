@@ -47,8 +47,9 @@ class TextPlaces:
         # What a reader has put before the line is not shown.
         added = self._jumps(fault.line)[0][0]
         added = added if fault.column > added else 0
-        before = column - (fault.column - added)
-        return replace(fault, line=line, column=column, length=length, source=fault.source[added:], before=before)
+        cut = max(added - fault.before, 0)
+        before = max(column - (fault.column - fault.before - cut), 0)
+        return replace(fault, line=line, column=column, length=length, source=fault.source[cut:], before=before)
 
     def _jumps(self, row: int) -> list[tuple[int, int, int]]:
         start = self.starts[min(row, len(self.starts)) - 1]

@@ -103,7 +103,7 @@ def _begun(lines: Sequence[ProgramLine], reader: Reader) -> Sequence[ProgramLine
 def _read_plan(lines: Sequence[ProgramLine], reader: Reader) -> Iterator[Line]:
     """Read the lines of a plan: one that may explain the step above counts only where it is a step."""
     for _, line, kind in lines:
-        if kind == Kind.TEXT:
+        if kind in (Kind.TEXT, Kind.HEAD):
             continue
         found = reader(line.text)
         found = reader(unexplained(line.text)) if isinstance(found, Diagnostic) else found

@@ -5,6 +5,7 @@ import re
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import META, PlanLine
 from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
+from hearth.kb.language.title_marks import doubted
 from hearth.kb.language.unmarked_lines import are_steps, chained, is_like_step, is_title, sentences
 from hearth.schemas.program_boundaries import is_sentence
 
@@ -31,6 +32,8 @@ def marked(placed: list[Placed]) -> list[Placed]:
     texts = [_after_label(placed[n].line.text) for n in plain]
     if not are_steps(texts) and not (is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])):
         return placed
+    for n, why in doubted(placed, plain):
+        placed = [*placed[:n], Placed(placed[n].row, placed[n].line._replace(why=why)), *placed[n + 1 :]]
     steps = {n for n, text in zip(plain, texts, strict=True) if is_like_step(text) or chained(text)}
     return [part for n, each in enumerate(placed) for part in (_steps_on(each) if n in steps else [each])]
 
@@ -86,4 +89,4 @@ def _steps_on(placed: Placed) -> list[Placed]:
     """Return a line as steps: the sentences of prose, else the whole line."""
     text = _after_label(placed.line.text)
     parts = sentences(text)
-    return [Placed(placed.row, PlanLine(part, 0, prose=len(parts) > 1)) for part in parts]
+    return [Placed(placed.row, PlanLine(part, 0, prose=len(parts) > 1, why=placed.line.why)) for part in parts]

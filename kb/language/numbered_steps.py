@@ -22,6 +22,7 @@ from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
+from hearth.kb.language.refusals import Refusal
 from hearth.kb.language.said_before import SaidBefore
 from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, nearest_steps, plain_step
 from hearth.kb.language.single_clauses import Asked, unclear
@@ -29,7 +30,7 @@ from hearth.kb.language.staying import stays
 from hearth.kb.language.step_phrases import say
 from hearth.kb.language.step_understanding import Candidate, Understood
 from hearth.kb.language.unmarked_lines import is_like_step, is_order
-from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic, excerpt
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps as parse_ticks
@@ -75,10 +76,14 @@ def _parsed(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy) 
         top = header_of(list(map(plan_line, raw)))
     else:
         top = header_of([line for _, line, _ in lines])
+    if parser.refused:
+        # The other lines are a part of the plan at most.
+        faults = sorted(dict.fromkeys((*parser.faults, *parser.refused)), key=lambda fault: (fault.line, fault.column))
+        return ParsedSteps(Program(top.title, top.description), tuple(faults), ())
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
-    parser.faults = _of_language(parser.faults, len(parser.steps))
+    parser.faults = _of_language(list(dict.fromkeys(parser.faults)), len(parser.steps))
     program = Program(top.title, top.description, tuple(parser.steps), tuple(parser.lines))
     return ParsedSteps(program, tuple(parser.faults), (*parser.warnings, *parser.explained()))
 
@@ -118,15 +123,26 @@ class _StepParser:
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
+        self.refused: list[Diagnostic] = []
         self._before = SaidBefore(known, self.lines)
         self._idle: list[tuple[str, str, int]] = []
         self._notes: list[tuple[str, str, int]] = []
         self._is_open = self._is_heading = False
+        self._indent = 0
 
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
         sure = _sure_step(self.known, line.text) if kind is Kind.STEP else None
-        if sure and not ((sure[2] or self._before.counted) and self._before.changes(sure[1].names, sure[2])):
+        if line.why:
+            (self.warnings if line.why.is_warning else self.refused).append(self._refused(line.why, raw, number))
+        if line.why and not line.why.is_warning:
+            self._is_open = self._is_heading = False
+        elif kind is Kind.HEAD:
+            self._is_open, self._is_heading, self._indent = True, True, line.indent
+            self._note(line, raw, number)
+        elif kind is Kind.STEP and self._is_open and line.indent > self._indent:
+            self._take_item(line, raw, number)
+        elif sure and not ((sure[2] or self._before.counted) and self._before.changes(sure[1].names, sure[2])):
             self._is_open = self._is_heading = False
             self.steps.append(sure[0])
             self.lines.append(number)
@@ -136,6 +152,7 @@ class _StepParser:
             found = self._read(line, raw, number)
             is_unread = bool(found) and len(self.steps) == before
             self._is_open, self._is_heading = is_unread and not line.bracketed, False
+            self._indent = line.indent
             self.faults += found
         elif kind == Kind.MISSING:
             self._is_open = False
@@ -284,18 +301,18 @@ class _StepParser:
                     self._before.add(_mentioned(step))
             else:
                 self._before.add_unread(text, number)
+        if text not in raw:  # in another form, whose faults all stand at its first word
+            faults = faults[:1]
         return [self._placed(fault, text, raw, number) for fault in faults]
 
     def _placed(self, fault: Diagnostic, text: str, raw: str, number: int) -> Diagnostic:
         """Place a fault of the syntax of programs; that of a line in another form stands at the line's first word."""
         at = raw.find(text)
-        if at >= 0:
-            return replace(fault, file=self.place, line=number, column=fault.column + at, source=raw[:200])
-        start = len(raw) - len(raw.lstrip())
-        found = raw.strip()[:200]
-        return replace(
-            fault, file=self.place, line=number, column=start + 1, length=len(found), found=found, source=raw[:200]
-        )
+        if at < 0:
+            at, found = len(raw) - len(raw.lstrip()), raw.strip()[:200]
+            fault = replace(fault, column=1, length=len(found), found=found)
+        source, before = excerpt(raw, fault.column + at)
+        return replace(fault, file=self.place, line=number, column=fault.column + at, source=source, before=before)
 
     def _add(self, asked: Asked, words: str, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
@@ -318,6 +335,10 @@ class _StepParser:
             message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
         return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
+    def _refused(self, why: Refusal, raw: str, number: int) -> Diagnostic:
+        code = Code.AMBIGUOUS if why.is_warning else Code.SYNTAX
+        return self._diagnostic(code, why.message, raw, raw.strip(), number, why.remedy)
+
     def _fault(self, whole: Understood, line: str, words: str, number: int, reason: str) -> Diagnostic:
         if reason and not whole.unknown:
             return self._diagnostic(Code.AMBIGUOUS, reason, line, words, number, "name the thing in full")
@@ -328,7 +349,8 @@ class _StepParser:
     def _diagnostic(self, code: Code, message: str, line: str, words: str, number: int, remedy: str = "") -> Diagnostic:
         at = line.find(words)
         column = max(at if at >= 0 else line.find(words.split(maxsplit=1)[0]), 0) + 1
-        return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, line[:200])
+        source, before = excerpt(line, column)
+        return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, source, before)
 
 
 @lru_cache(maxsize=65_536)

@@ -5,7 +5,9 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from hearth.kb.language.asked_titles import asked_title
 from hearth.kb.language.recognition_knowledge import recognized_cache
+from hearth.kb.language.refusals import Refusal
 from hearth.schemas.program_boundaries import TITLE, is_sentence
 
 _COUNTED = (
@@ -117,11 +119,6 @@ _ANSWER = re.compile(
     r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are| you go| we go))\b", re.IGNORECASE
 )
 _ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s*:?\s+(\S.*)", re.IGNORECASE)
-_ASKED_FOR = re.compile(
-    r"(?:please\s+)?(?:write|give|make|create|generate|produce|provide|list|show)\b[^:]{0,40}"
-    r"\b(?:plan|steps|program|instructions)\s+(?:for|to)\s*:?\s+[\"'“]?(\S.*?)[\"'”.!]*",
-    re.IGNORECASE,
-)
 _USUAL = re.compile(
     r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
 )
@@ -171,6 +168,7 @@ class PlanLine(NamedTuple):
         heading: whether Markdown marks it as a heading, or `Task:` does.
         numbered: whether the line has a number, which may be 0.
         prose: whether it is a sentence of several on a line, which nothing marks as a step.
+        why: why it is refused, and with it the plan.
     """
 
     text: str
@@ -179,6 +177,7 @@ class PlanLine(NamedTuple):
     heading: bool = False
     numbered: bool = False
     prose: bool = False
+    why: Refusal | None = None
 
     @property
     def bracketed(self) -> bool:
@@ -330,12 +329,6 @@ def _header(found: tuple[PlanLine, ...]) -> Header:
 
 
 _short_header = recognized_cache(maxsize=16_384)(_header)
-
-
-def asked_title(line: str) -> str:
-    """Return the title of a request, `Make tea` of `Write a plan for: Make tea`; else the line itself."""
-    asked = _ASKED_FOR.fullmatch(line.strip())
-    return asked[1] if asked else line
 
 
 ROLE = re.compile(r"(?:subject|re|human|user|request|prompt)\s*:\s+(?=\S)", re.IGNORECASE)

@@ -11,10 +11,12 @@ from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Form, Placed
 from hearth.kb.language.line_parts import listed
 from hearth.kb.language.marked_lines import marked
+from hearth.kb.language.nested_items import is_head
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
 from hearth.kb.language.recognition_knowledge import recognized_cache
+from hearth.kb.language.title_marks import is_part
 from hearth.kb.language.unmarked_lines import (
     are_steps,
     chained,
@@ -46,13 +48,15 @@ _THOUGHT_END = re.compile(r"</think(?:ing)?>", re.IGNORECASE)
 class Kind(StrEnum):
     """The kind of a line of a program.
 
-    A detail is a line that may explain the step above: an item below a step, or a line without a number. It is a step
-    if it reads exactly as one, else a note. A missing step is a line between numbered ones that is not a sentence.
+    A head names the items below it. A detail is a line that may explain the step above: an item below a step, or a line
+    without a number. It is a step if it reads exactly as one, else a note. A missing step is a line between numbered
+    ones that is not a sentence.
     """
 
     TEXT = "text"
     STEP = "step"
     DETAIL = "detail"
+    HEAD = "head"
     MISSING = "missing"
 
 
@@ -205,6 +209,8 @@ def _are_bullets(lines: Sequence[PlanLine]) -> bool:
     if any(line.numbered and not line.indent for line in texts):
         return False
     tops = [n for n, line in enumerate(texts) if not line.indent]
+    if all(is_part(texts[n].text) for n in tops):
+        return False
     return all(
         sum(is_order(line.text) for line in texts[start + 1 : end]) > 1
         for start, end in itertools.pairwise([*tops, len(texts)])
@@ -300,6 +306,9 @@ def _kinds(placed: list[Placed]) -> Iterator[ProgramLine]:
         if _ends(each):
             continue
         indent = line.indent if indent is None else indent
+        if own[number] and is_head(line, lines[number + 1 :]):
+            yield ProgramLine(*each, Kind.HEAD)
+            continue
         by_headings = by_headings or line.heading
         is_own = own[number] and (line.heading or line.bracketed or not by_headings)
         is_own = is_own and (line.numbered or line.bracketed or line.indent <= indent)

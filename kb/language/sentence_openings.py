@@ -17,9 +17,13 @@ _OPENINGS = (
     r"(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)\s*,|(?:um+|uh+|oh|you know)(?= |,)",
     rf"{_SUBJECT}(?:['’](?:ll|m|re|s|ve|d))?{_ORDER}(?: (?:{_DUTY}|{_TENSE})){{0,2}}{_ORDER}",
     r"let (?:me|us|him|her|the (?:robot|agent|person))|let['’]s",
+    r"(?:(?:make|be) (?:sure|certain)|ensure|see to it)(?: that)? (?:you|we)(?! (?:do not|don['’]t|never|are|have)\b)"
+    r"(?= )|(?:it is|it['’]s) (?:important|necessary|best|good) to"
+    r"|(?:the|your) (?:next|first|last|final) thing(?: to do)? is to",
+    r"(?:you|we)(?:['’]ll| will)? want to",
     r"go ahead and|make (?:sure|certain) to|be sure to|remember to|(?:don['’]t|do not|never) forget to"
     r"|(?:proceed|try|start|begin|continue|attempt) to(?! (?:the|a|an|your|my|his|her|our|their)\b)"
-    r"|(?:i |we )need you to"
+    r"|(?:i |we )?need you to"
     r"|(?:start|begin|continue|keep|finish)(?= [a-z]+ing\b)|go (?:and )?(?=(?:get|grab|fetch|take|find|pick|bring)\b)"
     r"|(?:it is|it['’]s) time to|(?:the|your) next step is to"
     r"|(?:er+m?|yeah|yep|yes|well|alright|right)(?= then\b|,)|(?:er+m?|yeah)(?= )"
@@ -65,6 +69,7 @@ _FIRST = frozenset(
         ),
         *("alright", "right"),
         *("keep", "finish"),
+        *("ensure", "see", "need"),
         *("after", "once", "from", "at", "in", "as", "then", "next", "now", "please", "kindly", "just", "simply"),
         *("and", "afterwards", "also", "ok", "okay", "so"),
     ]

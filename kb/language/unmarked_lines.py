@@ -9,6 +9,7 @@ from hearth.kb.language.lexicon import is_noun, is_verb
 from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import CHAIN
 from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
+from hearth.kb.language.title_marks import goes_there, is_gerund
 from hearth.kb.language.typos import near_words
 from hearth.schemas.program_boundaries import is_sentence
 
@@ -20,7 +21,8 @@ _NO_MANNER = (
 """Words in -ly that do not say how a step is done."""
 
 _LEAD = re.compile(
-    rf"(?:(?:please|(?:first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth)(?:ly)?(?= ?,)"
+    rf"(?:(?:please|(?:i|we) (?:need|want) you to"
+    rf"|(?:first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth)(?:ly)?(?= ?,)"
     rf"|first|then|next|now|finally|lastly|afterwards?|meanwhile|and|also|just|kindly|after (?:that|this)"
     rf"|(?:(?:hey|hi|hello|ok|okay) )?(?:robot|bot|alexa|siri|jarvis)(?= ?,)|um+|uh+|oh"
     r"|yesterday|today|tonight|this (?:morning|afternoon|evening)|in the (?:morning|afternoon|evening)"
@@ -57,9 +59,24 @@ def is_order(text: str) -> bool:
     return _PLAIN.fullmatch(text) is not None and is_like_step(text) and not _HOW.match(text)
 
 
+_FIRST_OF_DUTY = re.compile(
+    r"(?:make|be|ensure|see|remember|do|don|never|try|want|need|it|the|your|am|are|let)\b", re.IGNORECASE
+)
+_DUTY = re.compile(
+    r"(?:(?:(?:make|be) (?:sure|certain)|ensure|see to it)(?: that)? (?:you|we)|(?:make|be) (?:sure|certain) to"
+    r"|remember to|(?:do not|don['’]t|never) forget to|(?:try|want|need|(?:am|are) going) to|let us"
+    r"|(?:want|need) you to|it(?:['’]s| is) (?:important|necessary|best|good|time) to"
+    r"|(?:the|your) (?:next|first|last|final) (?:thing|step|task|job)(?: to do)? is to)\s+"
+    r"(?!(?:do not|don['’]t|never|not|are|have)\b)(?=[a-z])",
+    re.IGNORECASE,
+)
+"""Words that ask for the step behind them, `Make sure you close the fridge`."""
+
 _PLAIN = re.compile(r"[\w,.'’-]+(?: [\w,.'’-]+){0,8}")
 _HOW = re.compile(
-    r"(?:use|using|set|check|repeat|continue|allow|leave|avoid|wait|hold|choose|consider|look for)\b", re.IGNORECASE
+    r"(?:use|using|set|check|repeat|continue|allow|leave|avoid|wait|hold|choose|consider|look for"
+    r"|make sure|be sure|ensure|remember|try)\b",
+    re.IGNORECASE,
 )
 
 
@@ -70,6 +87,8 @@ def is_like_step(text: str) -> bool:
     word = _WORD.match(text, lead.end() if lead and lead.end() < len(text) else 0)
     if not word:
         return False
+    if _FIRST_OF_DUTY.match(word[0]) and (duty := _DUTY.match(text, word.start())):
+        return is_like_step(text[duty.end() :])
     first, second = word[0].lower(), text[word.end() :].split(maxsplit=1)[:1]
     if first == "make" and second != ["sure"]:
         return True
@@ -159,7 +178,11 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
         return False
     if len(below) == 1 and is_like_step(text):
         return len(sentences(below[0])) > 1 or bool(chained(below[0]))
-    if is_apart or not is_like_step(text) or (" " not in text and is_noun(text.lower())):
+    if goes_there(text, below):
+        return False
+    if is_gerund(text) and not all(map(is_gerund, below)):
+        return True
+    if is_apart or text.endswith(":") or not is_like_step(text) or (" " not in text and is_noun(text.lower())):
         return True
     ends = sum(line.endswith((".", "!")) for line in below)
     if ends >= _WHOLE * len(below):

@@ -169,6 +169,14 @@ def is_condition(name: str, found: FieldColumns) -> bool:
     return name.strip().lower() == "goal" and found.get("program", "").strip().lower() in ("prediction", "predicted")
 
 
+_FORMULA = re.compile(r"[(){}\[\]<>=]|\w:\s*\d")
+
+
+def is_formula(text: str) -> bool:
+    """Return whether a text is a condition, `ON(plate, table): 2`, and no words."""
+    return _FORMULA.search(text) is not None
+
+
 def rivals(names: Iterable[str], found: FieldColumns, given: FieldColumns) -> dict[str, list[str]]:
     """Return the other columns whose whole names say that they hold a program or a title, where one was guessed."""
     others = [name for name in dict.fromkeys(names) if name not in found.values()]

@@ -1,12 +1,12 @@
 """The records in a JSON value, with their fields by our names, whatever their keys are."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from hearth.kb.language.program_lines import is_plan
-from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, value_at
+from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, is_condition, is_formula, value_at
 from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner
-from hearth.pipelines.readers.model_outputs import of_others
+from hearth.pipelines.readers.model_outputs import chat_of, of_others
 from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
 from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
 from hearth.pipelines.readers.step_texts import IN_LINE
@@ -25,7 +25,7 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
         return
     other = of_others(value)
     if other is not None:
-        yield "", other
+        yield "", _with_own_keys(value, other, given)
     elif of_planner(value.values()):
         yield "", Reject.of(Code.UNSUPPORTED_FILE, _OF_PLANNER, suggestion="write steps as [Walk] <shower> (1)")
     elif _are_plans(value, given):
@@ -38,6 +38,34 @@ def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tupl
             yield f"[{number}]", record if plain_name(title) in _NO_TITLES else {"title": title, **record}
     elif depth:
         yield from _records_inside(value, given, depth - 1)
+
+
+class Converted(dict[str, Any]):
+    """A record of another form by our names.
+
+    Attributes:
+        keys_of_file: its keys in the file.
+    """
+
+    def __init__(self, record: dict[str, Any], keys_of_file: Iterable[str]) -> None:
+        super().__init__(record)
+        self.keys_of_file = [*keys_of_file]
+
+
+def _with_own_keys(value: dict[str, Any], record: dict[str, Any], given: FieldColumns) -> Converted:
+    """Return a converted record with the title next to a chat; the request of the chat then is its description."""
+    chat = chat_of(value)
+    name = given.get("title") or guessed(
+        [key for key, part in value.items() if isinstance(part, str)], {}, exact=True
+    ).get("title")
+    title = value.get(name) if chat and name else None
+    if not name or not isinstance(title, str) or not title.strip():
+        return Converted(record, value)
+    is_program = not FIELDS.isdisjoint(record.keys() - {"description"})
+    asked = "\n".join(filter(None, (record.get("title"), record.get("description")))) if is_program else ""
+    if isinstance(given, Asked):
+        given.note(value, {"program": chat, "title": name, **({"description": chat} if asked else {})}, [])
+    return Converted({**record, "title": title, **({"description": asked} if asked else {})}, value)
 
 
 def _are_plans(value: dict[str, Any], given: FieldColumns) -> bool:
@@ -129,6 +157,7 @@ def named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
         found["program"] = "steps"
     if "program" in found and not {"title", "description"} & (found.keys() | given.keys() | value.keys()):
         rest = [key for key in texts if key not in found.values() and is_line(value[key])]
+        rest = [key for key in rest if not (is_condition(key, found) and is_formula(value[key]))]
         found.update({field: key for field, key in guessed(rest, {}).items() if field == "title"})
     if isinstance(given, Asked):
         given.note(value, found, texts)

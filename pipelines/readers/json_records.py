@@ -11,8 +11,8 @@ from hearth.datasets.format.splits import RULES
 from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan, is_unmarked
 from hearth.pipelines.readers import plans
-from hearth.pipelines.readers.field_columns import Asked, FieldColumns, lacks
-from hearth.pipelines.readers.found_records import FIELDS, named, records_in
+from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, lacks
+from hearth.pipelines.readers.found_records import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.json_actions import is_action, step_of
 from hearth.pipelines.readers.json_documents import located, located_document
 from hearth.pipelines.readers.json_elements import located_entries
@@ -140,15 +140,19 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
         kind = type(value).__name__
         fault = Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         return refused(place, fault, name, line)
-    keys = [*value]
+    keys = value.keys_of_file if isinstance(value, Converted) else [*value]
     value = named(value, given)
-    if FIELDS.isdisjoint(value):
+    if all(_is_blank(value.get(field)) for field in FIELDS):
         value[_KEYS] = keys
     own = current_id(str(value.get("program_id") or value.get("id") or ""))
     wrong = id_fault(own, place, line)
     if wrong:
         return refused(place, wrong, name, line)
     return Item(own or f"{NAME}:{name}", NAME, place, value, _version(value), line=line)
+
+
+def _is_blank(part: Any) -> bool:
+    return not part or (isinstance(part, str) and not part.strip())
 
 
 def _version(value: dict[str, Any]) -> str:
@@ -195,8 +199,10 @@ def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Rejec
     text, in_sentences, places = _text(value, words)
     kind = "program" if text else "description"
     if not text and not words["description"]:
-        keys = ", ".join(as_text(key) for key in value.get(_KEYS, value))[:200] or "none"
-        message = f"neither steps nor a description; its keys are {keys}"
+        names = [as_text(key) for key in value.get(_KEYS, value)]
+        empty = guessed(names, {}).get("program")
+        lacks_plan = f"`{empty}` is empty: " if empty and _is_blank(value.get(empty)) else ""
+        message = f"{lacks_plan}neither steps nor a description; its keys are {', '.join(names)[:200] or 'none'}"
         return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, suggestion=_FORM)
     top = header if not in_sentences else plan_header
     title, description = top(text) if text and "steps" not in value else ("", "")

@@ -3,10 +3,9 @@
 from typing import Any
 
 from hearth.kb.language.forms.orders import orders_in
-from hearth.kb.language.plan_lines import asked_title
 from hearth.kb.language.program_lines import is_plan
+from hearth.pipelines.readers.chat_titles import titled
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
-from hearth.schemas.program_boundaries import TITLE
 
 
 def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
@@ -19,9 +18,9 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
         return {**_answer(answered), **({"id": own} if isinstance(own, str) else {})}
     if isinstance(value.get("content"), list) and _used(value["content"]):
         return _answer(value)
-    chat = next((found for key in _CHATS if (found := _messages(value.get(key)))), None)
+    chat = chat_of(value)
     if chat:
-        return _chat(chat)
+        return _chat(_messages(value[chat]))
     if _are_calls(value.get("tool_calls")):
         return _answer(value)
     if "title" not in value and is_action(value) and ("function" in value or "object" in value):
@@ -29,17 +28,19 @@ def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
     return None
 
 
+def chat_of(value: dict[str, Any]) -> str:
+    """Return the key of a record that holds the messages of a chat; empty where none does."""
+    return next((key for key in _CHATS if _messages(value.get(key))), "")
+
+
 def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the last answer of a chat, with the request before it as title."""
+    """Return the last answer of a chat, with the request that it answers as title."""
     if ordered := _ordered(messages):
         return {"steps": ordered}
     last = max((at for at, each in enumerate(messages) if each["role"] == "assistant"), default=None)
     asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
-    title = asked[-1] if asked else ""
     answer = _answer(messages[last]) if last is not None else {}
-    first, _, rest = title.strip().partition("\n")
-    first = asked_title(TITLE.sub("", first, count=1))
-    return {"title": first[:200], **({"description": rest.strip()} if rest.strip() else {}), **answer}
+    return {**titled(asked if answer else asked[-1:]), **answer}
 
 
 def _ordered(messages: list[dict[str, Any]]) -> list[str]:
@@ -90,7 +91,7 @@ def is_message(value: Any) -> bool:
 _MOST_KEYS = 5
 _SPEAKERS = ("role", "from", "speaker", "sender", "author")
 _ROLES = {"human": "user", "gpt": "assistant", "model": "assistant", "bot": "assistant", "chatgpt": "assistant"}
-_CONTENTS = ("content", "value", "parts", "text", "message")
+_CONTENTS = ("content", "value", "parts", "text", "message", "utterance")
 
 
 def _messages(value: Any) -> list[dict[str, Any]]:

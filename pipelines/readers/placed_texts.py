@@ -86,8 +86,8 @@ class Text(str):
 
 
 def _unit(name: str) -> re.Pattern[str]:
-    """Return a pattern for a character of a text in the file; `name` may be a line break with its indent."""
-    if name.startswith("\n"):
+    """Return a pattern for a character of a text in the file; `name` may be line breaks with their indents."""
+    if name.startswith(("\n", "\\n")):
         return re.compile(f"{name}|.", re.DOTALL)
     return CELL_UNIT if name == '""' else JSON_UNIT
 

@@ -1,15 +1,17 @@
 """Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
 import itertools
-import re
 from collections.abc import Iterator
 from typing import Any
 
+from hearth.kb.language.forms.code_calls import CODE
+from hearth.kb.language.forms.code_functions import plan_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
 from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
 from hearth.kb.language.unmarked_lines import are_steps, is_order
 from hearth.kb.language.wrappings import bare, raw_of
+from hearth.pipelines.readers.document_titles import without_document_titles
 from hearth.pipelines.readers.json_elements import located_entries
 from hearth.pipelines.readers.placed_texts import Text
 from hearth.pipelines.readers.reader_items import Item, fault_of, lines, record, refused
@@ -30,7 +32,7 @@ _LOOKED_AT = 60
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
     numbered = ((number, line) for number, (line, _) in enumerate(lines(path), 1))
-    for number, block in _without_document_title(_programs(numbered)):
+    for number, block in without_document_titles(_programs(numbered)):
         text = "\n".join(map(raw_of, block))
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
@@ -83,37 +85,13 @@ def _programs(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]
     unwrap, form = reading_of([line for _, line in first])
     rest = ((number, bare(line, unwrap)) for number, line in itertools.chain(first, lines))
     looked_at = [bare(line, unwrap) for _, line in first]
+    if form is CODE:
+        return _blocks_of_code(rest)
     if form:
         return _blocks_of(form, rest)
     if is_unmarked(looked_at):
         return unmarked_blocks(rest)
     return blocks(rest, titles=titles_of(looked_at, list(map(plan_line, looked_at))))
-
-
-def _without_document_title(blocks: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, list[str]]]:
-    """Yield the programs, the first without the heading of a document whose sections are programs."""
-    first, second = next(blocks, None), next(blocks, None)
-    for block in (first, second):
-        if block is not None and block is first and second is not None:
-            yield _below_document_title(block, second[1])
-        elif block is not None:
-            yield block
-    yield from blocks
-
-
-def _below_document_title(block: tuple[int, list[str]], following: list[str]) -> tuple[int, list[str]]:
-    """Return a first program from its own heading on, where that has the level of the next one's, and another above."""
-    number, found = block
-    headings = [(n, level_of(raw)) for n, raw in enumerate(found) if _HEADING.match(raw)]
-    level = next((level_of(raw) for raw in following if _HEADING.match(raw)), 0)
-    if len(headings) < 2 or headings[0][1] >= headings[1][1] or headings[1][1] != level:
-        return block
-    if headings[0][0] or any(plan_line(raw).number is not None for raw in found[: headings[1][0]]):
-        return block
-    return number + headings[1][0], found[headings[1][0] :]
-
-
-_HEADING = re.compile(r"#{1,6}\s+\S")
 
 
 def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
@@ -137,6 +115,22 @@ def _blocks_of(form: Form, lines: Iterator[tuple[int, str]], most: int = 1_000_0
         yield first, block
 
 
+def _blocks_of_code(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+    """Split code before each function, unless one calls another: then no function alone is a plan."""
+    first: list[tuple[int, str]] = []
+    size = 0
+    for each in lines:
+        first.append(each)
+        size += len(each[1])
+        if size > most:
+            return _blocks_of(CODE, itertools.chain(first, lines))
+    plan = plan_of([raw for _, raw in first])
+    if plan.called and any(raw.strip() for _, raw in first):
+        start = next(n for n, (_, raw) in enumerate(first) if raw.strip())
+        return iter([(first[start][0], [raw for _, raw in first[start:]])])
+    return _blocks_of(CODE, iter([(number, raw) for (number, _), raw in zip(first, plan.lines, strict=True)]))
+
+
 def blocks(
     lines: Iterator[tuple[int, str]], most: int = 1_000_000, *, titles: Titles = Titles.NONE
 ) -> Iterator[tuple[int, list[str]]]:
@@ -150,7 +144,7 @@ def blocks(
     for number, raw in lines:
         line = plan_line(raw)
         line = next(titled([line], titles)) if titles != Titles.NONE else line
-        if line.number is not None:
+        if line.number is not None and not block.holds(line):
             if block.ends_before(line):
                 rest = block.split()
                 yield block.first, block.lines
@@ -184,7 +178,7 @@ class _Block:
         self.has_title_below = False
         self._last, self._below, self._size = 0, 0, 0
         self._bulleted, self._by_headings = True, False
-        self._level = self._deepest = self._number = 0
+        self._level = self._deepest = self._number = self._indent = 0
         self._texts: list[PlanLine] = []
         self._has_heading_below = self._is_titled = self._has_top = self._bracketed = False
 
@@ -200,9 +194,10 @@ class _Block:
             self._has_top = self._has_top or (not self._last and bool(self._texts))
             self._bracketed = line.bracketed and (self._bracketed or not self._last) and not self._is_titled
             self._bulleted = self._bulleted and not line.numbered
-            self._number = line.number if line.numbered else self._number
+            self._number = line.number if line.numbered and not self.holds(line) else self._number
             self._by_headings = self._by_headings or line.heading
-            is_nested = self._by_headings and not line.heading
+            is_nested = (self._by_headings and not line.heading) or self.holds(line)
+            self._indent = self._indent if self._last else line.indent
             self._last = self._last if is_nested else max(line.number or self._last, 1)
             self._below, self.has_title_below = 0, False
             self._level, self._deepest, self._texts, self._has_heading_below = 0, 0, [], False
@@ -229,6 +224,10 @@ class _Block:
         if not line.heading or line.number is not None or not self._bracketed or not self._has_top:
             return False
         return bool(self.lines[-1].strip())
+
+    def holds(self, step: PlanLine) -> bool:
+        """Return whether a numbered step is an item of the one above, with numbers of its own."""
+        return step.numbered and self._last > 0 and not self._below and step.indent > self._indent + 1
 
     def _may_be_below(self, line: PlanLine) -> bool:
         """Return whether a line stands below the steps, and is none that only lacks its mark."""

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 from hearth.pipelines.readers import json_records
 from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
-from hearth.pipelines.readers.field_columns import FieldColumns, Found, guessed, is_condition, lacks, rivals
+from hearth.pipelines.readers.field_columns import FieldColumns, Found, guessed, is_condition, is_formula, lacks, rivals
+from hearth.pipelines.readers.found_records import Converted
 from hearth.pipelines.readers.json_actions import is_action
 from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
 from hearth.pipelines.readers.reader_items import Item, refused
@@ -91,13 +92,18 @@ def table_of(path: Place, given: FieldColumns) -> Table:
         _guess_program(table, {name: cells[name] for name in texts})
     found.note = f"{NUMBERED} {found.note}".strip() if is_row else found.note
     if "title" not in found and "title" not in given and found:
-        rest = (name for name in texts if name not in found.values() and not is_condition(name, found))
+        rest = (name for name in texts if name not in found.values() and not _are_conditions(name, found, cells[name]))
         title = next((name for name in rest if _is_title(cells[name])), "")
         found.update({"title": title} if title else {})
     if not (table.number or steps) and _is_by_title(sample, layout, found):
         found.note = f"{found.note} {_ROWS_ARE_STEPS}".strip()
         return table._replace(by_title=True)
     return table
+
+
+def _are_conditions(name: str, found: FieldColumns, cells: Sequence[str]) -> bool:
+    """Return whether a column `goal` next to predictions holds conditions; one that holds words names the tasks."""
+    return is_condition(name, found) and any(map(is_formula, cells))
 
 
 def _ordered_steps(found: Found, given: FieldColumns, cells: Mapping[str, Sequence[str]]) -> None:
@@ -245,7 +251,7 @@ def _record(row: Row, table: Table) -> dict[str, Any]:
     """Return a row as a record, by our names of the fields."""
     fields = {field: name for field, name in table.columns.items() if not (table.steps and field == "program")}
     steps = {"steps": [row[name] for name in table.steps if row[name].strip()]} if table.steps else {}
-    return {**{field: row[name] for field, name in fields.items()}, **steps}
+    return Converted({**{field: row[name] for field, name in fields.items()}, **steps}, row)
 
 
 def _unnamed(rows: Rows, line: int, layout: Layout, place: str, given: FieldColumns) -> Reject:

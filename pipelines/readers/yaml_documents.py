@@ -96,7 +96,34 @@ def _scalar(node: Any, text: str) -> Any:
     line, column = node.start_mark.line + 1, node.start_mark.column + 1
     if node.style == "|":
         return _block(node, text)
-    return text_at(node.value, line, column + (node.style in ("'", '"')), node.value)
+    if node.style == ">":
+        return _folded_block(node, text)
+    quotes = int(node.style in ("'", '"'))
+    if node.end_mark.line > node.start_mark.line:
+        raw = text[node.start_mark.index + quotes : node.end_mark.index - quotes].rstrip()
+        return _folded(node.value, line, column + quotes, raw, _ANY_INDENT)
+    return text_at(node.value, line, column + quotes, node.value)
+
+
+_ANY_INDENT = r"\n *\n *|\n *"
+
+
+def _folded_block(node: Any, text: str) -> Any:
+    """Return a text whose lines are joined, as `>` asks for."""
+    head = text.find("\n", node.start_mark.index)
+    found = _INDENT.match(text, head)
+    if not found:
+        return text_at(node.value, node.start_mark.line + 1, 1, node.value)
+    line = node.start_mark.line + 1 + text.count("\n", head, found.end())
+    value, indent = str(node.value), found[1]
+    raw = text[found.end() : node.end_mark.index].rstrip() + "\n" * (len(value) - len(value.rstrip("\n")))
+    return _folded(value, line, len(indent) + 1, raw, f"\n\n{indent}|\n{indent}|\n")
+
+
+def _folded(value: str, line: int, column: int, raw: str, breaks: str) -> Any:
+    """Return a text of several lines of the file that are joined, each with its place where the joints are plain."""
+    is_plain = len(re.findall(f"{breaks}|.", raw, re.DOTALL)) == len(value)
+    return text_at(value, line, column, raw, breaks) if is_plain else text_at(value, line, column, value)
 
 
 def _block(node: Any, text: str) -> Any:

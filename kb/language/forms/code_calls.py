@@ -2,10 +2,14 @@
 
 import ast
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from types import MappingProxyType
 
 from hearth.kb.language.composed_steps import composed_step
-from hearth.kb.language.forms.form import Form, Placed, note, step, title
+from hearth.kb.language.forms.code_functions import Functions, plan_of
+from hearth.kb.language.forms.control_flow import CodeLine, Names, in_order
+from hearth.kb.language.forms.form import Form, Placed, note, refused, step, title
+from hearth.kb.language.refusals import Refusal
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
 _CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*;?\s*(?:#.*|//.*)?$")
@@ -15,13 +19,16 @@ _LEFT_OUT = re.compile(
 _MADE_TRUE = re.compile(r"\s*else\s*:(?!\s*find\b)\s*(\S.*)")
 """ProgPrompt's act where a state lacks, `else: open('fridge')`; finding a thing again is left out."""
 
+_HEAD = re.compile(r"\s*(?:for|while|if|elif|else|try|except|with)\b[^:]*:\s*(?:#.*)?")
+"""A line that holds others, and is none of a text in words."""
+
 _COMMENT = re.compile(r"\s*(?:#|//|`{3}|~{3}|$)")
 _LONGEST = 500
 
 
 def _fits(lines: Sequence[str]) -> bool:
     """Return whether most lines are calls: a text in which some line is nothing that code has is none."""
-    code = [line for line in lines if not _COMMENT.match(line)]
+    code = [line for line in lines if not _COMMENT.match(line) and not _HEAD.fullmatch(line)]
     calls = sum(_is_call(line) for line in code)
     return any(map(_DEF.match, code)) or (calls > 0 and calls >= 0.6 * len(code))
 
@@ -31,22 +38,52 @@ def _is_call(line: str) -> bool:
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
-    found: list[Placed] = []
-    for row, raw in enumerate(lines):
-        named = _DEF.match(raw)
-        if named:
-            found.append(title(row, named[1].replace("_", " ")))
-        elif not _COMMENT.match(raw):
-            made_true = _MADE_TRUE.match(raw)
-            words = made_true[1] if made_true else raw
-            call = _CALL.match(words) if len(raw) <= _LONGEST else None
-            is_step = made_true is not None or not _LEFT_OUT.match(raw)
-            several = calls_of(words.strip()) if is_step and call else []
-            if len(several) > 1:
-                found += [step(row, each) for each in several]
-                continue
-            found.append(step(row, called(call[1]) if call else words) if is_step else note(row, raw))
-    return found
+    plan = plan_of(lines)
+    return [placed for line in in_order(plan.lines) for placed in _placed(line, plan)]
+
+
+def _placed(line: CodeLine, plan: Functions) -> Iterator[Placed]:
+    """Yield the steps, the title, or the note of a line."""
+    row, raw = line.row, line.text
+    why = line.why or plan.why(raw, row)
+    if why:
+        yield refused(row, raw, why)
+    elif named := _DEF.match(raw):
+        if named[1] not in plan.called:
+            yield title(row, named[1].replace("_", " "))
+    elif not _COMMENT.match(raw):
+        made_true, returned = _MADE_TRUE.match(raw), _RETURNED.fullmatch(raw)
+        own = made_true or returned
+        words = own[1] if own else raw
+        call = _CALL.match(words) if len(raw) <= _LONGEST else None
+        is_step = own is not None or not _LEFT_OUT.match(raw)
+        several = calls_of(words.strip()) if is_step and call and not line.names else []
+        if len(several) > 1:
+            yield from (step(row, each) for each in several)
+        elif call and is_step and (variable := _unknown(call[1], line.names)):
+            yield refused(row, raw, Refusal(_COMPUTED.format(variable), "name the thing itself, as in grab('cup')"))
+        else:
+            yield step(row, called(call[1], line.names) if call else words) if is_step else note(row, raw)
+
+
+_RETURNED = re.compile(r"\s*return\s+((?:\w+\.)*\w+\(.*\)\s*)")
+_COMPUTED = "which thing `{}` stands for is known only while the code runs"
+
+
+def _unknown(call: str, names: Names) -> str:
+    """Return the argument of a call that no reading of the code tells."""
+    try:
+        parsed = ast.parse(call, mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return ""
+    if not isinstance(parsed, ast.Call):
+        return ""
+    for each in (*parsed.args, *(keyword.value for keyword in parsed.keywords)):
+        if isinstance(each, ast.Name) and each.id in names and names[each.id] is None:
+            return each.id
+        if isinstance(each, ast.JoinedStr | ast.IfExp | ast.ListComp | ast.GeneratorExp):
+            return ast.unparse(each)[:60]
+    return ""
 
 
 _CALLS = re.compile(r"[A-Za-z_]\w*\([^()]*\)(?:\s*[,;]\s*[A-Za-z_]\w*\([^()]*\))*[.;]?")
@@ -58,8 +95,13 @@ def calls_of(text: str) -> list[str]:
     return list(map(called, _ONE.findall(text))) if _CALLS.fullmatch(text) else []
 
 
-def called(call: str) -> str:
-    """Return the step of a call; its arguments are texts or names, and nothing is run."""
+def called(call: str, names: Names = MappingProxyType({})) -> str:
+    """Return the step of a call; its arguments are texts or names, and nothing is run.
+
+    Args:
+        call: as the code has it.
+        names: the things that variables stand for.
+    """
     try:
         parsed = ast.parse(call, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -69,8 +111,8 @@ def called(call: str) -> str:
     name = parsed.func.attr if isinstance(parsed.func, ast.Attribute) else getattr(parsed.func, "id", "")
     keywords = list(parsed.keywords)
     if keywords and not parsed.args and keywords[0].arg in _ACTS:  # `execute(action="grab", obj="cup")`
-        name = _name(keywords.pop(0).value) or ""
-    arguments = [_name(each) for each in (*parsed.args, *(keyword.value for keyword in keywords))]
+        name = _name(keywords.pop(0).value, names) or ""
+    arguments = [_name(each, names) for each in (*parsed.args, *(keyword.value for keyword in keywords))]
     relation = (keywords[-1].arg or "") if keywords else ""
     objects = [each for each in arguments if each]
     return composed_step(name, objects, relation) if name and None not in arguments else call
@@ -88,11 +130,11 @@ def _called_with_words(call: str) -> str:
     return composed_step(found[1], [each.strip() for each in found[2].split(",")]) if found else call
 
 
-def _name(argument: ast.expr) -> str | None:
+def _name(argument: ast.expr, names: Names) -> str | None:
     """Return the thing that an argument names; None for one that is an expression."""
     if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
         return argument.value
-    return argument.id if isinstance(argument, ast.Name) else None
+    return (names.get(argument.id) or argument.id) if isinstance(argument, ast.Name) else None
 
 
 CODE = Form(_fits, _lines, _is_call, re.compile(r"\s*(?:async\s+)?def\s"))

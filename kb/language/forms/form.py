@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.plan_lines import PlanLine
+from hearth.kb.language.refusals import Refusal
 
 
 class Placed(NamedTuple):
@@ -44,6 +45,11 @@ def note(row: int, text: str) -> Placed:
 def remark(row: int, text: str) -> Placed:
     """Return a line that is counted and never read as a step, such as a game's answer."""
     return Placed(row, PlanLine(" ".join(text.split()), None, 1))
+
+
+def refused(row: int, text: str, why: Refusal) -> Placed:
+    """Return a line for which the plan is refused."""
+    return Placed(row, PlanLine(" ".join(text.split()), 1, numbered=True, why=why))
 
 
 def title(row: int, text: str) -> Placed:
