@@ -7,8 +7,8 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.lexicon import is_verb
+from hearth.kb.language.recognition_knowledge import recognition
 from hearth.kb.language.refusals import Refusal
-from hearth.kb.loading.load import default
 
 GOES = re.compile(
     r"(?:then |now )?(?:walk|go|head|move|run)s? (?:over |back )?(?:to|into|in|towards?)\b", re.IGNORECASE
@@ -44,7 +44,7 @@ def goes_there(text: str, below: Sequence[str]) -> bool:
 def is_part(text: str) -> bool:
     """Return whether a line with a colon names a part of a plan, `In the kitchen:`, `Bedroom:`, and not a plan."""
     words = text.rstrip(": ").lower()
-    return _PART.match(words) is not None or default().is_room(words.removeprefix("the ").replace(" ", "_"))
+    return _PART.match(words) is not None or recognition().is_room(words.removeprefix("the ").replace(" ", "_"))
 
 
 def doubted(placed: Sequence[Placed], plain: Iterable[int]) -> Iterator[tuple[int, Refusal]]:
@@ -76,7 +76,7 @@ def are_titles(first: Sequence[str], second: Sequence[str]) -> bool:
 
 
 def _moves_things(text: str) -> bool:
-    return text.split(maxsplit=1)[0].lower() in _moves(default())
+    return text.split(maxsplit=1)[0].lower() in _moves(recognition())
 
 
 @lru_cache(maxsize=8)

@@ -104,7 +104,7 @@ PHRASES = (
             "3. find tarp",
             "4. Put the pen in the mug on the desk",
         ),
-        ("PutIn tomato trashcan",),
+        ("Walk trashcan",),
         "2 NOT_UNDERSTOOD, 3 NOT_UNDERSTOOD, 4 NOT_UNDERSTOOD",
     ),
     Plan(
