@@ -106,6 +106,7 @@ PHRASES = (
         ),
         ("Walk trashcan",),
         "2 NOT_UNDERSTOOD, 3 NOT_UNDERSTOOD, 4 NOT_UNDERSTOOD",
+        1,
     ),
     Plan(
         "67",
