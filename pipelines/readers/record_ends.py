@@ -1,4 +1,4 @@
-"""Where the records of a table as text end, by their quotes: each line is parsed once, however often it is asked for.
+"""Ends of the records of a table as text, by their quotes: each line is parsed once, however often it is asked for.
 
 A quote that is never closed takes in the lines after it, and each of them may begin the next record. What follows an
 open quote at the beginning of a line is the same for all records that come to it: it is found once, and remembered.
@@ -50,7 +50,7 @@ class RecordEnds:
         return 0 if run.open or run.after > number + lines else run.cells
 
     def _followed(self, first: _Run, limit: int) -> _Run:
-        """Return a run with what follows its open cell, up to the end of the record or the limit."""
+        """Extend a run, whose last cell is open, to the end of the record or to the limit."""
         passed, run = [], first
         while run.open and run.after < limit:
             at = run.after
