@@ -49,7 +49,6 @@ def test_a_limit_that_is_none_is_refused(made):
     for seconds in ("-1", "nan", "inf", "1e400"):
         result = CliRunner().invoke(cli.app, ["diff", str(made.out), str(made.out), "--within", seconds])
         assert result.exit_code in (1, 2) and ("--within" in result.output or "BAD_ARGUMENT" in result.output)
-        )
 
 
 def endless(_job):
