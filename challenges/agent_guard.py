@@ -9,7 +9,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType, FunctionType
-from typing import TextIO
+from typing import TextIO, cast
 
 from hearth.agents.protocol import Agent, Choice
 from hearth.challenges.agent_output import check_descriptors
@@ -212,7 +212,7 @@ def _restore(before: tuple[TextIO, TextIO, TextIO]) -> None:
 def _open(number: int) -> TextIO:
     """Return a new stream over a standard descriptor."""
     mode, errors = ("w", "backslashreplace") if number else ("r", "surrogateescape")
-    return os.fdopen(number, mode, encoding="utf-8", errors=errors, closefd=False)
+    return cast("TextIO", os.fdopen(number, mode, encoding="utf-8", errors=errors, closefd=False))
 
 
 def _fault_of(error: BaseException, seconds: float) -> Diagnostic:
