@@ -83,7 +83,7 @@ def opened_zip(file: IO[bytes], name: str) -> zipfile.ZipFile:
 
     Raises:
         HearthError: FILE_TOO_LARGE: the list of its files is beyond `LARGEST_DIRECTORY`.
-        zipfile.BadZipFile: it is no zip, or damaged; other errors of `zipfile`.
+        zipfile.BadZipFile: it is not a zip, or damaged; other errors of `zipfile`.
     """
     try:
         found = zipfile.ZipFile(cast("IO[bytes]", _Listing(file)))

@@ -44,7 +44,7 @@ class RecordEnds:
         self._inside: dict[int, _Run] = {}
 
     def cells(self, number: int, lines: int = LOOK_AHEAD) -> int:
-        """Return how many cells the record has that begins on a line; 0 if it is not whole within so many lines."""
+        """Return the number of cells of the record on a line; 0 if the record needs more lines than these."""
         run = self._parsed(number, "")
         run = run if not run.open or lines == 1 else self._followed(run, number + lines)
         return 0 if run.open or run.after > number + lines else run.cells

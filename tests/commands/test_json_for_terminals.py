@@ -1,4 +1,4 @@
-"""JSON that is printed, and JSON in files that people look at, moves no cursor and turns no text around."""
+"""JSON that is printed, and JSON in files that people look at, moves no cursor and keeps the direction of text."""
 
 from __future__ import annotations
 

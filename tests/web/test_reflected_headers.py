@@ -22,7 +22,7 @@ HEADERS = {
 }  # fmt: skip
 
 
-def told(answer):
+def whole(answer):
     """All that an answer says."""
     return "\n".join([*(f"{name}: {value}" for name, value in answer.headers.items()), answer.text])
 
@@ -35,7 +35,7 @@ def test_no_answer_has_a_header_of_its_request_in_it(server, name):
                 answer = client.get(path, headers={name: HEADERS[name], "accept": accept})
                 if name == "host" and path == "/mine" and answer.status_code == 200:
                     continue  # the page with a person's own link, as the person's browser asks for it
-                said = told(answer).replace(path, "")
+                said = whole(answer).replace(path, "")
                 assert "4321" not in said and "gopher" not in said, (path, said)
                 assert answer.headers.get("location", "/").startswith("/"), path
                 assert not answer.headers.get("location", "/").startswith("//"), path
@@ -44,7 +44,7 @@ def test_no_answer_has_a_header_of_its_request_in_it(server, name):
 @pytest.mark.parametrize("name", ["host", "origin", "sec-fetch-site"])
 def test_a_refusal_does_not_say_what_it_refuses(server, name):
     answer = server.client().post("/begin", headers={name: EVIL})
-    assert answer.status_code == 403 and "evil" not in told(answer)
+    assert answer.status_code == 403 and "evil" not in whole(answer)
 
 
 def test_an_answer_sends_nobody_elsewhere(server):
