@@ -160,7 +160,11 @@ class Commands(TyperGroup):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Store whether --json was given, so that an error can be JSON too."""
         ctx.meta["hearth.json"] = "--json" in args
-        return super().parse_args(ctx, args)
+        try:
+            return super().parse_args(ctx, args)
+        except Exception as error:
+            _is_of_typer(error)
+            raise
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; bad input is printed and ends with status 1, an unknown name with status 2."""
@@ -191,8 +195,15 @@ class Terminated(KeyboardInterrupt):
 
 
 def _is_of_typer(error: Exception) -> bool:
-    """Return whether Typer prints the error itself: wrong usage, an invalid option."""
-    return hasattr(error, "format_message")
+    """Return whether Typer prints the error itself: wrong usage, an invalid option. Its words are then harmless."""
+    from hearth.schemas.terminal import shown
+
+    if not hasattr(error, "format_message"):
+        return False
+    for name in ("message", "param_hint", "option_name"):
+        if isinstance(text := getattr(error, name, None), str):
+            setattr(error, name, shown(text))
+    return True
 
 
 def _fail(error: Exception, *, as_json: bool) -> NoReturn:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType, FunctionType
+from typing import TextIO, cast
 
 from hearth.agents.protocol import Agent, Choice
+from hearth.challenges.agent_output import check_descriptors
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -109,20 +112,50 @@ class Guarded:
     @contextmanager
     def _watched(self) -> Iterator[None]:
         try:
-            with _within(self.seconds), _streams_kept():
+            with _keyboard_heeded(), _within(self.seconds), _streams_kept():
                 yield
+        except _Stopped:
+            raise KeyboardInterrupt from None
         except _Late:
             message = f"no answer within {self.seconds:g} s"
             raise AgentError(Diagnostic(Code.TIMED_OUT, message), self.number) from None
         except BaseException as error:
-            if _is_ours(error):
-                raise
             raise AgentError(_fault_of(error, self.seconds), self.number) from error
 
 
-def _is_ours(error: BaseException) -> bool:
-    """Return whether an error is an interrupt of the keyboard; all others are the fault of the agent."""
-    return type(error) is KeyboardInterrupt
+class _Stopped(BaseException):
+    """The user has interrupted the run at the keyboard."""
+
+
+@contextmanager
+def _keyboard_heeded() -> Iterator[None]:
+    """Tell an interrupt at the keyboard, which ends the run, from a `KeyboardInterrupt` that the agent raises.
+
+    Raises:
+        _Stopped: a signal came, whatever the agent made of it.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield  # no interrupt comes here as an error
+        return
+    came = False
+
+    def interrupted(number: int, frame: FrameType | None) -> None:
+        nonlocal came
+        came = True
+        before(number, frame)
+
+    signal.signal(signal.SIGINT, interrupted)
+    try:
+        yield
+    except BaseException:
+        if came:
+            raise _Stopped from None
+        raise
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if came:
+        raise _Stopped
 
 
 @contextmanager
@@ -133,42 +166,65 @@ def refusing(place: str, seconds: float = SECONDS) -> Iterator[None]:
         HearthError: BAD_ARGUMENT, whatever that code raises.
     """
     try:
-        with _within(seconds), _streams_kept():
+        with _keyboard_heeded(), _within(seconds), _streams_kept():
             yield
+    except _Stopped:
+        raise KeyboardInterrupt from None
     except BaseException as error:
-        if _is_ours(error):
-            raise
         said = f"no answer within {seconds:g} s" if type(error) is _Late else _fault_of(error, seconds).message
         raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {said}") from error
 
 
 @contextmanager
 def _streams_kept() -> Iterator[None]:
-    """Give the process its standard streams back, where an agent replaced them.
+    """Give the process its standard streams back, where an agent replaced or closed them.
 
     Raises:
-        HearthError: AGENT_FAILED: it did.
+        HearthError: AGENT_FAILED: it did, or wrote too much to them.
     """
     before = sys.stdin, sys.stdout, sys.stderr
     try:
         yield
-    finally:
-        after = sys.stdin, sys.stdout, sys.stderr
-        sys.stdin, sys.stdout, sys.stderr = before
-    if any(new is not old for new, old in zip(after, before, strict=True)):
-        raise HearthError.of(Code.AGENT_FAILED, "it replaced a standard stream, which the whole process shares")
+    except BaseException:
+        with suppress(HearthError):
+            _restore(before)
+        raise
+    _restore(before)
+
+
+def _restore(before: tuple[TextIO, TextIO, TextIO]) -> None:
+    """Give the process these streams, and its descriptors.
+
+    Raises:
+        HearthError: AGENT_FAILED: it had others, or wrote too much.
+    """
+    streams = sys.stdin, sys.stdout, sys.stderr
+    changed = any(new is not old or getattr(old, "closed", False) for new, old in zip(streams, before, strict=True))
+    if changed:
+        found = [_open(number) if getattr(old, "closed", False) else old for number, old in enumerate(before)]
+        sys.stdin, sys.stdout, sys.stderr = found
+    check_descriptors()
+    if changed:
+        message = "it replaced or closed a standard stream, which the whole process shares"
+        raise HearthError.of(Code.AGENT_FAILED, message)
+
+
+def _open(number: int) -> TextIO:
+    """Return a new stream over a standard descriptor."""
+    mode, errors = ("w", "backslashreplace") if number else ("r", "surrogateescape")
+    return cast("TextIO", os.fdopen(number, mode, encoding="utf-8", errors=errors, closefd=False))
 
 
 def _fault_of(error: BaseException, seconds: float) -> Diagnostic:
     """Return the diagnostic of an error that an agent raised; its name, text and attributes may themselves fail."""
     try:
-        with _within(seconds):
+        with _keyboard_heeded(), _within(seconds):
             if type(error) is HearthError and error.diagnostics:
                 return error.diagnostics[0]
             return Diagnostic(Code.AGENT_FAILED, f"{type(error).__name__}: {error}"[:300])
-    except BaseException as again:
-        if _is_ours(again):
-            raise
+    except _Stopped:
+        raise KeyboardInterrupt from None
+    except BaseException:
         return Diagnostic(Code.AGENT_FAILED, _name_of(error))
 
 

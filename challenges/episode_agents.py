@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 from collections.abc import Callable
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
 from hearth.agents.online_helper_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
 from hearth.challenges.agent_guard import SECONDS, Guarded, refusing, say_unraisable
+from hearth.challenges.agent_output import StandardDescriptors
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.command_agents import CommandAgent, is_command
 from hearth.challenges.episode_loop import Player
@@ -22,6 +24,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.optional_libraries import lacking, remedy
 from hearth.storage.files import file_digest
+from hearth.storage.parallel import spread
 
 NOBODY = "none"
 """The helper's name for a main agent that acts alone."""
@@ -50,9 +53,14 @@ class Lineup:
     seconds: float = SECONDS
 
     @property
+    def own(self) -> tuple[str, ...]:
+        """Return the classes of others among its agents, as `FILE.py:CLASS`."""
+        return tuple(each for each in (self.main, self.helper) if is_own(each))
+
+    @property
     def code(self) -> str:
         """Return digests of the files of a user's own agents; "" for ours."""
-        files = [each.rpartition(":")[0] for each in (self.main, self.helper) if is_own(each)]
+        files = [each.rpartition(":")[0] for each in self.own]
         return "".join(file_digest(Path(file))[:32] for file in files)
 
     def checked(self) -> Lineup:
@@ -63,7 +71,7 @@ class Lineup:
         """
         known = HELPERS.get(self._helper)
         if is_own(self.main):
-            load(self.main)
+            need_class(self.main)
         elif self.main not in MAIN and not is_command(self.main):
             raise _unknown("main agent", self.main, (*MAIN, "FILE.py:CLASS", "a command"))
         if self.goal and self.goal not in GOALS:
@@ -71,7 +79,7 @@ class Lineup:
         if self._helper not in (NOBODY, *HELPERS, *ONLINE) and ":" not in self.helper:
             raise _unknown("helper", self.helper, (NOBODY, *HELPERS, *ONLINE))
         if ":" in self.helper:
-            load(self.helper)
+            need_class(self.helper)
         untold = self.helper in (NOBODY, *ONLINE)
         goal = self.goal or (known.goal if known else "none" if untold else "true")
         return Lineup(self.main, self._helper, goal, self.seconds)
@@ -186,6 +194,24 @@ def partial_of(agent: Any) -> bool | None:
 
 def _unknown(what: str, name: str, known: Any) -> HearthError:
     return HearthError.of(Code.BAD_ARGUMENT, f"there is no {what} `{name[:60]}`", suggestion=", ".join(known))
+
+
+def need_class(place: str) -> None:
+    """Run a user's file in another process, to see that it has the class: what it does there ends nothing here.
+
+    Raises:
+        HearthError: as of `load`; BAD_ARGUMENT: it ended its process.
+    """
+    try:
+        next(spread(_loaded, [place], 1, apart=True))
+    except BrokenProcessPool as error:
+        message = f"{place}: its process ended while the file was run"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="end no process in it") from error
+
+
+def _loaded(place: str) -> None:
+    with StandardDescriptors():
+        load(place)
 
 
 def load(place: str) -> Any:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 from hearth.agents.agent_registry import MainAgent
 from hearth.agents.protocol import Choice
+from hearth.challenges.agent_output import StandardDescriptors
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_loop import play
@@ -90,10 +93,12 @@ PASSING = frozenset({Code.AGENT_FAILED, Code.DISCONNECTED})
 
 def played(job: Job) -> Record:
     """Play an episode; once more where an agent could not go on."""
-    for _ in range(TRIES):
-        record = _played(job)
-        if record.end is None or record.end["code"] not in PASSING:
-            break
+    alone = threading.current_thread() is threading.main_thread()  # else others write to the same descriptors
+    with StandardDescriptors() if job.lineup.own and alone else nullcontext():
+        for _ in range(TRIES):
+            record = _played(job)
+            if record.end is None or record.end["code"] not in PASSING:
+                break
     return record
 
 

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.episode_agents import is_own
 from hearth.challenges.episodes import Job, Record, played, start_of
 from hearth.challenges.failure_analysis import Columns
 from hearth.challenges.metrics import outcome
@@ -25,13 +26,15 @@ Spread = Callable[[Sequence[Job]], Iterator[Record]]
 def here(workers: int) -> Spread:
     """Over processes of this machine; an episode whose process dies is played alone, and ends with a code if it dies
     again.
+
+    Episodes with a class of others are never played in this process, which the class could end.
     """
 
     def results(jobs: Sequence[Job]) -> Iterator[Record]:
-        done = 0
+        done, apart = 0, any(job.lineup.own for job in jobs)
         while done < len(jobs):
             try:
-                for record in spread(played, jobs[done:], workers):
+                for record in spread(played, jobs[done:], workers, apart=apart):
                     yield record
                     done += 1
             except BrokenProcessPool:
@@ -93,7 +96,8 @@ def _alone(job: Job) -> Record:
 def _ended(job: Job) -> Record:
     """Return the record of an episode whose process ends."""
     which, knowledge = challenge(job.task.challenge), job.known()
-    end = {"agent": 1, "code": str(Code.AGENT_FAILED), "message": "its process ended"}
+    number = 0 if is_own(job.lineup.main) or not job.helped else 1
+    end = {"agent": number, "code": str(Code.AGENT_FAILED), "message": "its process ended"}
     goal = None if job.helper_goal is None else which.grammar.written(job.helper_goal)
     start = start_of(job.task, knowledge, None if job.helped else 1)
     metrics = outcome(which, False, 0, Columns()).as_json()

@@ -16,6 +16,7 @@ from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import LARGEST
+from hearth.schemas.terminal import shown_line
 from hearth.storage.input_files import read_input, read_lines
 from hearth.version import VERSION
 
@@ -133,7 +134,7 @@ def line(header: Header, record: Record) -> bytes:
     import orjson
 
     data = episode_data(record)
-    return orjson.dumps({**data, "digest": _digest(header, data)}) + b"\n"
+    return shown_line(orjson.dumps({**data, "digest": _digest(header, data)})) + b"\n"
 
 
 def first_line(header: Header) -> bytes:

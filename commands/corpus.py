@@ -12,6 +12,7 @@ import typer
 from hearth.commands import corpus_comparison, inputs, output
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.terminal import shown_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -97,7 +98,7 @@ def synthesize(
         if as_json and out is not None:
             figures["ideal_reader"] = description_information.figures(drawn, rows, weights)
         records = (synthesis.record(one, number, seed, parts[number]) for number, one in enumerate(drawn, 1))
-    lines = (orjson.dumps(record) + b"\n" for record in records)
+    lines = (shown_line(orjson.dumps(record)) + b"\n" for record in records)
     if out is None:
         sys.stdout.buffer.writelines(lines)
         return

@@ -12,16 +12,20 @@ if TYPE_CHECKING:
     from hearth.datasets.diff import TableDifference
 
 
-def diff(first: Path, second: Path, rows: int = 5, strict: bool = False, as_json: bool = False) -> None:
+def diff(
+    first: Path, second: Path, rows: int = 5, strict: bool = False, as_json: bool = False, within: float = 3600
+) -> None:
     """Print the differences between two datasets, by table and by row.
 
     \b
     Example:
       hearth diff data_out yesterday/data_out --rows 20
     """
+    from hearth.commands.bounded_process import in_time
     from hearth.datasets.diff import compare
 
-    found = compare(first, second, rows or None)
+    with in_time(within):
+        found = compare(first, second, rows or None)
     if as_json:
         output.emit([_json(each) for each in found])
     elif not found:

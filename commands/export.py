@@ -15,6 +15,7 @@ def export(
     limit: int | None = None,
     failures: bool = False,
     as_json: bool = False,
+    within: float = 3600,
 ) -> None:
     """Write a published dataset in another form.
 
@@ -27,6 +28,7 @@ def export(
     Example:
       hearth export data_out --format nl --out words
     """
+    from hearth.commands.bounded_process import in_time
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.export.batches import Wanted
     from hearth.datasets.export.formats import COUNTED, FORMATS
@@ -34,6 +36,7 @@ def export(
 
     if not form:
         raise typer.BadParameter(f"choose a form: {', '.join(FORMATS)}", param_hint="--format")
-    number = exported(Dataset.open(dataset, failures), form, out, Wanted(tuple(program or ()), limit))
+    with in_time(within):
+        number = exported(Dataset.open(dataset, failures), form, out, Wanted(tuple(program or ()), limit))
     text = f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}"
     output.say(text, {"format": form, "out": out, "count": number}, as_json)

@@ -171,18 +171,27 @@ def diff(other: Path, every: bool = False, kb: Path | None = None, as_json: bool
 
 
 @app.command()
-def mine(dataset: Path, least: int = 3, confidence: float = 0.3, kb: Path | None = None, as_json: bool = False) -> None:
+def mine(
+    dataset: Path,
+    least: int = 3,
+    confidence: float = 0.3,
+    kb: Path | None = None,
+    as_json: bool = False,
+    within: float = 3600,
+) -> None:
     """Propose new facts from a dataset's programs, as lines to review and add.
 
     \b
     Example:
       hearth kb mine data_out
     """
+    from hearth.commands.bounded_process import in_time
     from hearth.datasets.published_programs import programs
     from hearth.kb.tools.fact_mining import as_lines
     from hearth.kb.tools.fact_mining import mine as propose
 
-    found = propose(programs(dataset), read_knowledge(kb), least, confidence)
+    with in_time(within):
+        found = propose(programs(dataset), read_knowledge(kb), least, confidence)
     if as_json:
         output.emit({"proposals": found, "lines": as_lines(found)})
         return

@@ -34,7 +34,7 @@ def status(rejected: int, *, strict: bool) -> None:
 
 def emit(value: Any) -> None:
     """Print one JSON document: keys in the given order, dataclasses and paths converted, a line break at the end."""
-    sys.stdout.write(shown_json(_document(value).decode()))
+    sys.stdout.write(_document(value))
     sys.stdout.flush()
 
 
@@ -43,14 +43,15 @@ def write(file: Path, value: Any) -> None:
     from hearth.storage.files import write_bytes
 
     file.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(file, _document(value))
+    write_bytes(file, _document(value).encode())
 
 
-def _document(value: Any) -> bytes:
+def _document(value: Any) -> str:
+    """Return the JSON text of a value: no character in it moves the cursor of a terminal, nor turns text around."""
     import orjson
 
     options = orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE | orjson.OPT_NON_STR_KEYS | orjson.OPT_SERIALIZE_NUMPY
-    return orjson.dumps(value, default=_plain, option=options)
+    return shown_json(orjson.dumps(value, default=_plain, option=options).decode())
 
 
 def line(*values: object, sep: str = " ", end: str = "\n", file: TextIO | None = None, flush: bool = False) -> None:

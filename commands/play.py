@@ -10,6 +10,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.inputs import read_goals, read_home, read_knowledge
+from hearth.schemas.terminal import shown_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -196,7 +197,7 @@ def _transcript(path: Path | None, stack: ExitStack) -> Callable[[Mapping[str, A
     file = stack.enter_context(path.open("wb"))
 
     def keep(row: Mapping[str, Any]) -> None:
-        file.write(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
+        file.write(shown_line(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE)))
         file.flush()
 
     return keep

@@ -162,7 +162,6 @@ def videos(
     shooting: Shooting, names: list[str], fps: float, quality: str = "draft", modalities: Sequence[str] = ("rgb",)
 ) -> dict[str, Any]:
     """Film an execution by some cameras, and return files, pages and steps."""
-    import orjson
 
     from hearth.rendering.film.contact_sheet import caption
     from hearth.rendering.film.player import page
@@ -186,7 +185,7 @@ def videos(
             made["further"] = [path.name for path in done.further]
         videos.append({**made, "variation": trajectory.variation.row()})
         frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.keyframes]
-    (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    output.write(out / "steps.json", videos)
     count = sum(int(video["frames"]) for video in videos)  # type: ignore[call-overload]
     return {"pictures": count, "videos": videos, "pages": pages, "sheet": _sheet(shooting, frames)}
 

@@ -6,7 +6,12 @@ from hearth.commands import output
 
 
 def report(
-    dataset: Path, out: Path = Path("report_out"), replays: int = 16, workers: int = 0, as_json: bool = False
+    dataset: Path,
+    out: Path = Path("report_out"),
+    replays: int = 16,
+    workers: int = 0,
+    as_json: bool = False,
+    within: float = 3600,
 ) -> None:
     """Write a dataset as one folder of static HTML; open its index.html, without a network or server.
 
@@ -18,11 +23,12 @@ def report(
       hearth report data_out --out report_out
       hearth report data_out --replays 40 --out report_out
     """
+    from hearth.commands.bounded_process import in_time
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.report.report_writer import write_report
 
-    with bar("shares of programs") as seen:
+    with in_time(within), bar("shares of programs") as seen:
         programs = write_report(Dataset.open(dataset), out, workers, seen, replays)
     text = f"{output.counted(programs, 'program')}; open {out / 'index.html'}"
     output.say(text, {"out": out, "programs": programs}, as_json)

@@ -66,17 +66,21 @@ def serve(
 
 
 def _hosts(public: str) -> tuple[str, ...]:
-    """Return the name in a public address.
+    """Return the name in a public address, with its port if it is not that of https.
 
     Raises:
         HearthError: BAD_ARGUMENT.
     """
     if not public:
         return ()
-    name = urlsplit(public).hostname
+    try:
+        found = urlsplit(public)
+        name, port = found.hostname, found.port
+    except ValueError:
+        name, port = "", None
     if not name or not public.startswith("https://"):
         raise HearthError.of(Code.BAD_ARGUMENT, f"`{public[:100]}` is not an address", suggestion="https://NAME")
-    return (name,)
+    return (f"{name}:{port}" if port not in (None, 443) else name,)
 
 
 def _proxy(given: str, public: str) -> str:

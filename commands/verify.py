@@ -6,7 +6,7 @@ from pathlib import Path
 from hearth.commands import output
 
 
-def verify(dataset: Path, workers: int = 0, strict: bool = False, as_json: bool = False) -> None:
+def verify(dataset: Path, workers: int = 0, strict: bool = False, as_json: bool = False, within: float = 3600) -> None:
     """Check a dataset: hashes, columns, counts, references, and a replay of every execution.
 
     The status is 1 if there is a fault; each is printed with its file. The catalog is made again and compared. Files
@@ -16,10 +16,11 @@ def verify(dataset: Path, workers: int = 0, strict: bool = False, as_json: bool 
     Example:
       hearth verify data_out
     """
+    from hearth.commands.bounded_process import in_time
     from hearth.commands.progress_line import bar
     from hearth.datasets.verify import verify as checked
 
-    with bar("shares run again") as seen:
+    with in_time(within), bar("shares run again") as seen:
         found = checked(dataset, workers, seen)
     if not as_json:
         if found.note:

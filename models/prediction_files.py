@@ -27,6 +27,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_lines
+from hearth.schemas.terminal import shown_line
 from hearth.scoring.dataset_scores import chosen
 from hearth.simulation.rules import RULES
 from hearth.storage.files import write_bytes
@@ -118,7 +119,7 @@ def write(predicted: Iterator[tuple[str, Steps]], path: Path) -> int:
 
 
 def _line(row: dict[str, Any]) -> bytes:
-    return orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE)
+    return shown_line(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
 
 
 def predict_part(

@@ -19,6 +19,11 @@ def without_controls(text: str) -> str:
     return text.translate(_GONE)
 
 
+def shown_line(value: bytes) -> bytes:
+    """Return a JSON document in bytes with those characters as `shown_json` has them: a line of a file for people."""
+    return value if value.isascii() and b"\x7f" not in value else shown_json(value.decode()).encode()
+
+
 def shown_json(document: str) -> str:
     """Return a JSON document with those characters as JSON's own escapes: it says the same."""
     return document if document.isascii() and "\x7f" not in document else document.translate(_IN_JSON)

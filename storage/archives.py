@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
-from typing import IO, BinaryIO, cast
+from typing import IO, Any, BinaryIO, cast
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -23,6 +23,15 @@ LARGEST_MEMBER = 4_000_000_000
 
 MOST_PACKED = 50
 """Largest ratio of a packed file's contents to its size, once the contents exceed `_HARMLESS` bytes."""
+
+MOST_MEMBERS = 20_000
+"""Files of an archive that are looked at one by one; a release may have more, for its names say what each of them is.
+
+Looking at one takes half a millisecond: an archive is read, or refused, within ten seconds.
+"""
+
+LARGEST_DIRECTORY = 24_000_000
+"""Bytes of an archive's own list of its files, which is read before any of them: 150,000 files with usual names."""
 
 _HARMLESS = 8_000_000
 
@@ -57,18 +66,67 @@ class DamagedError(HearthError):
 
 @lru_cache(maxsize=4)
 def _archive(path: str, changed: int) -> zipfile.ZipFile:
+    file = Path(path).open("rb")  # noqa: SIM115 - open as long as the process
     try:
-        return zipfile.ZipFile(path)
+        return opened_zip(file, path)
+    except HearthError:
+        file.close()
+        raise
     except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, ValueError) as error:
+        file.close()
         message = f"a damaged or truncated archive: {error}"
         raise HearthError.of(Code.BAD_ARCHIVE, message, file=path, suggestion="download it again") from error
+
+
+def opened_zip(file: IO[bytes], name: str) -> zipfile.ZipFile:
+    """Return the zip in an open file, which stays open: every zip of others is opened here.
+
+    Raises:
+        HearthError: FILE_TOO_LARGE: the list of its files is beyond `LARGEST_DIRECTORY`.
+        zipfile.BadZipFile: it is not a zip, or damaged; other errors of `zipfile`.
+    """
+    try:
+        found = zipfile.ZipFile(cast("IO[bytes]", _Listing(file)))
+    except _TooLongError as error:
+        message = f"an archive of too many files: the list of them has {error.args[0]:,} bytes"
+        place, remedy = name, f"{UNPACK}; at most {LARGEST_DIRECTORY:,} bytes of a list are read"
+        raise HearthError.of(Code.FILE_TOO_LARGE, message, file=place, suggestion=remedy) from error
+    found.fp = file
+    return found
+
+
+UNPACK = "unpack it, and name the folder as a source"
+
+
+class _TooLongError(Exception):
+    """The list of an archive's files is too long to be read; its size is the argument."""
+
+
+class _Listing:
+    """A file of which `zipfile` reads the list of the archive's files, which it asks for in one piece."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._file = file
+
+    def read(self, size: int = -1) -> bytes:
+        """Return bytes of the file.
+
+        Raises:
+            _TooLongError: they are more than a list may have.
+        """
+        if size > LARGEST_DIRECTORY:
+            raise _TooLongError(size)
+        return self._file.read(size)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._file, name)
 
 
 def archive(path: Path) -> zipfile.ZipFile:
     """Return the archive at a path, open once a process.
 
     Raises:
-        HearthError: BAD_ARCHIVE.
+        HearthError: BAD_ARCHIVE; FILE_TOO_LARGE, as of `opened_zip`.
     """
     return _archive(str(path), path.stat().st_mtime_ns)
 

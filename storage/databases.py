@@ -14,6 +14,7 @@ from itertools import count
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
+from weakref import WeakSet
 
 MEMORY = 4 * 2**30
 """Bytes that DuckDB may take before it spills rows to the disk; half of the machine's memory where that is less."""
@@ -28,6 +29,7 @@ _CLOSED = ("enable_external_access = false", "lock_configuration = true")
 """Settings that keep queries from other files and the network; the last one locks them all."""
 
 _numbers = count()
+_opened: WeakSet[Any] = WeakSet()
 
 
 def open_database(path: Path | None = None, settings: Mapping[str, Any] = MappingProxyType({})) -> Any:
@@ -45,7 +47,15 @@ def open_database(path: Path | None = None, settings: Mapping[str, Any] = Mappin
     """
     import duckdb
 
-    return duckdb.connect(str(path or ":memory:"), config={**_settings(), **settings})
+    made = duckdb.connect(str(path or ":memory:"), config={**_settings(), **settings})
+    _opened.add(made)
+    return made
+
+
+def interrupt_all() -> None:
+    """Interrupt the statements of all connections of this process: the time of a command is over."""
+    for each in list(_opened):
+        each.interrupt()
 
 
 def _settings() -> dict[str, Any]:

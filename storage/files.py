@@ -12,6 +12,7 @@ import orjson
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.terminal import shown_line
 from hearth.storage.input_files import read_input
 
 LARGEST_JSON = 256 << 20
@@ -67,7 +68,7 @@ def write_bytes(path: Path, data: bytes) -> None:
 
 def write_json(path: Path, value: Any) -> None:
     """Write JSON that people can read, keys in the order given."""
-    write_bytes(path, orjson.dumps(value, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    write_bytes(path, shown_line(orjson.dumps(value, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE)))
 
 
 def read_json(path: Path) -> Any | None:

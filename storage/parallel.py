@@ -95,7 +95,7 @@ AHEAD = 8
 
 
 def spread(
-    function: Callable[[Job], Result], jobs: Iterable[Job], workers: int, seen: Seen = unseen
+    function: Callable[[Job], Result], jobs: Iterable[Job], workers: int, seen: Seen = unseen, apart: bool = False
 ) -> Iterator[Result]:
     """Yield the results in the order of the jobs, for any number of workers.
 
@@ -104,20 +104,24 @@ def spread(
         jobs: its arguments, one after the other; only a few more are taken than results are asked for.
         workers: processes; below 2, or for a single job, all is done in this one.
         seen: called with the number of jobs done.
+        apart: whether nothing is done in this process, not even a single job: a job may end its process.
+
+    Raises:
+        BrokenProcessPool: a job ended its process.
     """
     total = len(jobs) if isinstance(jobs, Sized) else None
-    for done, result in enumerate(_results(function, jobs, workers), 1):
+    for done, result in enumerate(_results(function, jobs, workers, apart), 1):
         seen(done, total)
         yield result
 
 
-def _results(function: Callable[[Job], Result], jobs: Iterable[Job], workers: int) -> Iterator[Result]:
-    waiting = iter(jobs)
+def _results(function: Callable[[Job], Result], jobs: Iterable[Job], workers: int, apart: bool) -> Iterator[Result]:
+    waiting, workers = iter(jobs), max(workers, 1)
     first = list(islice(waiting, max(workers, 2)))
-    if workers < 2 or len(first) < 2:
+    if not first or (not apart and (workers < 2 or len(first) < 2)):
         yield from map(function, chain(first, waiting))
         return
-    with ProcessPoolExecutor(len(first), context(), begin) as pool:
+    with ProcessPoolExecutor(min(workers, len(first)), context(), begin) as pool:
         given: deque[Future[Result]] = deque()
         try:
             for job in chain(first, waiting):

@@ -89,7 +89,9 @@ def application(
     handlers: dict[Any, Any] = {
         kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, DBAPIError, OSError, Exception)
     }
-    return Security(Starlette(routes=routes, exception_handlers=handlers), hosts)
+    made = Starlette(routes=routes, exception_handlers=handlers)
+    made.router.redirect_slashes = False  # it would send people to the `Host` that they asked for
+    return Security(made, hosts)
 
 
 class _Fetched(StaticFiles):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from urllib.parse import urlsplit
@@ -37,12 +38,13 @@ class Security:
 
     Args:
         app: the application that answers otherwise.
-        hosts: names, besides this machine's own, by which people may ask (a public address).
+        hosts: names, besides this machine's own, by which people may ask (a public address), with their port if it is
+            not the usual one.
     """
 
     def __init__(self, app: ASGIApp, hosts: Collection[str] = ()) -> None:
         self.app = app
-        self._hosts = {*OWN, *hosts}
+        self._hosts = frozenset(hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request or a connection."""
@@ -66,16 +68,25 @@ class Security:
         """Return a page of another server may not use this server's cookies, under whatever name it asks for it."""
         headers = Headers(scope=scope)
         host = headers.get("host", "")
-        if _name(f"//{host}") not in self._hosts:
-            return WebError(Code.NOT_ALLOWED, "Host", "this server's name", host[:100])
+        if not (known_host(host) or host.removesuffix(":443") in self._hosts):
+            return WebError(Code.NOT_ALLOWED, "Host", "this server's name", "another")
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
         if changes and origin is not None and origin != f"{scheme_of(host)}://{host}":
-            return WebError(Code.NOT_ALLOWED, "Origin", "a page of this server", origin[:100])
+            return WebError(Code.NOT_ALLOWED, "Origin", "a page of this server", "another page")
         site = headers.get("sec-fetch-site", "none")
         if changes and site not in ("same-origin", "none"):
-            return WebError(Code.NOT_ALLOWED, "Sec-Fetch-Site", "a page of this server", site[:100])
+            return WebError(Code.NOT_ALLOWED, "Sec-Fetch-Site", "a page of this server", "another page")
         return None
+
+
+def known_host(host: str) -> bool:
+    """Return whether a `Host` is this machine itself, at any port: a tunnel may have another than the server."""
+    name, colon, port = host.rpartition(":") if _PORT.search(host) else (host, "", "")
+    return name in OWN and (not colon or 0 < int(port) < 65_536)
+
+
+_PORT = re.compile(r":[0-9]{1,5}\Z")
 
 
 def scheme_of(host: str) -> str:
@@ -92,12 +103,20 @@ def _name(address: str) -> str:
     return netloc.rpartition(":")[0] if netloc.rpartition(":")[2].isdecimal() and ":" in netloc else netloc
 
 
+def own_address(wanted: str) -> str:
+    """Return an address of this server, without its name; another server's becomes the start page."""
+    plain = wanted.isascii() and wanted.isprintable() and "\\" not in wanted
+    return wanted if plain and wanted.startswith("/") and not wanted.startswith("//") else "/"
+
+
 def _with_headers(send: Send, more: Mapping[str, str] = MappingProxyType({})) -> Send:
     async def sent(message: Message) -> None:
         if message["type"] in ("http.response.start", "websocket.accept"):
             headers = MutableHeaders(scope=message)
             for name, value in (*HEADERS.items(), *more.items()):
                 headers[name] = value
+            if "Location" in headers:
+                headers["Location"] = own_address(headers["Location"])
             headers.setdefault("Cache-Control", "no-store")
         await send(message)
 

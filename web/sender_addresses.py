@@ -31,7 +31,7 @@ def one_sender(address: str) -> str:
     try:
         found = ip_address(address.partition("%")[0])
     except ValueError:
-        raise WebError(Code.BAD_ARGUMENT, "X-Forwarded-For", "an IP address", address[:60]) from None
+        raise WebError(Code.BAD_ARGUMENT, "X-Forwarded-For", "an IP address", "something else") from None
     if isinstance(found, IPv4Address):
         return str(found)
     inside = found.ipv4_mapped

@@ -10,7 +10,7 @@ from hearth.schemas.failures import Code
 from hearth.web import desk_access, sessions
 from hearth.web.room import Who, get, post
 from hearth.web.room_request import Visit, by_browser
-from hearth.web.security import scheme_of
+from hearth.web.security import own_address, scheme_of
 from hearth.web.sender_addresses import sender_of
 from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 from hearth.web.web_errors import WebError
@@ -37,7 +37,7 @@ def _begin(visit: Visit) -> Response:
         visit.web.rates["begin"].check(_sender(visit), "/begin")
     session = visit.session or sessions.start(visit.web.store)
     wanted = visit.field("to", 300)
-    return _entered(visit, visit.go(_own_address(wanted)), session.token)
+    return _entered(visit, visit.go(own_address(wanted)), session.token)
 
 
 def _come(visit: Visit) -> Response:
@@ -126,12 +126,6 @@ def base_of(visit: Visit) -> str:
     """Return the address of this server as its people have it: by https where they come by a public name."""
     host = visit.request.headers.get("host", "")
     return f"{scheme_of(host)}://{host}"
-
-
-def _own_address(wanted: str) -> str:
-    """Return an address of this server; another server's becomes the start page."""
-    plain = wanted.isascii() and wanted.isprintable() and "\\" not in wanted
-    return wanted if plain and wanted.startswith("/") and not wanted.startswith("//") else "/"
 
 
 ADDRESSES = (

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.archives import opened_zip
 
 MASKS, COLOURS, CHANGES = "class_ids", "rgb", "rgb_changes"
 """Names of a film's arrays: class masks, which every film has, and colours; those of demonstrations are changes from
@@ -63,7 +64,7 @@ def film_array(data: IO[bytes], file: str, array: str = MASKS, most: int = MOST_
     """
     dimensions, kind = FORMS[array]
     try:
-        with ZipFile(data) as archive:
+        with opened_zip(data, file) as archive:
             header = _header(archive, f"{array}.npy")
             if len(header.shape) != dimensions or header.dtype != kind or not prod(header.shape):
                 raise ValueError(f"its {array} have the form {header.shape} of {header.dtype}")

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import TextIO
 
-from hearth.schemas.terminal import shown
+from hearth.schemas.terminal import shown, shown_json
 from hearth.storage.partitions import Counts
 
 
@@ -85,7 +85,7 @@ class JsonLines(Progress):
 
     def _print(self, event: str, **facts: object) -> None:
         line = {"time": round(self._clock(), 3), "event": event, "stage": self._stage, **facts}
-        self._stream.write(json.dumps(line) + "\n")
+        self._stream.write(shown_json(json.dumps(line)) + "\n")
         self._stream.flush()
 
 

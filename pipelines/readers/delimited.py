@@ -12,6 +12,7 @@ from functools import cache
 
 from hearth.pipelines.readers.placed_texts import text_at
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, fault_of, lines
+from hearth.pipelines.readers.record_ends import RecordEnds
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
@@ -22,8 +23,6 @@ LONGEST_RECORD = 2_000
 
 LONGEST_ANSWER = 2_000_000
 """Characters of one row at most, likewise."""
-
-_LOOK_AHEAD = 200
 
 csv.field_size_limit(LARGEST_FILE)  # of the process: a cell is refused by the limits here, whatever was read before
 
@@ -47,7 +46,8 @@ def row_fault(line: int, raw: str, cells: list[str] | None, layout: Layout, plac
     if cells is None:
         message = "cells that can't be separated: a quote that is never closed, or too many cells"
         suggestion = "quote cells that hold separators or line breaks, and double the quotes inside"
-        return Diagnostic(Code.BAD_TABLE, message, place, line, found=raw[:60], suggestion=suggestion)
+        below, column, found = unclosed(raw, layout)
+        return Diagnostic(Code.BAD_TABLE, message, place, line + below, column, found=found[:60], suggestion=suggestion)
     if len(cells) != len(layout.columns) and cells:
         message = f"{len(cells)} cells where the table has {len(layout.columns)} columns"
         suggestion = "quote cells that hold separators or line breaks"
@@ -55,77 +55,93 @@ def row_fault(line: int, raw: str, cells: list[str] | None, layout: Layout, plac
     return fault_of(raw, place, line)
 
 
+def unclosed(text: str, layout: Layout) -> tuple[int, int, str]:
+    """Return where the quote opens that is never closed: lines below the first, the column, and the line.
+
+    The first line, without a column, where every quote is closed.
+    """
+    at = 0
+    while at < len(text):
+        end = _CELL[text.startswith('"', at)](layout.delimiter).match(text, at)
+        if end is None:
+            first = text.rfind("\n", 0, at) + 1
+            return text.count("\n", 0, at), at - first + 1, text[first:].partition("\n")[0]
+        at = end.end() + 1
+    return 0, 0, text.partition("\n")[0]
+
+
 class Rows(Iterator[tuple[int, str]]):
-    """A file's lines with their numbers; lines can be put back."""
+    """A file's lines with their numbers; lines can be put back, and looked at before their turn."""
 
     def __init__(self, path: Place) -> None:
-        self._source = enumerate((line for line, _ in lines(path)), 1)
-        self._again: list[tuple[int, str]] = []
+        self._source = (line for line, _ in lines(path))
+        self._waiting: dict[int, str] = {}
+        self._next = self._unread = 1
 
     def __next__(self) -> tuple[int, str]:
-        return self._again.pop() if self._again else next(self._source)
+        number, line = self._next, self._line_at(self._next)
+        if line is None:
+            raise StopIteration
+        del self._waiting[number]
+        self._next += 1
+        return number, line
+
+    def _line_at(self, number: int) -> str | None:
+        """Return a line that has not been taken yet."""
+        while self._unread <= number:
+            line = next(self._source, None)
+            if line is None:
+                return None
+            self._waiting[self._unread] = line
+            self._unread += 1
+        return self._waiting[number]
 
     def put_back(self, number: int, line: str) -> None:
-        """Give a line once more."""
-        self._again.append((number, line))
+        """Give the line before the next once more."""
+        self._next, self._waiting[number] = number, line
 
     def parsed(self, layout: Layout) -> Iterator[tuple[int, str, list[str] | None]]:
         """Each record: its first line's number, its text and its cells; None for cells that can't be separated."""
-        for number, line in self:
-            taken = self._record(number, line, layout)
-            text = "\n".join(piece for _, piece in taken)
-            cells = cells_of(text, layout) if _even(taken) or len(taken) == 1 else None
-            if len(taken) > 1 and (cells is None or len(cells) != len(layout.columns)):
-                # An open quote takes in the records after it: put back the lines from the next whole record on.
-                ahead = [*taken, *itertools.islice(self, _LOOK_AHEAD)]
-                keep = next((k for k in range(1, len(taken)) if _whole(ahead[k:], layout)), len(taken))
-                self._again.extend(reversed(ahead[keep:]))
-                text = "\n".join(piece for _, piece in taken[:keep])
-                cells = None
+        ends, wanted = RecordEnds(self._line_at, layout.delimiter), len(layout.columns)
+        while (first := self._line_at(self._next)) is not None:
+            number = self._next
+            count, even = 1, first.count('"') % 2 == 0
+            if not even and ends.cells(number, 1) != wanted:
+                count, even = self._extent(first)
+            text = self._text(number, count) if count > 1 else first
+            cells = cells_of(text, layout) if even or count == 1 else None
+            if count > 1 and (cells is None or len(cells) != wanted):
+                # An open quote takes in the records after it: go on at the next line that begins a whole record.
+                count = next((k for k in range(1, count) if ends.cells(number + k) == wanted), count)
+                text, cells = self._text(number, count), None
+            for _ in itertools.islice(self, count):
+                pass
             yield number, text, cells
 
-    def _record(self, number: int, line: str, layout: Layout) -> list[tuple[int, str]]:
-        """Return the lines of the record that begins here, according to its quotes."""
-        taken = [(number, line)]
-        odd, size = line.count('"') % 2 == 1, len(line)
-        if odd and _whole(taken, layout):
-            return taken
-        while odd and len(taken) < LONGEST_RECORD and size <= LONGEST_ANSWER and (more := next(self, None)):
-            taken.append(more)
-            size += len(more[1])
-            odd ^= more[1].count('"') % 2 == 1
-        return taken
+    def _extent(self, first: str) -> tuple[int, bool]:
+        """Return how many lines the record with this first line has by its quotes, and whether they are all closed."""
+        count, size, odd = 1, len(first), True
+        while odd and count < LONGEST_RECORD and size <= LONGEST_ANSWER:
+            more = self._line_at(self._next + count)
+            if more is None:
+                break
+            count, size = count + 1, size + len(more)
+            odd ^= more.count('"') % 2 == 1
+        return count, not odd
+
+    def _text(self, number: int, count: int) -> str:
+        return "\n".join(self._waiting[number + k] for k in range(count))
 
 
-def _even(taken: list[tuple[int, str]]) -> bool:
-    return sum(piece.count('"') for _, piece in taken) % 2 == 0
-
-
-def _whole(taken: list[tuple[int, str]], layout: Layout) -> bool:
-    """Return whether these lines begin with a record of the right number of cells."""
-    text = ""
-    for _, piece in taken[:_LOOK_AHEAD]:
-        text += piece
-        try:
-            return len(cells_of(text, layout, strict=True)) == len(layout.columns)
-        except csv.Error:
-            text += "\n"
-    return False
-
-
-def cells_of(text: str, layout: Layout, strict: bool = False) -> list[str]:
-    """Return the cells of a record.
-
-    Raises:
-        csv.Error: with `strict`, a quote that is never closed.
-    """
-    return next(csv.reader(io.StringIO(text, newline=""), delimiter=layout.delimiter, strict=strict), [])
+def cells_of(text: str, layout: Layout) -> list[str]:
+    """Return the cells of a record."""
+    return next(csv.reader(io.StringIO(text, newline=""), delimiter=layout.delimiter), [])
 
 
 def cells_at(text: str, cells: list[str], line: int, layout: Layout) -> list[str]:
     """Return the cells of a record that begins on this line, with their places; one that can't be found has none."""
     found: list[str] = []
-    at = 0
+    at = begins = 0
     for cell in cells:
         quoted = text.startswith('"', at)
         end = _CELL[quoted](layout.delimiter).match(text, at)
@@ -133,16 +149,16 @@ def cells_at(text: str, cells: list[str], line: int, layout: Layout) -> list[str
         if end is None or (raw.replace('""', '"') if quoted else raw) != cell:
             return [*found, *(text_at(rest, line, 1, rest) for rest in cells[len(found) :])]
         first = end.start(1)
-        breaks = text.count("\n", 0, first)
-        column = first - text.rfind("\n", 0, first) if breaks else first + 1
-        found.append(text_at(cell, line + breaks, column, raw, '""'))
+        found.append(text_at(cell, line, first - begins + 1, raw, '""'))
+        if quoted and (breaks := raw.count("\n")):
+            line, begins = line + breaks, first + raw.rfind("\n") + 1
         at = end.end() + 1
     return found
 
 
 @cache
 def _quoted_cell(delimiter: str) -> re.Pattern[str]:
-    return re.compile(rf'"((?:[^"]|"")*+)"(?={re.escape(delimiter)}|\r?$)')
+    return re.compile(rf'"((?:[^"]|"")*+)"(?={re.escape(delimiter)}|\r?(?:\n|\Z))')
 
 
 @cache

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate
 from typing import Any
 
@@ -26,12 +26,19 @@ class Text(str):
     raw: str
     unit: str
 
-    def part(self, start: int, length: int) -> Text:
-        """Return a piece of the text, with its place."""
-        offsets = self._offsets()
-        first, end = offsets[start], offsets[start + length]
-        line, column = self._at(first)
-        return text_at(str(self)[start : start + length], line, column, self.raw[first:end], self.unit)
+    def cutter(self) -> Callable[[int, int], Text]:
+        """Return a function that cuts pieces out of the text, with their places: by the start and the length of each.
+
+        It reads the text once, so that all the lines of a long text take no longer than a few.
+        """
+        whole, offsets, breaks = str(self), self._offsets(), self._breaks()
+
+        def cut(start: int, length: int) -> Text:
+            first, end = offsets[start], offsets[start + length]
+            line, column = self._at(first, breaks)
+            return text_at(whole[start : start + length], line, column, self.raw[first:end], self.unit)
+
+        return cut
 
     def places(self, skip: int = 0) -> list[list[int]]:
         """Return the place of each line; see `hearth.schemas.text_places`.
@@ -43,10 +50,10 @@ class Text(str):
             return [[skip, self.line, self.column]]
         if self._has_breaks_alone():
             return self._starts(skip)
-        offsets, found, start = self._offsets(), [], 0
+        offsets, breaks, found, start = self._offsets(), self._breaks(), [], 0
         for line in self.split("\n"):
             ends = offsets[start : start + len(line) + 1]
-            found.append([each for place in self._jumps(ends, skip) for each in place])
+            found.append([each for place in self._jumps(ends, breaks, skip) for each in place])
             start, skip = start + len(line) + 1, 0
         return found
 
@@ -63,12 +70,12 @@ class Text(str):
             column, skip = column + len(text) + 2, 0
         return found
 
-    def _jumps(self, ends: Sequence[int], skip: int) -> Iterator[tuple[int, int, int]]:
+    def _jumps(self, ends: Sequence[int], breaks: Sequence[int], skip: int) -> Iterator[tuple[int, int, int]]:
         """Yield the first character of a line, and each that does not stand right after the one before it."""
         before = -1
         for index, offset in enumerate(ends):
             if offset != before + 1 or not index:
-                yield (index + skip, *self._at(offset))
+                yield (index + skip, *self._at(offset, breaks))
             before = offset
 
     def _offsets(self) -> Sequence[int]:
@@ -77,12 +84,13 @@ class Text(str):
         unit = _unit(self.unit)
         return [0, *accumulate(len(match[0]) for match in unit.finditer(self.raw))]
 
-    def _at(self, offset: int) -> tuple[int, int]:
-        """Line and column of a place in the raw text."""
-        breaks = self.raw.count("\n", 0, offset)
-        if not breaks:
-            return self.line, self.column + offset
-        return self.line + breaks, offset - self.raw.rfind("\n", 0, offset)
+    def _at(self, offset: int, breaks: Sequence[int]) -> tuple[int, int]:
+        """Line and column of a place in the raw text, which has these line breaks."""
+        before = bisect_left(breaks, offset)
+        return (self.line + before, offset - breaks[before - 1]) if before else (self.line, self.column + offset)
+
+    def _breaks(self) -> list[int]:
+        return [match.start() for match in re.finditer("\n", self.raw)] if "\n" in self.raw else []
 
 
 def _unit(name: str) -> re.Pattern[str]:
@@ -109,10 +117,16 @@ class Composed(Text):
         """Return the place of the line, which goes on at another place with each text."""
         return [[each for at, text in self.parts for each in text.places(at + skip)[0]]]
 
-    def part(self, start: int, length: int) -> Text:
-        """Return a piece of the line: of the texts in it, those that begin in it."""
-        inside = [(at - start, text) for at, text in self.parts if start <= at < start + length]
-        return _composed(str(self)[start : start + length], inside or [(0, self.parts[0][1])])
+    def cutter(self) -> Callable[[int, int], Text]:
+        """Return a function that cuts pieces out of the line: each has the texts that begin in it."""
+        whole, begins = str(self), [at for at, _ in self.parts]
+
+        def cut(start: int, length: int) -> Text:
+            first, end = bisect_left(begins, start), bisect_left(begins, start + length)
+            inside = [(at - start, text) for at, text in self.parts[first:end]]
+            return _composed(whole[start : start + length], inside or [(0, self.parts[0][1])])
+
+        return cut
 
 
 def composed(*pieces: str) -> str:
@@ -241,15 +255,15 @@ def pieces_of(text: str, pieces: Sequence[str]) -> list[str]:
     if not isinstance(text, Text):
         return list(pieces)
     found: list[str] = []
-    at = 0
+    at, cut = 0, text.cutter()
     for piece in pieces:
         start = text.find(piece, at)
-        found.append(text.part(start, len(piece)) if start >= 0 else _words_in(text, piece))
+        found.append(cut(start, len(piece)) if start >= 0 else _words_in(text, piece, cut))
         at = start + len(piece) if start >= 0 else at
     return found
 
 
-def _words_in(text: Text, piece: str) -> Text:
+def _words_in(text: Text, piece: str, cut: Callable[[int, int], Text]) -> Text:
     """Return a piece whose words follow each other in a text, whatever stands between them.
 
     Else at the text's place.
@@ -260,7 +274,7 @@ def _words_in(text: Text, piece: str) -> Text:
         start = text.find(word, at)
         if start < 0:
             return text_at(piece, text.line, text.column, piece)
-        parts += [text.part(start, len(word)), " "]
+        parts += [cut(start, len(word)), " "]
         at = start + len(word)
     joined = composed(*parts[:-1])
     return joined if isinstance(joined, Text) else text_at(piece, text.line, text.column, piece)

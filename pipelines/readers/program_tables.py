@@ -79,7 +79,8 @@ def table_of(path: Place, given: FieldColumns) -> Table:
     counts = [name for name in names if cells[name] and all(map(is_count, cells[name]))]
     steps = tuple(numbered_names(names)) if "program" not in given else ()
     times = [name for name in names if cells[name] and all(map(is_time, cells[name]))]
-    texts = [name for name in names if name not in {*counts, *steps, *times} or name in given.values()]
+    others = {*counts, *steps, *times} - {*given.values()}
+    texts = [name for name in names if name not in others]
     found = Found(guessed(texts, given))
     found.rivals, found.is_table = rivals(texts, found, given), True
     if (times or counts) and not steps:

@@ -33,7 +33,19 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph_wrappers import graph_in
 from hearth.schemas.program_boundaries import TITLE
-from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
+from hearth.storage.archives import (
+    GZIP,
+    MOST_MEMBERS,
+    UNPACK,
+    ZSTD,
+    DamagedError,
+    Member,
+    Place,
+    archive,
+    members,
+    refusal_of,
+    size_of,
+)
 from hearth.storage.files import SERVED, links_not_followed, walk
 from hearth.storage.rejects import Reject, as_text
 
@@ -265,12 +277,9 @@ DOCUMENT = "records document"
 
 def _archive(path: Path, place: str) -> Iterator[Recognised]:
     try:
-        with zipfile.ZipFile(path) as archive:
-            infos = members(archive)
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, ValueError) as error:
-        message = f"a damaged or truncated archive: {error}"
-        reject = Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion="download it again")
-        yield Recognised(path, place, "", reject)
+        infos = members(archive(path))
+    except HearthError as error:
+        yield Recognised(path, place, "", Reject(tuple(fault.at(place) for fault in error.diagnostics)))
         return
     if any(info.filename == "[Content_Types].xml" for info in infos):
         yield _refused(path, place, "an Office document: save a sheet as CSV, a text as plain text")
@@ -278,7 +287,11 @@ def _archive(path: Path, place: str) -> Iterator[Recognised]:
     is_release = any(release.names_it(info.filename) for info in infos)
     if is_release:
         yield Recognised(path, place, release.NAME)
-    others = (info for info in infos if not release.names_it(info.filename) and not _is_hidden(info.filename))
+    others = [info for info in infos if not release.names_it(info.filename) and not _is_hidden(info.filename)]
+    if len(others) > MOST_MEMBERS:
+        message = f"an archive of {len(others):,} files: at most {MOST_MEMBERS:,} are read where they are"
+        yield Recognised(path, place, "", Reject.of(Code.FILE_TOO_LARGE, message, file=place, suggestion=UNPACK))
+        return
     found = [_member(path, info, f"{place}/{as_text(info.filename)}") for info in others]
     if is_release:
         yield from map(_beside_release, found)

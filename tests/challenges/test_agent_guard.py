@@ -1,6 +1,7 @@
 """Agents of others that crash in odd ways or do not stop: a code comes of it, and nothing else."""
 
 import asyncio
+import signal
 import sys
 import time
 from contextlib import suppress
@@ -140,7 +141,7 @@ def test_what_is_no_exception_is_the_agents_failure_too(error):
 
 def test_an_interrupt_of_the_keyboard_is_ours():
     with pytest.raises(KeyboardInterrupt):
-        Guarded(Agent(raising(KeyboardInterrupt())), 1, frozenset()).act(None, ())
+        Guarded(Agent(lambda: signal.raise_signal(signal.SIGINT)), 1, frozenset()).act(None, ())
 
 
 class Hidden:
@@ -165,6 +166,7 @@ def test_an_agent_that_takes_the_standard_streams_away_fails_and_they_are_back(m
 
 
 OWN = """
+import signal
 import sys
 
 class Hidden:

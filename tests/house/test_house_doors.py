@@ -35,6 +35,7 @@ PRINTED = {
     ("commands/output.py", "print"): "the one function, `line`; tables and faults whose cells it has escaped",
     ("commands/output.py", "Console().print"): "the table of a terminal",
     ("commands/output.py", "sys.stdout.write"): "a JSON document, escaped as JSON",
+    ("commands/corpus.py", "sys.stdout.buffer.writelines"): "lines of JSON, through `shown_line`",
     ("commands/query.py", "sys.stdout.write"): "pieces of a JSON document, escaped as JSON",
     ("cli.py", "sys.stderr.write"): "a sentence of ours",
     ("cli.py", "typer.echo"): "our version",
@@ -47,6 +48,9 @@ PRINTED = {
 """Calls that put text out without `output.line` or `rows_writer`, by file, with the reason."""
 
 
+STREAM = re.compile(r"sys\.(?:__)?std(?:out|err)(?:__)?\.(?:buffer\.|raw\.)*write(?:lines)?$")
+
+
 def put_out(path):
     """Calls of a file that print, or make a writer of CSV."""
     for node in ast.walk(ast.parse(path.read_text())):
@@ -54,7 +58,7 @@ def put_out(path):
             continue
         name = ast.unparse(node.func)
         last = name.rpartition(".")[2]
-        streams = name in ("sys.stdout.write", "sys.stderr.write", "csv.writer", "csv.DictWriter", "typer.echo")
+        streams = name in ("csv.writer", "csv.DictWriter", "typer.echo") or bool(STREAM.match(name))
         if name == "print" or streams or (last in ("print", "secho") and "." in name):
             yield name
 

@@ -9,8 +9,7 @@ from web.people import DESK, Server
 from hearth.web import desk_access, sessions
 from hearth.web.limits import Rate, usual_rates
 from hearth.web.messages import Inbox, json_object
-from hearth.web.security import HEADERS
-from hearth.web.start_pages import _own_address
+from hearth.web.security import HEADERS, own_address
 from hearth.web.web_errors import WebError
 from hearth.web.web_tables import SESSIONS
 
@@ -108,7 +107,7 @@ def test_the_store_has_no_token(server, person):
     ],
 )
 def test_one_is_sent_to_addresses_of_this_server_alone(wanted, goes):
-    assert _own_address(wanted) == goes
+    assert own_address(wanted) == goes
 
 
 def test_the_desk_needs_its_token(server, person):
