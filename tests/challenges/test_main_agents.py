@@ -41,6 +41,16 @@ class Once(HumanLike):
             mark.touch()
             raise ConnectionError("try again")
         super().reset(observation, goal, seed)
+
+class Twice(HumanLike):
+    """It fails in both tries of its first episode."""
+    def reset(self, observation, goal, seed):
+        for name in ("first", "second"):
+            mark = Path(__file__).with_name(name)
+            if not mark.exists():
+                mark.touch()
+                raise ConnectionError("try again")
+        super().reset(observation, goal, seed)
 '''
 
 PROGRAM = """
@@ -94,9 +104,8 @@ def test_what_fails_once_is_played_again(mine, tmp_path):
     assert next(iter(found.records)).metrics["success"]
 
 
-def test_the_same_call_plays_again_only_what_did_not_finish(mine, tmp_path, monkeypatch):
-    out, lineup = tmp_path / "r.jsonl", Lineup(f"{mine}:Once")
-    monkeypatch.setattr("hearth.challenges.episodes.TRIES", 1)
+def test_the_same_call_plays_again_only_what_did_not_finish(mine, tmp_path):
+    out, lineup = tmp_path / "r.jsonl", Lineup(f"{mine}:Twice")
     assert len(run(ONE, lineup, 2, out, default).unfinished) == 1
     kept = out.read_bytes().splitlines()[2]
     assert not run(ONE, lineup, 2, out, default).unfinished
