@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
+from hearth.schemas.yaml_limits import packaged
 
 MOST_NAMED = 4
 """Things that a sentence names."""
@@ -145,165 +146,32 @@ def _facts(words: str) -> Callable[[Failure], str]:
 Words = str | Callable[[Failure], str]
 """A template of the names of two objects, `action`, `expected` and `actual`; or what makes the words."""
 
+_MADE: Mapping[str, Callable[[Failure], str]] = {
+    "NO_ROOM": _no_room,
+    "NO_PATH": _no_path,
+    "NO_FREE_HAND": _hands,
+    "OCCUPIED": _seat,
+    "WRONG_STATE": _wrong_state,
+    "CONFLICT": _conflict,
+    "UNKNOWN_AGENT": _agent,
+    "UNBOUND": _unbound,
+    "NO_PLACE": _no_place,
+}
+_FILE = packaged("hearth.schemas", "failure_words.yaml")
+
 SPECIAL: Mapping[tuple[Code, str], Words] = {
-    (Code.NOT_HOLDING, "a knife in a hand"): "the character holds no knife",
-    (Code.NOT_HOLDING, "something in a hand"): "the character's hands are empty, and this is done with something",
-    (Code.NOT_HOLDING, "the object in the left hand"): "the {0} is not in the left hand",
-    (Code.NOT_HOLDING, "the object in the right hand"): "the {0} is not in the right hand",
-    (Code.NO_FREE_HAND, "a free left hand"): "the left hand is full",
-    (Code.NO_FREE_HAND, "a free right hand"): "the right hand is full",
-    (Code.NOT_FACING, "the seat facing it"): "the seat does not face the {0}",
-    (Code.NOT_AFFORDED, "two different things"): "the {0} is named twice, and this takes two different things",
-    (Code.NO_PATH, "something with a place"): "nobody knows where the {0} stands",
-    (Code.NO_PLACE, "a home with geometry"): "the home does not say where in the room things are",
-    (Code.CONFLICT, "one instruction an agent and tick"): "one character is to do two things at the same time",
-    (Code.NOT_SIMULATED, "a character at a place"): "the home does not say where the character stands",
-    (Code.UNBOUND, "a step"): "the program has no step",
-    (Code.DUPLICATE, "a program of its own"): "{actual}",
-    (Code.UNPERTURBED, "a program of its own"): "{actual}",
-    (Code.UNPERTURBED, "a precondition that can be perturbed"): "it has no precondition that can be perturbed",
+    (Code(code), expected): words for code, facts in _FILE["special"].items() for expected, words in facts.items()
 }
 """Words of a failure whose code is ambiguous, by the expected fact."""
 
 WHY: Mapping[Code, Words] = {
-    # Reading
-    Code.EMPTY: "there is nothing in it",
-    Code.NO_STEP: "the line explains a step and is not a step itself",
-    Code.NOT_TEXT: "it is not text",
-    Code.LINE_TOO_LONG: "a line is too long",
-    Code.BAD_ARCHIVE: "the archive cannot be opened",
-    Code.BAD_JSON: "it is not valid JSON",
-    Code.BAD_TABLE: "the table cannot be read",
-    Code.BAD_GRAPH: "the scene graph cannot be used",
-    Code.MISSING_FILE: "the file is missing",
-    Code.UNSUPPORTED_FILE: "files of this kind cannot be read",
-    Code.DUPLICATE: "the same record was read before",
-    Code.REJECTED_ANSWER: "the answer was rejected when it was collected",
-    # Syntax and names
-    Code.SYNTAX: _facts("this could not be read as a step"),
-    Code.BAD_INSTANCE: "the number of an object is not a number from 1",
-    Code.UNKNOWN_ACTION: "there is no action [{action}]",
-    Code.UNKNOWN_OBJECT: "there is no object class `{0}`",
-    Code.UNKNOWN_HOME: "there is no home of that name",
-    Code.WRONG_ARITY: "[{action}] takes {expected}, not {actual}",
-    Code.SPECIAL_BLOCK: "this step is not among the actions",
-    Code.NOT_UNDERSTOOD: "this could not be read as a step",
-    Code.AMBIGUOUS: "this can be read in several ways",
-    Code.FUZZY_MATCH: "this was read as something similar",
-    Code.NO_STEP: "this line was left out: it is not numbered as the steps are",
-    # Objects of an action
-    Code.NOT_AFFORDED: "[{action}] does not work with the {0}: its object must be {expected}",
-    Code.NOT_SIMULATED: "[{action}] can be written, but the simulator does not execute it",
-    # A program as a whole
-    Code.NEAR_DUPLICATE: "it is nearly the same as another program",
-    Code.NO_EFFECT: "it changes nothing",
-    Code.OFF_TOPIC: "it does not fit its title",
-    Code.UNDECLARED: "it does not say where it comes from",
-    # Place and posture of the character
-    Code.NOT_CLOSE: "the character is not near the {0}",
-    Code.NOT_FACING: "the character does not face the {0}",
-    Code.NOT_IN_ROOM: "the {0} is in another room",
-    Code.NO_ROOM: _no_room,
-    Code.SITTING: "the character is sitting",
-    Code.LYING: "the character is lying down",
-    Code.NOT_SITTING_OR_LYING: "the character is standing",
-    Code.DOOR_CLOSED: "a closed {0} is in the way to the {1}",
-    Code.NO_PATH: _no_path,
-    # Hands
-    Code.NO_FREE_HAND: _hands,
-    Code.NOT_HOLDING: "the character does not hold the {0}",
-    Code.NO_ORIGIN: "the {0} was not taken from anywhere, so it cannot be put back",
-    Code.HELD_BY_OTHER: "another character holds the {0}",
-    Code.HELD_ALREADY: "the {0} is already in a hand",
-    # The object's state
-    Code.OCCUPIED: _seat,
-    Code.INSIDE_CLOSED: "the {0} is inside the {1}, which is closed",
-    Code.IS_OPEN: "the {0} is open",
-    Code.IS_CLOSED: "the {0} is closed",
-    Code.IS_ON: "the {0} is on",
-    Code.IS_OFF: "the {0} is off",
-    Code.IS_PLUGGED: "the {0} is plugged in",
-    Code.IS_UNPLUGGED: "the {0} is unplugged",
-    Code.NOT_OPENABLE_STATE: "the {0} is neither open nor closed",
-    Code.NOT_WORN: "the character does not wear the {0}",
-    Code.NOTHING_TO_EAT: "the {0} is not food, and there is no food on it",
-    Code.WRONG_STATE: _wrong_state,
-    # Several agents
-    Code.CONFLICT: _conflict,
-    Code.UNKNOWN_AGENT: _agent,
-    # Grounding
-    Code.UNBOUND: _unbound,
-    Code.CONTRADICTION: _facts("the program contradicts itself"),
-    Code.NO_PLACE: _no_place,
-    Code.CONDITION_UNMET: _facts("no home could be made in which a condition holds"),
-    # Augmenting
-    Code.NO_HANDLER: _facts("there is no repair for this"),
-    Code.HANDLER_ERROR: _facts("the repair itself failed"),
-    Code.TOO_MANY_TRIES: _facts("too many repairs would be needed"),
-    Code.LOOP: _facts("the repairs lead back to an earlier program"),
-    Code.GOAL_LOST: _facts("the repaired program does not reach what the original reached"),
-    Code.UNPERTURBED: _facts("no variant of it was made"),
-    Code.CIRCUMSTANCES_LOST: _facts("the repaired program does a step in other circumstances"),
-    # Scoring and publishing
-    Code.UNKNOWN_ID: "there is nothing with that id",
-    Code.MISSING_PREDICTION: "there is no prediction for it",
-    Code.REPLAY_DIFFERS: _facts("running it again gives something else"),
-    Code.NOT_RENDERED: _facts("it could not be pictured"),
-    # This machine, and Hearth itself
-    Code.FILE_TOO_LARGE: "the file is too large",
-    Code.UNWRITABLE: "it cannot be written there",
-    Code.LOCKED: "another command is writing there",
-    Code.INTERNAL_ERROR: _facts("Hearth itself failed"),
-    Code.DAMAGED_FILE: "the file is damaged",
-    Code.TIMED_OUT: "it took longer than the time limit",
-    Code.BAD_ARGUMENT: _facts("an argument is not of its type"),
-    # Agents and their answers
-    Code.NOT_SEEN: "the character does not see the {0}",
-    Code.NOT_ALLOWED: "[{action}] is not allowed here",
-    Code.DISCONNECTED: "the agent is gone",
-    Code.FINISHED: "the player has finished the task",
-    Code.AGENT_FAILED: _facts("the agent failed"),
-    # People and their browsers
-    Code.NO_SESSION: "there is no session",
-    Code.TOO_FAST: "this came too soon after the last",
-    Code.OUT_OF_ORDER: "this came out of order",
-    Code.FINISHED: "the person ended it",
+    Code(code): _facts(words["facts"]) if isinstance(words, dict) else words
+    for code, words in {**_FILE["why"], **_MADE}.items()
 }
 """Reasons of failures, in words, for every code."""
 
-MEANINGS: Mapping[Code, str] = {
-    Code.WRONG_ARITY: "the action takes another number of objects",
-    Code.UNKNOWN_ACTION: "there is no action of that name",
-    Code.UNKNOWN_OBJECT: "there is no object class of that name",
-    Code.NOT_AFFORDED: "the action does not work with an object of this kind",
-    Code.NOT_SIMULATED: "the action can be written, but the simulator does not execute it",
-    Code.NOT_ALLOWED: "the action is not allowed here",
-    Code.UNKNOWN_AGENT: "the home has no character of that number",
-    Code.UNBOUND: "the home has no such thing, or none that the program can use",
-    Code.NO_FREE_HAND: "both hands are full",
-    Code.OCCUPIED: "there is no room left on the seat",
-    Code.WRONG_STATE: "the thing is not in the state that the action needs",
-    Code.NO_PLACE: "there is no place for the thing",
-}
+MEANINGS: Mapping[Code, str] = {Code(code): words for code, words in _FILE["meanings"].items()}
 """Words for a code alone, where those of a failure need its facts."""
 
-REMEDIES: Mapping[Code, str] = {
-    Code.UNBOUND: "use another object or home, or `--sample` to add it",
-    Code.NOT_AFFORDED: "use another object or action",
-    Code.NOT_SIMULATED: "use an action that is executed",
-    Code.UNKNOWN_ACTION: "use an action of the grammar",
-    Code.UNKNOWN_AGENT: "use one of the characters, or a home with more",
-    Code.WRONG_ARITY: "name as many objects as it takes",
-    Code.NO_PATH: "go another way",
-    Code.NO_ROOM: "use a home with such a room, or put the thing into one",
-    Code.NO_PLACE: "use another place",
-    Code.CONTRADICTION: "leave one of the two out",
-    Code.CONDITION_UNMET: "use another home",
-    Code.HELD_ALREADY: "leave this step out",
-    Code.NOT_CLOSE: "walk to it first",
-    Code.NOT_HOLDING: "take it first",
-    Code.NO_FREE_HAND: "put something down first",
-    Code.NOT_FACING: "turn to it first",
-    Code.OCCUPIED: "take things off it first",
-}
+REMEDIES: Mapping[Code, str] = {Code(code): words for code, words in _FILE["remedies"].items()}
 """Remedies of a failure for a person, where no repair is known, or the repairs find nothing in this home."""
