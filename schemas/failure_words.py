@@ -160,18 +160,18 @@ _MADE: Mapping[str, Callable[[Failure], str]] = {
 _FILE = packaged("hearth.schemas", "failure_words.yaml")
 
 SPECIAL: Mapping[tuple[Code, str], Words] = {
-    (Code(code), expected): words for code, facts in _FILE["special"].items() for expected, words in facts.items()
+    (Code[code], expected): words for code, facts in _FILE["special"].items() for expected, words in facts.items()
 }
 """Words of a failure whose code is ambiguous, by the expected fact."""
 
 WHY: Mapping[Code, Words] = {
-    Code(code): _facts(words["facts"]) if isinstance(words, dict) else words
+    Code[code]: _facts(words["facts"]) if isinstance(words, dict) else words
     for code, words in {**_FILE["why"], **_MADE}.items()
 }
 """Reasons of failures, in words, for every code."""
 
-MEANINGS: Mapping[Code, str] = {Code(code): words for code, words in _FILE["meanings"].items()}
+MEANINGS: Mapping[Code, str] = {Code[code]: words for code, words in _FILE["meanings"].items()}
 """Words for a code alone, where those of a failure need its facts."""
 
-REMEDIES: Mapping[Code, str] = {Code(code): words for code, words in _FILE["remedies"].items()}
+REMEDIES: Mapping[Code, str] = {Code[code]: words for code, words in _FILE["remedies"].items()}
 """Remedies of a failure for a person, where no repair is known, or the repairs find nothing in this home."""
