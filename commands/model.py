@@ -1,7 +1,5 @@
 """`model`: trains models that write programs, and lets them predict."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import typer

@@ -1,7 +1,5 @@
 """Answers to questions as files: CSV, tab-separated, JSON and Parquet, a batch of rows in memory at a time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from datetime import date, datetime, time
 from decimal import Decimal

@@ -1,7 +1,5 @@
 """Scores of predictions with intervals by activity: activities are drawn with replacement, not programs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from hearth.schemas.rng import derive

@@ -1,7 +1,5 @@
 """Training a model of the registry on a dataset, into a checkpoint."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The models by name. To add one: a file with its settings, a row of `model_registry.yaml`, a test."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path

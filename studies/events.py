@@ -1,7 +1,5 @@
 """The events of a study, one after another: nothing else is kept, and all else follows from them."""
 
-from __future__ import annotations
-
 import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass

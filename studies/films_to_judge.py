@@ -1,7 +1,5 @@
 """The films that people judge: of episodes by people and agents, or of programs written for descriptions."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The report of a study: one page that opens from disk, with its figure."""
 
-from __future__ import annotations
-
 from importlib.resources import files
 from pathlib import Path
 from typing import Any

@@ -3,8 +3,6 @@
 It goes on where it was stopped, and ends with the same bytes for any number of workers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The tables of a study: participants, trials, decisions, ratings; ids are salted, and there are no names."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """People drawn by a seed: sex, age, build, face, skin, hair and clothes."""
 
-from __future__ import annotations
-
 import random
 from functools import lru_cache
 from typing import Any
