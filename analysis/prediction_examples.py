@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterator, Sequence
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.format.case_rows import start_of
@@ -23,6 +22,7 @@ from hearth.scoring.evaluate import METRICS, Scored
 from hearth.scoring.line_sequences import steps_of
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
+from hearth.storage.templates import rendered
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
@@ -158,8 +158,4 @@ def examples_page(shown: Sequence[PredictionExample], title: str, count: int) ->
         title: of the page.
         count: how many predictions there are.
     """
-    import jinja2
-
-    text = (files("hearth.analysis") / "prediction_examples.html").read_text("utf-8")
-    template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
-    return template.render(shown=shown, title=title, count=count)
+    return rendered("hearth.analysis", "prediction_examples.html", shown=shown, title=title, count=count)

@@ -23,6 +23,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, spread, unseen
+from hearth.storage.templates import rendered
 
 SHARD = 200
 """Programs per file of stories, which a browser loads when a program's page is opened."""
@@ -80,17 +81,11 @@ def _pictured(program: str, looks: Mapping[str, tuple[str, bool]]) -> tuple[str,
 
 
 def _page(dataset: Dataset, programs: int) -> str:
-    import jinja2
-
-    text = (files("hearth.datasets.report") / "assets" / "index.html").read_text("utf-8")
-    template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
     versions = {name: dataset.manifest[name] for name in ("version", "action_set")}
-    drawn = plans(dataset)
     sheet = datasheet(dataset.folder, str(dataset.manifest.get(STRENGTH, MILD)))
     del sheet["bibtex"]
-    return template.render(
-        figures=figures(dataset), plans=drawn, sheet=sheet, programs=programs, shard=SHARD, **versions
-    )
+    values = {"plans": plans(dataset), "figures": figures(dataset), "sheet": sheet, "programs": programs, **versions}
+    return rendered("hearth.datasets.report", "assets/index.html", shard=SHARD, **values)
 
 
 def _rows(dataset: Dataset) -> list[list[Any]]:

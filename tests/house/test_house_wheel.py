@@ -19,7 +19,7 @@ PACKAGES = (
     "data_raw",
 )  # fmt: skip
 APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out", "node_modules", "fetched")
-ENDINGS = {".py", ".yaml", ".csv", ".sql"}
+ENDINGS = {".py", ".yaml", ".csv", ".sql", ".jinja"}
 
 
 def run(*command, cwd):
