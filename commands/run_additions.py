@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from hearth.schemas.literals import HANDS
-from hearth.schemas.vocabulary import ROOM_CATEGORY
+from hearth.schemas.vocabulary import OPPOSITE, ROOM_CATEGORY
 
 if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph, Node
@@ -54,7 +54,6 @@ class Additions(NamedTuple):
 def additions(before: EnvironmentGraph, after: EnvironmentGraph) -> Additions:
     """Return the additions of `after` to `before`, and the other changes."""
     from hearth.schemas.graph_change import encode
-    from hearth.schemas.vocabulary import OPPOSITE
 
     change = encode(before, after)
     nodes = {node.id: node for node in (*before.nodes, *after.nodes)}

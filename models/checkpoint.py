@@ -8,6 +8,8 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import orjson
+
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
@@ -145,8 +147,6 @@ def _phase_fits(phase: Mapping[str, Any]) -> bool:
 
 
 def _document(path: Path) -> Any:
-    import orjson
-
     try:
         return orjson.loads(read_input(path))
     except orjson.JSONDecodeError:

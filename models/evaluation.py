@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from hearth.schemas.rng import derive
 from hearth.scoring.bootstrap import DIGITS, LEVEL, RESAMPLES, Interval
 from hearth.scoring.evaluate import METRICS, Scored
@@ -29,8 +31,6 @@ def by_group(
         seed: of the drawing.
         resamples: number of resamples.
     """
-    import numpy as np
-
     columns = {name: values for name, values in columns.items() if any(value is not None for value in values)}
     if not columns:
         return {}

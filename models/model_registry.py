@@ -9,6 +9,7 @@ from hearth.models.checkpoint import MISFITS, load, misfit
 from hearth.models.protocols import Model, Trained
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.optional_libraries import library
 from hearth.schemas.yaml_limits import packaged
 
 TRAINED = Path(__file__).parent / "trained"
@@ -66,8 +67,6 @@ def _class(entry: Entry) -> Any:
     try:
         return getattr(import_module(f"hearth.models.{module}"), name)
     except ModuleNotFoundError as error:
-        from hearth.schemas.optional_libraries import library
-
         library(str(error.name))
         raise
 

@@ -7,6 +7,8 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, Protocol
 
+import orjson
+
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import sync_folder, value_digest, write_bytes
@@ -168,8 +170,6 @@ def event_of(line: bytes, file: str, number: int) -> Event:
     Raises:
         HearthError: BAD_JSON: it is not one.
     """
-    import orjson
-
     try:
         given = orjson.loads(line)
         orjson.dumps(given)  # values from a file may be nested too deep to be written
@@ -184,8 +184,6 @@ def header_of(path: Path) -> dict[str, Any]:
     Raises:
         HearthError: MISSING_FILE; BAD_JSON.
     """
-    import orjson
-
     try:
         found = orjson.loads(read_input(path, LARGEST_TABLE).partition(b"\n")[0])
     except orjson.JSONDecodeError as error:
@@ -203,6 +201,4 @@ FORMAT = "hearth-study-events-1"
 
 
 def _line(data: Mapping[str, Any]) -> bytes:
-    import orjson
-
     return orjson.dumps(data) + b"\n"

@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import orjson
+
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Record
 from hearth.challenges.result_files import episode_data, episode_of
@@ -137,8 +139,6 @@ def read_films(path: Path) -> tuple[JudgedFilm, ...]:
     Raises:
         HearthError: MISSING_FILE: they were not prepared; BAD_JSON with the number of the film.
     """
-    import orjson
-
     try:
         return films_of(orjson.loads(read_input(path)), str(path))
     except orjson.JSONDecodeError as error:

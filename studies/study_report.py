@@ -1,5 +1,6 @@
 """The report of a study: one page that opens from disk, with its figure."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -118,8 +119,6 @@ def probability(p: float | None) -> str:
 
 def as_json(found: Findings) -> dict[str, Any]:
     """Return the findings for machines."""
-    from dataclasses import asdict
-
     figures = {
         f"{who}/{group}/{metric}": asdict(figure)
         for who, group, metric in found.values

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.parquet as pq
 
 from hearth.analysis.episode_drawing import ticks_of
 from hearth.kb.knowledge import Knowledge
@@ -49,8 +50,6 @@ def export(collected: Collected, folder: Path) -> dict[str, int]:
 
 def archive(collected: Collected) -> bytes:
     """Return the tables as a zip archive, with the study's file and the meaning of every column."""
-    import pyarrow.parquet as pq
-
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as file:
         for name, table in tables(collected).items():

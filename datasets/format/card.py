@@ -6,6 +6,7 @@ from pathlib import Path
 
 import orjson
 import pyarrow as pa
+import pyarrow.parquet as pq
 
 from hearth.datasets.format.croissant import SUMMARY
 from hearth.datasets.format.datasheet import datasheet
@@ -33,8 +34,6 @@ def write_card(folder: Path, strength: str = MILD) -> None:
 
 def card(folder: Path, strength: str) -> str:
     """Return the card, as `card.jinja` has it."""
-    import pyarrow.parquet as pq
-
     return rendered(
         "hearth.datasets.format",
         "card.jinja",
@@ -56,8 +55,6 @@ def card(folder: Path, strength: str) -> str:
 
 
 def _rows(path: Path) -> int:
-    import pyarrow.parquet as pq
-
     return int(pq.read_metadata(path).num_rows)
 
 
@@ -83,8 +80,6 @@ def columns(schema: pa.Schema) -> Iterator[str]:
 
 def _sources(folder: Path) -> list[tuple[str | None, str | None, int]]:
     """Return the origins and sources of programs, with their numbers."""
-    import pyarrow.parquet as pq
-
     counts: dict[tuple[str | None, str | None], int] = {}
     for path in sorted((folder / "programs").glob("part-*.parquet")):
         table = pq.ParquetFile(path).read(columns=["origin", "source"])
