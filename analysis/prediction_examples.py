@@ -3,12 +3,11 @@
 Examples are taken at equal steps of LCS from the worst to the best, each of another activity: nobody chose them.
 """
 
-from __future__ import annotations
-
 from base64 import b64encode
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
@@ -23,9 +22,6 @@ from hearth.scoring.line_sequences import steps_of
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
 from hearth.storage.templates import rendered
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 SHOWN = {
     "lcs_step": "LCS",

@@ -1,13 +1,12 @@
 """Fitting models of sketches on annotations, and judging them by cross-validation over activities."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hearth.analysis.sketch_evaluation import Annotated
 from hearth.datasets.format.ids import activity_id
@@ -19,9 +18,6 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
 from hearth.simulation.world.home import Home
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 LEAST = 0.45
 """Probability from which a step is kept: below one half, since F1 asks for recall as much as for precision."""

@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from random import Random
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.checkpoint_weights import filled
 from hearth.models.decoding.search import Search, Start, decode
@@ -40,9 +41,6 @@ from hearth.models.training import train
 from hearth.schemas.rng import derive
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 NAME = "films-mle"
 """Name of the model's checkpoints."""

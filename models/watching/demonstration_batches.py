@@ -1,7 +1,5 @@
 """Demonstrations as arrays, and two demonstrations as one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from random import Random

@@ -1,7 +1,5 @@
 """The most probable goal, of those that there are, given probabilities of the counts of predicates."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
