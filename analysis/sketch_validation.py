@@ -1,7 +1,5 @@
 """Cross-validation of learned sketches over activities, with rules, majorities, and intervals of the leads."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """One sentence a failure: the reason why a step failed, and the remedy; the code stands at the end."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 from hearth.schemas.failures import Code, Failure

@@ -1,7 +1,5 @@
 """Furniture of a graph's room, the largest first, each where most of its relations are met."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from itertools import product
 

@@ -1,7 +1,5 @@
 """The contents of a dataset's films: the world at their start, and their steps by the classes of the objects."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Tables 5.2 to 5.5: programs from sketches and graphs, with the thesis's figures, ours and yardsticks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

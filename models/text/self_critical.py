@@ -4,8 +4,6 @@ The reward is the LCS of a program with the true one (eq. 4.1), or that and a te
 environment of its example, as scores tell it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from random import Random
