@@ -1,4 +1,4 @@
-"""Pages and cards of ours, made from templates that lie beside the modules."""
+"""Pages and cards of ours, made from templates in the folders of their modules."""
 
 from collections.abc import Callable, Mapping
 from importlib.resources import files

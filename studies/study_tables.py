@@ -13,7 +13,7 @@ from hearth.analysis.episode_drawing import ticks_of
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.tables import comment_of, struct
+from hearth.schemas.tables import comment_of, schema_of
 from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
@@ -27,7 +27,7 @@ HELPER = 1
 """The number of the helper among the characters; the person is 0."""
 
 TABLES: dict[str, pa.Schema] = {
-    name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
+    name: schema_of(row)
     for name, row in {
         "participants": study_rows.ParticipantRow,
         "trials": study_rows.StudyTrialRow,
