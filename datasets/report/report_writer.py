@@ -144,31 +144,15 @@ def _write_shard(dataset: Dataset, stories: Stories, to: Path, shard: Shard) -> 
     inside(to, f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(found) + b");\n")
 
 
-# Only drawn edges are read: most changes of a tick are CLOSE edges, which are counted only.
-_DRAWN = ", ".join(f"'{name}'" for name in sorted(DRAWN))
-_EDGES = f"list_filter({{}}, lambda e: e.relation IN ({_DRAWN}))"
-_RUNS = f"""
-    SELECT e.execution_id, e.program_id, e.home, e.failure, e.bindings,
-        list_transform(e.ticks, lambda t: {{
-            'steps': list_transform(t.instructions, lambda i: i.step), 'set_states': t.set_states,
-            'cleared_states': t.cleared_states, 'added': {_EDGES.format("t.added")},
-            'removed': {_EDGES.format("t.removed")}, 'came': len(t.added), 'went': len(t.removed)}}) AS ticks,
-        {{'conditions': v.conditions, 'removed_nodes': v.removed_nodes,
-         'added_nodes': list_transform(v.added_nodes,
-            lambda n: {{'id': n.id, 'class_name': n.class_name, 'states': n.states}}),
-         'set_states': v.set_states, 'cleared_states': v.cleared_states,
-         'added': {_EDGES.format("v.added")}, 'removed': {_EDGES.format("v.removed")}}} AS environment
-    FROM (SELECT * FROM executions e WHERE program_id BETWEEN $low AND $high AND {OWN}) e
-    JOIN (SELECT * FROM environments WHERE program_id BETWEEN $low AND $high) v USING (environment_id)
-    ORDER BY e.execution_id
-"""
 _PROGRAM_COLUMNS = "program_id, parent_id, title, description, origin, activity_id, steps"
 
 
 def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[Row]:
     between = "program_id BETWEEN $low AND $high"
     runs, repairs = defaultdict(list), defaultdict(list)
-    for row in _ask(cursor, _RUNS, asked):
+    relations = ", ".join(f"'{name}'" for name in sorted(DRAWN))
+    query = rendered("hearth.datasets.report", "runs.sql.jinja", relations=relations, own=OWN)
+    for row in _ask(cursor, query, asked):
         runs[row["program_id"]].append(row)
     for row in _ask(cursor, f"SELECT * FROM repairs WHERE {between} ORDER BY program_id, attempt", asked):
         repairs[row["program_id"]].append(row)
