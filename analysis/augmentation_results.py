@@ -4,7 +4,10 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from hearth.datasets.damage_faults import reading
+import orjson
+import pyarrow.parquet as pq
+
+from hearth.datasets.damage_faults import reading, using
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.graph_sizes import graph_sizes
 from hearth.pipelines.augment import ORIGINAL
@@ -31,9 +34,6 @@ def outcome(folder: Path) -> dict[str, Any]:
     Raises:
         HearthError: MISSING_FILE, if the stage has not run.
     """
-    import orjson
-    import pyarrow.parquet as pq
-
     manifest = read_manifest(folder)
     if manifest is None:
         raise HearthError.of(Code.MISSING_FILE, "nothing was augmented here", file=str(folder))
@@ -82,7 +82,6 @@ def figures(dataset: Path) -> dict[str, Any]:
     Raises:
         HearthError: MISSING_FILE, without a dataset; DAMAGED_FILE, with a damaged one.
     """
-    from hearth.datasets.damage_faults import using
     from hearth.datasets.dataset import Dataset
 
     data = Dataset.open(dataset)

@@ -1,7 +1,5 @@
 """The main agent's beliefs about the places of wanted things in an episode, over time (thesis 6.4, figure B-3)."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Starting places of things in tasks: the distributions of the thesis's figures B-4 and B-5."""
 
-from __future__ import annotations
-
 from collections import Counter
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """All methods of the thesis's figures 6-5 and 7-3 on the same tasks, with the thesis's text about them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec

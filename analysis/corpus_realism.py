@@ -6,8 +6,6 @@ Each draw splits the other corpus into halves A and B and draws as many programs
 taken of A against B and of the draw against B. Their ratio is 1 if the corpora can't be distinguished.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,15 +1,13 @@
 """Statistics of a corpus, as in thesis 3.4 and table 4.1."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hearth.datasets.format.codecs import steps_of
 from hearth.datasets.format.ids import activity_id
@@ -22,9 +20,6 @@ from hearth.schemas.program import Step
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.syntax import normal_name
 from hearth.storage.rejects import Reject
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 THESIS_FUNNEL = {
     "descriptions": 1814,

@@ -5,8 +5,6 @@ model can only guess those parts. The score to compare models with is therefore 
 clause, and knows how often each part is in a program.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby

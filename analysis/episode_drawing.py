@@ -1,7 +1,5 @@
 """An episode on the floor plan: the agents' ways, and the moments at which they handled something (figure 6-6)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from hearth.challenges.challenge_definition import challenge

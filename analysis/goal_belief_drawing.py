@@ -1,7 +1,5 @@
 """A helper's beliefs in an episode, as in the thesis's figure 7-4: probabilities over time, key actions below."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from xml.sax.saxutils import escape
 

@@ -1,7 +1,5 @@
 """The test that helpers do no harm: people of kinds that no helper was tuned with, alone and helped."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any

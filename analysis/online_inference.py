@@ -1,7 +1,5 @@
 """The quality of goal inference during an episode: F1 over time (figures 7-3b, C-4), log loss, calibration."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -3,13 +3,11 @@
 Examples are taken at equal steps of LCS from the worst to the best, each of another activity: nobody chose them.
 """
 
-from __future__ import annotations
-
 from base64 import b64encode
 from collections.abc import Iterator, Sequence
-from importlib.resources import files
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
@@ -23,9 +21,7 @@ from hearth.scoring.evaluate import METRICS, Scored
 from hearth.scoring.line_sequences import steps_of
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
+from hearth.storage.templates import rendered
 
 SHOWN = {
     "lcs_step": "LCS",
@@ -158,8 +154,4 @@ def examples_page(shown: Sequence[PredictionExample], title: str, count: int) ->
         title: of the page.
         count: how many predictions there are.
     """
-    import jinja2
-
-    text = (files("hearth.analysis") / "prediction_examples.html").read_text("utf-8")
-    template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
-    return template.render(shown=shown, title=title, count=count)
+    return rendered("hearth.analysis", "prediction_examples.html", shown=shown, title=title, count=count)

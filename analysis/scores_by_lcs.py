@@ -4,8 +4,6 @@ In the thesis people rated films of programs, and their ratings rose with LCS. N
 whether a program runs, how much of the reference's goal it reaches, and how much of its change of the home it makes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path

@@ -1,11 +1,12 @@
 """Fitting models of sketches on annotations, and judging them by cross-validation over activities."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hearth.analysis.sketch_evaluation import Annotated
 from hearth.datasets.format.ids import activity_id
@@ -17,9 +18,6 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
 from hearth.simulation.world.home import Home
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 LEAST = 0.45
 """Probability from which a step is kept: below one half, since F1 asks for recall as much as for precision."""
@@ -70,8 +68,6 @@ class _Rows:
 
 
 def _rows(found: Sequence[Example], base: SketchModel | None) -> _Rows:
-    import numpy as np
-
     counts = _counts(found)
     own = {name: _counts([one for one in found if one.activity == name]) for name in {one.activity for one in found}}
     names = inputs(base is not None)
@@ -151,7 +147,6 @@ def _vocabulary(names: Iterable[tuple[str, ...]], rarest: int) -> list[str]:
 
 def _matrix(rows: _Rows, vocabulary: Sequence[str]) -> Any:
     """Sparse: a column a name, and the base's logit last."""
-    import numpy as np
     from scipy.sparse import csr_matrix
 
     place = {name: column for column, name in enumerate(vocabulary)}
@@ -173,8 +168,6 @@ def _linear(matrix: Any, answers: NDArray[Any]) -> tuple[float, list[float]]:
 
 def parts(activities: Sequence[str], count: int, seed: int) -> NDArray[Any]:
     """Return a part, from 0, for each row, whole activities in one part, parts of nearly equal size."""
-    import numpy as np
-
     sizes = Counter(activities)
     loads, part_of = [0] * count, {}
     for name in sorted(sizes, key=lambda each: (-sizes[each], derive(seed, "sketch parts", each))):
@@ -185,7 +178,6 @@ def parts(activities: Sequence[str], count: int, seed: int) -> NDArray[Any]:
 
 def _boosted(rows: _Rows, seed: int) -> tuple[float, tuple[Tree, ...]]:
     """Return the logit before the trees, and the trees of several runs, each weighing its share."""
-    import numpy as np
     from sklearn.ensemble import GradientBoostingClassifier
 
     trees: list[Tree] = []

@@ -1,11 +1,11 @@
 """Cross-validation of learned sketches over activities, with rules, majorities, and intervals of the leads."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from hearth.analysis.sketch_evaluation import Counts
 from hearth.analysis.sketch_learning import Example, fit, parts
@@ -118,8 +118,6 @@ def _total(counts: dict[str, Counts]) -> dict[str, float]:
 
 def _lead(mine: dict[str, Counts], usual: dict[str, Counts], seed: int) -> dict[str, float]:
     """Return the difference in F1 and its percentile interval; activities are drawn with replacement."""
-    import numpy as np
-
     table = np.array([[[c.both, c.extra, c.missing] for c in each.values()] for each in (mine, usual)], dtype=float)
     generator = np.random.Generator(np.random.PCG64(derive(seed, "sketch leads")))
     count = table.shape[1]

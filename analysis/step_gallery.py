@@ -1,7 +1,5 @@
 """A gallery of steps: each of another action if it can be, in another home, by another person, at another hour."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import cycle, islice

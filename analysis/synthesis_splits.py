@@ -1,7 +1,5 @@
 """Splits of synthetic descriptions that hold out paraphrases, tasks, pairs of tasks or objects, and statistics."""
 
-from __future__ import annotations
-
 import io
 import re
 from collections import Counter

@@ -3,8 +3,6 @@
 All words are data (`synthesis_words.yaml`); every choice is drawn from the generator that is passed in.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass

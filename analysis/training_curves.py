@@ -1,7 +1,5 @@
 """The course of policies' trainings, as a picture: imitation, then practice, a line for each checkpoint."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Synthetic programs whose descriptions were written one by one, not drawn from the grammar."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterator
 from pathlib import Path

@@ -24,7 +24,7 @@ from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import number_of
-from hearth.schemas.tables import comment_of, struct
+from hearth.schemas.tables import comment_of, schema_of
 from hearth.storage.databases import limited, open_database, quoted, without_patterns
 from hearth.storage.files import read_json, value_digest, write_bytes
 from hearth.storage.manifest import NAME, describe
@@ -35,7 +35,7 @@ from hearth.storage.partitions import write_table
 STAGE = "challenge"
 
 TABLES: dict[str, pa.Schema] = {
-    name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
+    name: schema_of(row)
     for name, row in {
         "tasks": challenge_rows.TaskRow,
         "demonstrations": challenge_rows.DemonstrationRow,

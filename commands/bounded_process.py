@@ -3,8 +3,6 @@
 DuckDB's own limits end most questions. A few of its functions allocate past its limit, or are not interrupted.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

@@ -1,7 +1,5 @@
 """`challenge`: tasks in which agents help a partner, runs of agents on them, and their scores."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import typer

@@ -1,7 +1,5 @@
 """`challenge verify | solvable | board`: whether results are true, whether tasks can be done, which runs are best."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`challenge export`: episodes in the forms that libraries of learning read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hearth.commands import output

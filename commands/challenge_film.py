@@ -1,7 +1,5 @@
 """`challenge film`: an episode as a film."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hearth.commands import output

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,8 +56,6 @@ def print_solved(splits: list[str] | None, limit: int | None, workers: int, as_j
 
     Every task that is drawn was solved by an agent that sees everything.
     """
-    from collections import Counter
-
     from hearth.challenges.household_definition import NAME, settings
     from hearth.challenges.household_drawing import attempts
     from hearth.commands.progress_line import bar

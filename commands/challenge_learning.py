@@ -1,7 +1,5 @@
 """`challenge watch | learn | curves`: goals read from demonstrations, and training of the learned parts of helpers."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hearth.commands import output

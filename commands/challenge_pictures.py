@@ -1,7 +1,5 @@
 """`challenge stats | show`: the starts of tasks, and the actions of an episode, printed and drawn."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hearth.commands import challenge_online, output

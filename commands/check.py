@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.commands import grouped_faults, inputs, output
 from hearth.commands.grouped_faults import in_order
+from hearth.kb import action_grammar
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.pipelines.checks.text_checks import Checked, check_text, warnings_of
@@ -122,7 +123,6 @@ def check_file(
 def _check_programs(
     given: Iterable[inputs.Given | Reject], name: str, knowledge: Knowledge, *, affordances: bool, lint: bool
 ) -> Checked:
-    from hearth.kb import action_grammar
     from hearth.storage.rejects import Reject
 
     programs = steps = 0

@@ -11,7 +11,7 @@ import typer
 
 from hearth.commands import corpus_comparison, inputs, output
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.terminal import shown_line
 
 if TYPE_CHECKING:
@@ -296,7 +296,6 @@ def completeness(
       hearth corpus completeness data_out --programs 100 --sheet ratings.csv
     """
     from hearth.analysis import completeness_ratings
-    from hearth.schemas.failures import Failure
 
     known = inputs.read_knowledge(None)
     place = inputs.read_home(home, None, None, known)

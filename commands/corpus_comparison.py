@@ -1,7 +1,5 @@
 """`corpus realism`, `corpus agreement` and `corpus retrieval`: corpora and annotations compared with others."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

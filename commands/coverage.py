@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | None, limit: int | None, strict: bool,
          as_json: bool) -> None:  # fmt: skip
     """Run and print; with `strict` the status is 1 if a pair failed that is not proven impossible."""
-    from itertools import islice
-
     from hearth.analysis.coverage import measure_coverage, scripts
     from hearth.commands.progress_line import bar, watched
     from hearth.grounding.environments.sampling import Size

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from hearth.commands import inputs, output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code, Failure
 
 if TYPE_CHECKING:
     from hearth.pipelines.engine.build_homes import Homes as AllHomes
@@ -30,7 +33,6 @@ def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> Non
     from hearth.grounding.preconditions.precondition_inference import at_odds, infer
     from hearth.grounding.preconditions.release_rules import compare
     from hearth.schemas.failure_words import in_program
-    from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
 
     known = inputs.read_knowledge(kb)
@@ -72,8 +74,6 @@ def rules(source: Path, limit: int | None = None, as_json: bool = False) -> None
     Example:
       hearth environment rules release.zip
     """
-    from itertools import islice
-
     from hearth.analysis.coverage import scripts
     from hearth.analysis.precondition_agreement import agreement
 
@@ -232,9 +232,6 @@ def preconditions(
 
 
 def _svg(path: Path, text: str) -> None:
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
-
     if path.suffix != ".svg":
         raise HearthError.of(Code.UNSUPPORTED_FILE, "a drawing is written as .svg", file=str(path))
     path.write_text(text, encoding="utf-8")

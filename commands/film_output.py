@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -61,7 +62,6 @@ def _beside(
     found: FilmShown, film: Path, masks: Any, home: str, homes: Path | None, kb: Path | None, out: Path
 ) -> list[str]:
     """Write the film, its masks, the film of the program, and a page with all."""
-    import shutil
     from html import escape
 
     from hearth.commands.model_output import film_of

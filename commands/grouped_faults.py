@@ -1,7 +1,5 @@
 """Faults that repeat: equal ones are printed once, with their number and their other places."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Callable, Hashable, Iterable

@@ -12,6 +12,7 @@ import typer
 from hearth.commands import output
 from hearth.commands.grouped_faults import alike, report
 from hearth.commands.inputs import read_knowledge
+from hearth.kb.loading.load import default
 
 if TYPE_CHECKING:
     from hearth.homes.from_graph.graph_layout import GraphLayout
@@ -299,7 +300,6 @@ def ways(names: list[str] | None = None, homes: Path | None = None, workers: int
     """
     from hearth.commands.progress_line import bar
     from hearth.homes import library
-    from hearth.kb.loading.load import default
     from hearth.simulation.motion.distance_field_jobs import Wanted, make
     from hearth.simulation.motion.stored_distance_fields import folder
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from hearth.kb.knowledge import Knowledge
-    from hearth.schemas.diagnostics import Diagnostic
     from hearth.schemas.goals import Goal
     from hearth.schemas.program import Program
     from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow
@@ -93,7 +95,6 @@ def _of_home(program: Program, home: Home, file: str) -> Program:
     """
     from hearth.commands import output
     from hearth.grounding.node_ids import read_ids
-    from hearth.schemas.diagnostics import HearthError
 
     found = read_ids(program, home, file)
     if found.faults:
@@ -112,8 +113,6 @@ def _of_home(program: Program, home: Home, file: str) -> Program:
 
 def _some(names: Iterable[str], count: int) -> str:
     """Return the first names of a list, and how many more there are."""
-    from itertools import islice
-
     rest = count - MOST_NAMED
     return ", ".join(islice(names, MOST_NAMED)) + (f" and {rest} more" if rest > 0 else "")
 
@@ -146,8 +145,6 @@ def read_given(
         HearthError: every fault of a program without a step that can be used, or of an input without a program.
     """
     from hearth.commands import output
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
 
     given = choose_given(file, known, number, columns, fuzzy)
     fuzzy_steps = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
@@ -170,8 +167,6 @@ def choose_given(file: Path, known: Knowledge, number: int = 1, columns: str = "
     """
     from hearth.commands import output
     from hearth.kb.language.recognition_knowledge import recognizing
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
     from hearth.storage.input_files import placed
     from hearth.storage.rejects import Reject
 
@@ -238,8 +233,6 @@ def name_of(file: Path) -> str:
 
 
 def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
-    from dataclasses import replace
-
     from hearth.kb import action_grammar
     from hearth.kb.language.numbered_steps import parse_steps
     from hearth.pipelines.readers import plans
@@ -264,8 +257,6 @@ def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
 
 
 def _titled(program: Program, row: IngestedRow) -> Program:
-    from dataclasses import replace
-
     title, description = row["title"] or program.title, row["description"] or program.description
     return replace(program, title=title, description=description)
 
@@ -338,8 +329,6 @@ def read_goals(goals: Sequence[str], home: Home) -> Goal:
 
 
 def _goal_text(file: str) -> Any:
-    from pathlib import Path
-
     from hearth.schemas.text_decoding import decode
     from hearth.storage.input_files import read_input
 
@@ -349,7 +338,6 @@ def _goal_text(file: str) -> Any:
 def _goal(text: Any, file: str) -> Any:
     """Return text as it is; a text that begins with a brace as JSON."""
     from hearth.pipelines.readers.json_documents import parsed
-    from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.storage.rejects import Reject
 
     found = parsed(text, file, 1) if isinstance(text, str) and text.lstrip().startswith("{") else text

@@ -1,12 +1,12 @@
 """`model`: trains models that write programs, and lets them predict."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import typer
 
 from hearth.commands import model_tables, output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -241,8 +241,6 @@ def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool =
     """
     from hearth.datasets.dataset import Dataset
     from hearth.models.films import clip_confusion, film_figure
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
     from hearth.storage.files import write_bytes
 
     data = Dataset.open(dataset)

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
     from hearth.models.interface import Steps
@@ -67,8 +69,6 @@ def _seen(name: str, trained: Any, pictures: Path, beam: int) -> Steps:
     """Return the sketch of pictures from above."""
     from hearth.models.demonstrations.demo_model import TrainedDemoModel
     from hearth.models.demonstrations.demonstration_data import read_pictures
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
 
     if not isinstance(trained, TrainedDemoModel):
         message = f"`{name}` does not read pictures from above"
@@ -78,9 +78,6 @@ def _seen(name: str, trained: Any, pictures: Path, beam: int) -> Steps:
 
 
 def _check(name: str, kind: str, text: str, sketch: Path | None) -> None:
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
-
     if kind == "sketch" and sketch is None:
         message = f"`{name}` writes programs for sketches"
         suggestion = "give one with --sketch FILE, or name a model of texts and this one with --writer"
@@ -92,8 +89,6 @@ def _check(name: str, kind: str, text: str, sketch: Path | None) -> None:
 
 def _writer(name: str) -> Any:
     from hearth.models.model_registry import MODELS, restore
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
 
     if not name:
         return None

@@ -1,7 +1,5 @@
 """Help that is plain: names of arguments as people write them, and the first sentence of each command, whole."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

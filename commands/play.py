@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -174,8 +175,6 @@ def _channel(seat: _Seat, how: _How, stack: ExitStack) -> Channel:
 
 
 def _asked_at_terminal(as_json: bool) -> Callable[[str], str]:
-    import sys
-
     def ask(prompt: str) -> str:
         stream = sys.stderr if as_json else sys.stdout
         output.line(f"{prompt}> ", end="", file=stream, flush=True)

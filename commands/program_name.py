@@ -1,7 +1,5 @@
 """The name under which the command line was called: help and hints show the same name to the reader."""
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+import typer
+
 from hearth.commands import inputs, output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Failure
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -90,8 +95,6 @@ def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) 
 
 def _check(mode: str, width: int, given: Mapping[str, bool]) -> None:
     """Refuse options without effect; `given` has for some options whether they differ from their defaults."""
-    import typer
-
     for name in ("--cameras", "--fps", "--vary"):
         if mode != "video" and given[name]:
             raise typer.BadParameter("only videos have it: add `--mode video`", param_hint=name)
@@ -302,8 +305,6 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
     """Yield executable programs drawn by the seed, each in the next of our homes, with its objects' visibility."""
-    from itertools import islice
-
     from hearth.analysis.program_home_pairs import pairs
     from hearth.rendering.cameras.visibility import tick_visibilities
     from hearth.rendering.film.snapshots import trajectory_of
@@ -315,9 +316,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
 
 def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
     from hearth.grounding.grounded_run import attempt
-    from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failure_words import in_program
-    from hearth.schemas.failures import Failure
     from hearth.simulation.world.home import Home
 
     trial = attempt(program, Home.from_graph(graph, home, known), seed)

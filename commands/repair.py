@@ -13,6 +13,8 @@ import typer
 from hearth.commands import output
 from hearth.commands.failure_output import failure_document
 from hearth.commands.inputs import read_given, read_knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code, Failure
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -48,7 +50,6 @@ def repair(
       hearth repair watch_tv.txt --home maple --seed 3 --perturb free --perturb on
     """
     from hearth.repair.augmentation import Options, augment
-    from hearth.schemas.failures import Failure
 
     known = read_knowledge(kb, home, graph, homes)
     given = read_given(file, known, which, strict, columns)
@@ -83,8 +84,6 @@ def _strength(name: str, kinds: list[str] | None) -> Strength:
     """
     from hearth.repair.perturbation import PERTURBATIONS, Chances
     from hearth.repair.perturbation_strengths import strength
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
 
     unknown = [kind for kind in kinds or () if kind not in PERTURBATIONS]
     if unknown:

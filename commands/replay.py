@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import is_zipfile
@@ -42,7 +43,6 @@ def replay(
         message, remedy = "neither a release nor episodes", "give a release as a zip or a folder, or episodes as .jsonl"
         raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(release), suggestion=remedy)
     import gc
-    from itertools import islice
 
     from hearth.analysis.release_replay import replay as run_all
     from hearth.commands.progress_line import bar, watched
@@ -67,8 +67,6 @@ def replay(
 
 
 def _episodes(path: Path, limit: int | None, as_json: bool) -> None:
-    from itertools import islice
-
     from hearth.kb.loading.load import default
     from hearth.simulation.episode_files import read
 

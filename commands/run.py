@@ -5,10 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import typer
+
 from hearth.commands import output
 from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
 from hearth.commands.run_output import Outcome, document, show
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code, Failure
 
 if TYPE_CHECKING:
     from hearth.schemas.program import Program
@@ -75,8 +79,6 @@ def run(
 
 def _check(sample: bool, as_is: bool, skip_faults: bool, strict: bool) -> None:
     """Refuse options that contradict each other."""
-    import typer
-
     if sample and as_is:
         raise typer.BadParameter("`--as-is` adds nothing: leave one of the two out", param_hint="--sample")
     if skip_faults and strict:
@@ -89,9 +91,6 @@ def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
     Raises:
         HearthError: every fault, unless they are skipped and there are other steps; every corrected step if `strict`.
     """
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
-
     fuzzy = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
     if strict and fuzzy:
         raise HearthError([*given.faults, *fuzzy])
@@ -111,7 +110,6 @@ def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rule
     from hearth.grounding.grounded_run import LEAST, as_given, attempt
     from hearth.repair.remedies import stop_reason
     from hearth.schemas.failure_words import in_program
-    from hearth.schemas.failures import Failure
 
     trial = as_given(program, place, seed, rules)
     if trial.execution.failure is None or not sample:

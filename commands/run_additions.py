@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hearth.schemas.graph import Edge
 from hearth.schemas.literals import HANDS
-from hearth.schemas.vocabulary import ROOM_CATEGORY
+from hearth.schemas.vocabulary import OPPOSITE, ROOM_CATEGORY
 
 if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph, Node
@@ -71,7 +71,6 @@ class Additions(NamedTuple):
 def additions(before: EnvironmentGraph, after: EnvironmentGraph) -> Additions:
     """Return the additions of `after` to `before`, and the other changes."""
     from hearth.schemas.graph_change import encode
-    from hearth.schemas.vocabulary import OPPOSITE
 
     change = encode(before, after)
     nodes = {node.id: node for node in (*before.nodes, *after.nodes)}

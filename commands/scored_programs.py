@@ -1,13 +1,11 @@
 """Inputs of `score program`: rows of predictions, or programs in any form that `check` reads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from hearth.commands import inputs
+from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.schemas.diagnostics import HearthError
@@ -20,9 +18,6 @@ from hearth.scoring.predictions import Pair, read_pairs
 from hearth.scoring.refused_rows import FirstFaults
 from hearth.storage.input_files import placed
 from hearth.storage.rejects import Reject
-
-if TYPE_CHECKING:
-    from hearth.kb.knowledge import Knowledge
 
 ALL = "all"
 """The value of `--homes` that names all homes of ours."""

@@ -1,7 +1,5 @@
 """`serve`: the server where people annotate, play and judge."""
 
-from __future__ import annotations
-
 import sys
 from ipaddress import ip_address
 from pathlib import Path

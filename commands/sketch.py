@@ -9,6 +9,8 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
     from hearth.analysis.coverage import Script
@@ -46,7 +48,6 @@ def sketch(
       hearth sketch watch_tv.txt --model people.json
     """
     from hearth.analysis.coverage import scripts
-    from hearth.schemas.diagnostics import HearthError
     from hearth.storage.rejects import Reject
 
     known = read_knowledge(kb)
@@ -108,8 +109,6 @@ def _judge(
 ) -> None:  # fmt: skip
     from hearth.analysis.sketch_evaluation import annotated, evaluate_sketches
     from hearth.repair.sketch_model import model_of
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
 
     learned = model_of(model) if model else None
     found = evaluate_sketches(annotated(file, file.name, programs, known), places, known, seed, learned)

@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
     from hearth.analysis.coverage import Script
@@ -24,8 +26,6 @@ def fitted(
     from hearth.analysis import sketch_learning as learning
     from hearth.analysis.sketch_evaluation import annotated
     from hearth.repair.sketch_model import model_of
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
 
     below = None if base == ALONE else model_of(base or "ours")
     found = learning.examples(annotated(file, file.name, programs, known), places, known, seed)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from hearth.commands import output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
     from hearth.studies.study import Study
@@ -47,8 +51,6 @@ def check(study: str, *, as_json: bool = False) -> None:
       hearth study check people-with-helpers
       hearth study check mine.yaml
     """
-    from collections import Counter
-
     from hearth.studies.assignment import assignment
     from hearth.studies.study_file import groups_of, named
 
@@ -124,8 +126,6 @@ def simulate(
 
 
 def _simulated(study: str, out: Path, seed: int, drop_outs: int, workers: int) -> Collected:
-    from contextlib import ExitStack
-
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
     from hearth.storage.parallel import Seen
@@ -250,8 +250,6 @@ def figure(
       hearth study figure 7-6b --out build/studies
       hearth study figure 4-9 --out build/studies
     """
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
     from hearth.studies.study_figures import STUDIES, draw
     from hearth.studies.study_findings import findings
     from hearth.studies.study_folder import beside

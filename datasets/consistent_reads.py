@@ -1,7 +1,5 @@
 """Reading a dataset that a build may replace at any moment: every answer is from one version of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar

@@ -1,7 +1,5 @@
 """Files of a table by the ids that they have: a query over all files of a big dataset would open each of them."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple

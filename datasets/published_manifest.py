@@ -1,7 +1,5 @@
 """The manifest of a published dataset, which may be a stranger's."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

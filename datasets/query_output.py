@@ -1,7 +1,5 @@
 """Answers to questions as files: CSV, tab-separated, JSON and Parquet, a batch of rows in memory at a time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from datetime import date, datetime, time
 from decimal import Decimal
@@ -10,7 +8,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Any
 
+import numpy as np
 import orjson
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pyarrow.types as kinds
 
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
@@ -84,8 +86,6 @@ def write_separated(
 
 def _each(column: Any, form: Callable[[Any], Any]) -> Any:
     """Return the values of a column in a form; what every form leaves as it is, is not looked at one by one."""
-    import pyarrow.types as kinds
-
     kind = column.type
     try:
         values = column.to_pylist()
@@ -97,9 +97,6 @@ def _each(column: Any, form: Callable[[Any], Any]) -> Any:
 
 def _days(column: Any) -> list[str | None]:
     """Return days as text, those after the year 9999 too."""
-    import numpy as np
-    import pyarrow as pa
-
     return [None if day is None else str(np.datetime64(day, "D")) for day in column.cast(pa.int32()).to_pylist()]
 
 
@@ -147,8 +144,6 @@ def _json(dataset: Dataset, query: str, path: Path) -> int:
 
 
 def _parquet(dataset: Dataset, query: str, path: Path) -> int:
-    import pyarrow.parquet as pq
-
     reader = without_zones(dataset.sql(query)).to_arrow_reader(_BATCH)
     number = 0
     with pq.ParquetWriter(path, reader.schema) as file:

@@ -7,6 +7,9 @@ from itertools import islice
 from math import ceil
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from hearth.datasets.damage_faults import reading
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_homes import own_homes
@@ -20,6 +23,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.short_repr import brief
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES
 from hearth.simulation.world.home import Home
+from hearth.storage.files import file_digest
 from hearth.storage.manifest import NAME
 from hearth.storage.names import leaves
 from hearth.storage.parallel import Seen, spread, unseen
@@ -99,8 +103,6 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
 
 
 def _files(dataset: Dataset) -> Iterator[Diagnostic]:
-    from hearth.storage.files import file_digest
-
     files = dataset.manifest["files"]
     for name, entry in files.items():
         path = dataset.folder / name
@@ -143,9 +145,6 @@ def _overlays(dataset: Dataset) -> Iterator[Diagnostic]:
 
 
 def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
     for table, schema in TABLES.items():
         then = earlier(dataset.manifest["format"]).get(table, {})
         paths = sorted((dataset.folder / table).glob("*.parquet"))
@@ -302,8 +301,6 @@ class Shares(Collection[tuple[str, list[str]]]):
         return any(share == each for each in self)
 
     def _names(self) -> Iterator[str]:
-        import pyarrow.parquet as pq
-
         for path in sorted((self._folder / "executions").glob("*.parquet")):
             with reading(self._folder), pq.ParquetFile(path) as file:
                 yield from file.read(["execution_id"])["execution_id"].to_pylist()

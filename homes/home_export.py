@@ -4,6 +4,8 @@ import io
 from dataclasses import replace
 from pathlib import Path
 
+import orjson
+
 from hearth.homes import floor_plan_drawing
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan_writer import plan_text
@@ -37,8 +39,6 @@ def write_release(graph: EnvironmentGraph, path: Path) -> int:
     Raises:
         HearthError: UNSUPPORTED_FILE: the file's ending is not `.json`.
     """
-    import orjson
-
     if path.suffix != ".json":
         raise HearthError.of(Code.UNSUPPORTED_FILE, "a scene graph is written as .json", file=str(path))
     path.write_bytes(orjson.dumps(to_release(graph), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))

@@ -3,8 +3,6 @@
 Furniture has no names but what is asked for, and names are moved apart.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

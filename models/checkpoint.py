@@ -6,11 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
+
+import orjson
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
+from hearth.schemas.yaml_limits import packaged
 from hearth.storage.files import drop_temporary, file_digest, value_digest, write_bytes, write_json
 from hearth.storage.input_files import read_input
 from hearth.version import ACTION_SET, VERSION
@@ -144,8 +147,6 @@ def _phase_fits(phase: Mapping[str, Any]) -> bool:
 
 
 def _document(path: Path) -> Any:
-    import orjson
-
     try:
         return orjson.loads(read_input(path))
     except orjson.JSONDecodeError:
@@ -205,77 +206,23 @@ def _libraries() -> dict[str, str]:
 def _card(checkpoint: Checkpoint) -> str:
     """Return the model card: YAML for machines, then the model, its training data and the uses it is unfit for."""
     trained = checkpoint.trained
-    about = _ABOUT.get(checkpoint.model.partition("-")[0], _ABOUT[""])
+    known = packaged("hearth.models", "model_cards.yaml")
+    about = known.get(checkpoint.model.partition("-")[0], known[""])
     lists = ("curves", "losses", "imitation")
     facts = [f"- {name}: {trained[name]}" for name in sorted(trained) if name not in lists]
     lines = [
         "---",
         f"license: {LICENCE.lower()}",
         "library_name: hearth",
-        f"tags: [household, {about.tag}]",
+        f"tags: [household, {about['tag']}]",
         "---",
         f"# {checkpoint.model}",
         "",
-        about.what,
+        about["what"],
         "",
         *facts,
         "",
-        *about.limits,
+        *about["limits"],
         "",
     ]
     return "\n".join(lines)
-
-
-class _About(NamedTuple):
-    """The text of a card for one kind of model: a tag, a line, and its limits."""
-
-    tag: str
-    what: str
-    limits: tuple[str, ...]
-
-
-_NOT_REAL = "It is for research on people and helpers in simulated homes, and not for acting in real homes."
-
-_OF_FILMS = "It is for research on films of simulated homes, and knows nothing of pictures of real ones."
-
-_ABOUT = {
-    "": _About(
-        "program-synthesis",
-        "A model of Hearth that writes programs for household activities.",
-        (
-            "It is for research on programs in simulated homes. It knows English descriptions of activities like those",
-            "of its dataset; for others it writes wrong programs. It is not for acting in real homes.",
-        ),
-    ),
-    "goal": _About(
-        "goal-inference",
-        "A model of Hearth that infers what somebody wants from where things were seen (thesis 6.4, B.3.1).",
-        (_NOT_REAL, "It knows the predicates of one challenge; other goals it reads as the nearest of those."),
-    ),
-    "clips": _About(
-        "video-classification",
-        "A model of Hearth that names what is done in films of our renderer, by their class masks (thesis 4.3.3).",
-        (_OF_FILMS,),
-    ),
-    "films": _About(
-        "video-to-program",
-        "A model of Hearth that writes the program of a film of our renderer, by its class masks (thesis 4.3.3).",
-        (_OF_FILMS, "It has the classifier of clips whose answers it reads."),
-    ),
-    "demo2sketch": _About(
-        "video-classification",
-        "A model of Hearth that writes the sketch of a demonstration in pictures from above (thesis 5.4.3).",
-        (_OF_FILMS,),
-    ),
-    "masks": _About(
-        "image-segmentation",
-        "A model of Hearth that predicts the class masks of pictures of our renderer (thesis 4.3.3).",
-        (_OF_FILMS,),
-    ),
-    "helping": _About(
-        "reinforcement-learning",
-        "A policy of Hearth that helps somebody reach a goal in a home (thesis 6.5.2, B.3).",
-        (_NOT_REAL, "It knows the things and furniture of one challenge's goals, and helps with no others."),
-    ),
-}
-"""Texts of cards, by the first word of a model's name."""

@@ -1,7 +1,5 @@
 """A network with the weights of a checkpoint, which may be a stranger's: nothing is allocated that does not fit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 

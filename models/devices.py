@@ -1,7 +1,5 @@
 """The devices that compute networks: a GPU if there is one."""
 
-from __future__ import annotations
-
 from typing import Any, TypeVar
 
 from hearth.schemas.optional_libraries import library

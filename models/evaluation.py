@@ -1,8 +1,8 @@
 """Scores of predictions with intervals by activity: activities are drawn with replacement, not programs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
+
+import numpy as np
 
 from hearth.schemas.rng import derive
 from hearth.scoring.bootstrap import DIGITS, LEVEL, RESAMPLES, Interval
@@ -31,8 +31,6 @@ def by_group(
         seed: of the drawing.
         resamples: number of resamples.
     """
-    import numpy as np
-
     columns = {name: values for name, values in columns.items() if any(value is not None for value in values)}
     if not columns:
         return {}

@@ -1,11 +1,9 @@
 """Executions of a dataset as places to try programs in: whether a program runs there, as scores tell it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
@@ -16,9 +14,6 @@ from hearth.schemas.program import Program
 from hearth.scoring.metrics.executability import executability
 from hearth.simulation.rules import RULES, Rules
 from hearth.simulation.world.world import World
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """Training a model of the registry on a dataset, into a checkpoint."""
 
-from __future__ import annotations
-
+import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
@@ -49,8 +48,6 @@ def fit(
     Raises:
         HearthError: an unknown model, setting or split; not a dataset; the extra is not installed.
     """
-    import shutil
-
     model = settings_of(name, **_changed(name, changed))
     dataset, training = Dataset.open(folder), Training(**how, folder=out / STATE)
     of_films, of_sketches = MODELS[name].input == "film", MODELS[name].output == "sketch"

@@ -1,18 +1,14 @@
 """Rows of tables: methods with their programs for some executions, scored, with intervals by activity."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.evaluation import by_group
 from hearth.models.interface import Steps
 from hearth.scoring.bootstrap import Interval
 from hearth.scoring.dataset_scores import score_steps
 from hearth.scoring.evaluate import METRICS
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 
 class Row(NamedTuple):

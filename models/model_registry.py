@@ -1,6 +1,4 @@
-"""The models by name. To add one: a file with its settings, a row here, a test."""
-
-from __future__ import annotations
+"""The models by name. To add one: a file with its settings, a row of `model_registry.yaml`, a test."""
 
 from collections.abc import Mapping
 from importlib import import_module
@@ -11,6 +9,8 @@ from hearth.models.checkpoint import MISFITS, load, misfit
 from hearth.models.protocols import Model, Trained
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.optional_libraries import library
+from hearth.schemas.yaml_limits import packaged
 
 TRAINED = Path(__file__).parent / "trained"
 """Checkpoints that come with Hearth, a folder each, named as in `model list`."""
@@ -34,188 +34,7 @@ class Entry(NamedTuple):
 
 
 MODELS: dict[str, Entry] = {
-    "random-retrieval": Entry(
-        "text.retrieval:RandomRetrieval", "text", "The program of a random training example.", "thesis 4.5.2"
-    ),
-    "nearest": Entry(
-        "text.retrieval:Nearest", "text", "The program with the most similar description, by TF-IDF.", "thesis 4.5.2"
-    ),
-    "nearest-svd": Entry(
-        "text.retrieval:Nearest",
-        "text",
-        "The same in the space of 100 singular vectors.",
-        "thesis 4.5.2",
-        {"singular": 100},
-    ),
-    "planner": Entry(
-        "planner:Planner",
-        "sketch",
-        "Binds the sketch to the nearest nodes; the repairs make it run. It needs no training.",
-        "ours",
-        learns=False,
-    ),
-    **{
-        name: Entry("sketches.graph_model:GraphModel", "sketch", line, "thesis 5.4.2, 5.6.2", settings)
-        for name, line, settings in (
-            ("unaries", "Nodes without their relations.", {"change": "none", "rounds": 0}),
-            ("graph", "A graph network; what is done changes nothing in it.", {"change": "none"}),
-            ("fcactgraph", "A layer changes the nodes that a step is about.", {"change": "layer"}),
-            ("gruactgraph", "A recurrent cell changes the nodes that a step is about.", {"change": "recurrent"}),
-            ("resactgraph", "Residuals change the nodes that a step is about.", {"change": "residual"}),
-        )
-    },
-    "chooser": Entry(
-        "sketches.plan_chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
-    ),
-    "chooser-text": Entry(
-        "sketches.plan_chooser:Chooser",
-        "sketch",
-        "The same; it reads the description as well as the sketch.",
-        "ours",
-        {"text": True},
-    ),
-    "masks": Entry("films.mask_model:MaskModel", "film", "Predicts the class masks of pictures.", "thesis 4.3.3"),
-    "clips-rgb": Entry(
-        "films.clip_model:ClipModel",
-        "film",
-        "Names the instruction of a two-second clip by its colours.",
-        "thesis 4.3.3",
-    ),
-    "clips-seen": Entry(
-        "films.mask_clip_model:SeenModel",
-        "film",
-        "Names it by the behavior of each mask class near the person; it points at the objects.",
-        "ours",
-    ),
-    "clips-context": Entry(
-        "films.mask_clip_model:SeenModel",
-        "film",
-        "The same; it looks at seven seconds before and after each clip, too.",
-        "ours",
-        {"context": True},
-    ),
-    "clips-predicted": Entry(
-        "films.mask_clip_model:SeenModel",
-        "film",
-        "The same; it learns from masks as a network predicts them (--set masks=FOLDER), too.",
-        "ours",
-        {"context": True, "masks": "masks"},
-    ),
-    "films-mle": Entry(
-        "films.film_writer:FilmWriter",
-        "film",
-        "LSTM with attention over what a classifier of clips (--set start=FOLDER) says.",
-        "thesis 4.3.3",
-    ),
-    "films-pg-lcs": Entry(
-        "films.film_self_critical:FilmCritical",
-        "film",
-        "A trained `films-mle` (--set start=FOLDER) trained on by LCS.",
-        "thesis 4.3.1",
-    ),
-    "films-pg-lcs-sim": Entry(
-        "films.film_self_critical:FilmCritical",
-        "film",
-        "A trained `films-pg-lcs` trained on by LCS and a tenth for programs that run.",
-        "thesis 4.3.1",
-        {"reward": "lcs+sim"},
-    ),
-    "demo2sketch": Entry(
-        "demonstrations.demo_model:DemoModel",
-        "film",
-        "Writes the sketch of pictures from above, by colors, masks and the area around the person.",
-        "thesis 5.4.3, A.1",
-        output="sketch",
-    ),
-    "goal-inference": Entry(
-        "watching.goal_inference:GoalInference",
-        "film",
-        "What somebody wants, from where things were seen.",
-        "thesis B.3.1",
-        by="challenge learn wah",
-    ),
-    "helping-subgoals": Entry(
-        "helping.policies:HelpingPolicy",
-        "episode",
-        "Hybrid's choice of subgoals.",
-        "thesis B.3.5",
-        by="challenge learn wah --what subgoals",
-    ),
-    "helping-actions": Entry(
-        "helping.policies:HelpingPolicy",
-        "episode",
-        "HRL's choice of actions for a subgoal.",
-        "thesis B.3.4",
-        {"chooses": "actions"},
-        by="challenge learn wah --what actions",
-    ),
-    "mle": Entry(
-        "text.text_models:TextModel",
-        "text",
-        "LSTM with attention over a closed list of steps.",
-        "thesis 4.3.1",
-        {"steps": "closed", "copy": False},
-    ),
-    "mle-composed": Entry(
-        "text.text_models:TextModel",
-        "text",
-        "The same; steps composed of action and objects, which may be copied.",
-        "ours",
-    ),
-    "pg-lcs": Entry(
-        "text.self_critical:SelfCritical",
-        "text",
-        "A trained `mle-composed` (--set start=FOLDER) trained on by LCS.",
-        "thesis 4.3.1",
-    ),
-    "pg-lcs-sim": Entry(
-        "text.self_critical:SelfCritical",
-        "text",
-        "The same by LCS and a tenth for programs that run.",
-        "thesis 4.3.1",
-        {"reward": "lcs+sim"},
-    ),
-    "transformer": Entry(
-        "text.text_models:TextModel",
-        "text",
-        "A small transformer with composed steps and copying.",
-        "ours",
-        {"body": "transformer", "layers": 2, "hidden": 128},
-    ),
-    "retrieve-edit": Entry(
-        "text.retrieve_edit:RetrieveEdit",
-        "text",
-        "The consensus of similar texts' programs, with the asked objects.",
-        "ours",
-    ),
-    "consensus": Entry(
-        "text.consensus_model:Consensus",
-        "text",
-        "The program most like those that `mle-composed` draws and `retrieve-edit` finds.",
-        "ours",
-    ),
-    "desc2sketch": Entry(
-        "text.text_models:TextModel",
-        "text",
-        "`mle-composed` that writes the sketch of a description.",
-        "thesis 5.4.1, A.1",
-        {"dropout": 0.5},
-        output="sketch",
-    ),
-    "retrieve-sketch": Entry(
-        "text.retrieve_edit:RetrieveEdit",
-        "text",
-        "`retrieve-edit` over the sketches of similar descriptions.",
-        "ours",
-        output="sketch",
-    ),
-    "consensus-sketch": Entry(
-        "text.consensus_model:Consensus",
-        "text",
-        "The sketch most like those that `desc2sketch` draws and `retrieve-sketch` finds.",
-        "ours",
-        output="sketch",
-    ),
+    name: Entry(**fields) for name, fields in packaged("hearth.models", "model_registry.yaml").items()
 }
 
 
@@ -248,8 +67,6 @@ def _class(entry: Entry) -> Any:
     try:
         return getattr(import_module(f"hearth.models.{module}"), name)
     except ModuleNotFoundError as error:
-        from hearth.schemas.optional_libraries import library
-
         library(str(error.name))
         raise
 

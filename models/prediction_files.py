@@ -1,7 +1,5 @@
 """Prediction files: a program for each execution of a part of a dataset, in the form that `score dataset` reads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import islice

@@ -1,7 +1,5 @@
 """The way from words or a sketch to a program that runs in a home: words, sketch, program, execution."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest

@@ -1,7 +1,5 @@
 """The models that belong in a table, by their inputs and outputs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
+from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
 from hearth.datasets.format.codecs import program_of
 from hearth.datasets.format.sketch_choice import ANNOTATED, sketches_query
@@ -18,9 +19,6 @@ from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
 from hearth.simulation import rules
 from hearth.storage.files import value_digest
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 SHARE = 10
 """One of how many activities of `train` are for validation where the split has no part of that name."""

@@ -5,8 +5,6 @@ epoch are derived from the seed and its number. On the processor, a run that was
 uninterrupted run.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import time

@@ -1,18 +1,14 @@
 """The check that a model is not asked about its training programs: another split of the dataset may contain them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.model_registry import recorded
 from hearth.models.text_examples import facts_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 _LEARNED = "SELECT DISTINCT program_id FROM splits WHERE split = $split AND starts_with(part, 'train')"
 

@@ -10,6 +10,7 @@ from collections.abc import Hashable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from hearth.datasets.format.case_rows import rerun
@@ -318,8 +319,6 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
     """Yield the cases of a partition; the others, nearly all, are never converted to rows."""
-    import pyarrow.compute as pc
-
     left = {execution: job.plan["executions"][execution] for execution in partition.payload}
     for name in sorted(set(left.values())):
         wanted = pa.array([execution for execution, file in left.items() if file == name])

@@ -1,7 +1,5 @@
 """Completing predicted steps so that they run: bound to the nearest nodes, repaired, the others left out."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from hearth.grounding.binding import nearest

@@ -19,7 +19,7 @@ MATTERS: dict[Code, str] = {
     **dict.fromkeys((Code.OCCUPIED, Code.NO_ROOM), "seat"),
     Code.NOT_FACING: "view",
 }
-"""Return the subject of a failure, in the words of `Perturbation.claims`."""
+"""The subject of a failure, in the words of `Perturbation.claims`."""
 
 
 def cause(perturbations: Sequence[Perturbation], attempt: Attempt, program: Program) -> int | None:

@@ -1,7 +1,5 @@
 """The known repair of a failing step in words: `open the fridge first`."""
 
-from __future__ import annotations
-
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.step_phrases import say
 from hearth.repair.handlers.common import Edit, RepairContext, tick_start

@@ -5,6 +5,7 @@ for it; no walk leads to where the character has just walked; nothing is opened 
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from hearth.grounding.preconditions.postconditions import Postconditions, nodes_of, reached
 from hearth.kb.knowledge import Knowledge
@@ -33,8 +34,6 @@ def resume(execution: Execution, program: Program, first: int, rules: Rules) -> 
     rest = run(execution.worlds[first], Program(steps=program.steps[first:]), rules)
     failure = rest.failure
     if failure is not None:
-        from dataclasses import replace
-
         failure = replace(failure, tick=failure.tick + first)
     return Execution(program, (*execution.worlds[:first], *rest.worlds), failure, rules)
 

@@ -14,6 +14,8 @@ from math import exp, log
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import orjson
+
 from hearth.kb.knowledge import Knowledge
 from hearth.repair.sketch import Keep
 from hearth.repair.sketch_features import NUMBERS, RATED, StepFeatures, features
@@ -198,8 +200,6 @@ def load_model(path: Path) -> SketchModel:
     Raises:
         HearthError: BAD_JSON, it is not a model of sketches; those of `read_input`.
     """
-    import orjson
-
     stored = read_input(path, LARGEST_TABLE)
     try:
         data = orjson.loads(stored)

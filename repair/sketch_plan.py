@@ -1,7 +1,5 @@
 """Planning without learning: a sketch's steps bound to nodes, and the steps between them from the repairs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

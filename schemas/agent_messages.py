@@ -1,7 +1,5 @@
 """Messages that agents and people send in a tick instead of acting."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Wrong arguments of the public functions, as errors of ours; looked for only once a call has failed."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -206,7 +206,6 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
 WHY: Mapping[Code, Words] = {
     # Reading
     Code.EMPTY: "there is nothing in it",
-    Code.NO_STEP: "the line explains a step and is not a step itself",
     Code.NOT_TEXT: "it is not text",
     Code.LINE_TOO_LONG: "a line is too long",
     Code.BAD_ARCHIVE: "the archive cannot be opened",
@@ -299,7 +298,6 @@ WHY: Mapping[Code, Words] = {
     Code.NOT_SEEN: "the character does not see the {0}",
     Code.NOT_ALLOWED: "[{action}] is not allowed here",
     Code.DISCONNECTED: "the agent is gone",
-    Code.FINISHED: "the player has finished the task",
     Code.AGENT_FAILED: _facts("the agent failed"),
     # People and their browsers
     Code.NO_SESSION: "there is no session",

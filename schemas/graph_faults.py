@@ -1,7 +1,5 @@
 """Faults of the JSON of a scene graph, in words: the first node or edge that lacks a key, and its own keys."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 

@@ -1,7 +1,5 @@
 """Libraries that only parts of Hearth need: each is of an extra of the package, and imported where it is used."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Short reprs: what a notebook prints of a value is one line, whatever it holds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sized
 from dataclasses import fields, is_dataclass
 from typing import Any

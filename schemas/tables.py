@@ -36,7 +36,7 @@ def _type(hint: Any) -> pa.DataType:
     return struct(hint) if is_typeddict(hint) else _PLAIN[hint]
 
 
-def _schema(row: type, known: Iterable[pa.Field] = ()) -> pa.Schema:
+def schema_of(row: type, known: Iterable[pa.Field] = ()) -> pa.Schema:
     """Return the schema of a declared row; columns that have no comment have that of the known field of their name."""
     comments = {field.name: comment_of(field) for field in known}
     return pa.schema(_fields(row, comments), metadata={"comment": str(row.__doc__)})
@@ -69,40 +69,40 @@ def nested(column: pa.Field, path: str = "") -> Iterator[tuple[str, pa.Field]]:
         yield from nested(field, f"{path}.{field.name}")
 
 
-INGESTED: Final = _schema(stage_rows.IngestedRow)
-VALIDATED: Final = _schema(stage_rows.ValidatedRow)
-CASE: Final = _schema(stage_rows.CaseRow)
-SKETCHED: Final = _schema(stage_rows.SketchRow)
-RENDERED: Final = _schema(stage_rows.RenderedRow)
-FILMED: Final = _schema(stage_rows.FilmedRow)
-CLIPPED: Final = _schema(stage_rows.ClippedRow)
-DEMONSTRATED: Final = _schema(stage_rows.DemonstratedRow)
-REJECTED: Final = _schema(stage_rows.RejectedRow)
+INGESTED: Final = schema_of(stage_rows.IngestedRow)
+VALIDATED: Final = schema_of(stage_rows.ValidatedRow)
+CASE: Final = schema_of(stage_rows.CaseRow)
+SKETCHED: Final = schema_of(stage_rows.SketchRow)
+RENDERED: Final = schema_of(stage_rows.RenderedRow)
+FILMED: Final = schema_of(stage_rows.FilmedRow)
+CLIPPED: Final = schema_of(stage_rows.ClippedRow)
+DEMONSTRATED: Final = schema_of(stage_rows.DemonstratedRow)
+REJECTED: Final = schema_of(stage_rows.RejectedRow)
 
-_VERSIONS: Final = _schema(published_rows.VersionsRow)
+_VERSIONS: Final = schema_of(published_rows.VersionsRow)
 
 TABLES: Final[dict[str, pa.Schema]] = {
     table: pa.schema([*schema, *_VERSIONS], metadata=schema.metadata)
     for table, schema in {
-        "activities": _schema(published_rows.ActivityRow),
-        "descriptions": _schema(published_rows.DescriptionRow, INGESTED),
-        "programs": _schema(published_rows.ProgramRow, CASE),
-        "homes": _schema(published_rows.HomeRow),
-        "home_nodes": _schema(published_rows.HomeNodeRow),
-        "home_edges": _schema(published_rows.HomeEdgeRow),
-        "environments": _schema(published_rows.EnvironmentRow, CASE),
-        "executions": _schema(published_rows.ExecutionRow, CASE),
-        "perturbations": _schema(published_rows.PerturbedRow),
-        "repairs": _schema(published_rows.RepairedRow),
-        "splits": _schema(published_rows.SplitRow),
+        "activities": schema_of(published_rows.ActivityRow),
+        "descriptions": schema_of(published_rows.DescriptionRow, INGESTED),
+        "programs": schema_of(published_rows.ProgramRow, CASE),
+        "homes": schema_of(published_rows.HomeRow),
+        "home_nodes": schema_of(published_rows.HomeNodeRow),
+        "home_edges": schema_of(published_rows.HomeEdgeRow),
+        "environments": schema_of(published_rows.EnvironmentRow, CASE),
+        "executions": schema_of(published_rows.ExecutionRow, CASE),
+        "perturbations": schema_of(published_rows.PerturbedRow),
+        "repairs": schema_of(published_rows.RepairedRow),
+        "splits": schema_of(published_rows.SplitRow),
         "sketches": SKETCHED,
-        "frames": _schema(published_rows.FrameRow),
-        "videos": _schema(published_rows.VideoRow),
-        "clips": _schema(published_rows.ClipRow),
-        "demonstration_frames": _schema(published_rows.DemonstrationFrameRow),
-        "vocabulary": _schema(published_rows.NameRow),
-        "rejects": _schema(stage_rows.RejectRow),
-        "ledger": _schema(published_rows.LedgerRow),
+        "frames": schema_of(published_rows.FrameRow),
+        "videos": schema_of(published_rows.VideoRow),
+        "clips": schema_of(published_rows.ClipRow),
+        "demonstration_frames": schema_of(published_rows.DemonstrationFrameRow),
+        "vocabulary": schema_of(published_rows.NameRow),
+        "rejects": schema_of(stage_rows.RejectRow),
+        "ledger": schema_of(published_rows.LedgerRow),
     }.items()
 }
 """Published tables by name."""

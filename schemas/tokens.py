@@ -1,7 +1,5 @@
 """The tokens of a short text, read one by one by parsers of formulas and of goals."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from typing import ClassVar, TypeVar

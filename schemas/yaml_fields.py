@@ -1,7 +1,5 @@
 """Mappings of YAML that people wrote, read key by key; every fault is named with its line and its remedy."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from difflib import get_close_matches

@@ -60,7 +60,7 @@ def hazards(execution: Execution) -> tuple[Found, ...]:
     """
     first, *later = execution.worlds
     known = first.home.knowledge
-    given, since, over = dict(present(first)).keys(), dict[Place, int](), list[Found]()
+    given, since, over = set(dict(present(first))), dict[Place, int](), list[Found]()
     for number, world in enumerate(later, 1):
         now = dict(present(world))
         given = given & now.keys()
@@ -91,8 +91,10 @@ def present(world: World) -> Iterator[tuple[Place, bool]]:
     One that asks that nobody is there, or that everybody lies down, is none otherwise.
     """
     world = widened(world)
-    reading = Reading(world, world.agents[0], CONSEQUENCES) if world.agents else None
-    for hazard in world.home.knowledge.hazards.values() if reading else ():
+    if not world.agents:
+        return
+    reading = Reading(world, world.agents[0], CONSEQUENCES)
+    for hazard in world.home.knowledge.hazards.values():
         awake = hazard.asleep and not _everybody_lies(world)
         for case in _cases(hazard):
             for things in _matches(reading, case, _variables(hazard)):

@@ -4,8 +4,6 @@ DuckDB adds its folder of temporary files to the folders that a query may read, 
 current folder, which may be a link to anywhere. Here that folder is private to the process.
 """
 
-from __future__ import annotations
-
 import glob
 import os
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Rows of Parquet files of strangers, whose few bytes may stand for millions of rows, or for one text in all rows."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Ids that occur twice in a table, found in little memory."""
 
-from __future__ import annotations
-
 from array import array
 from collections import Counter
 from collections.abc import Iterator

@@ -6,8 +6,6 @@ equally often, but for one trial, and no task twice. Within a person, each run o
 row of a Latin square, so that conditions come first, second, ... equally often. Names are shuffled by the seed.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace

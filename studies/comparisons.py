@@ -7,8 +7,6 @@ scipy has all of it. statsmodels was weighed and left out: the thesis does not r
 pairs by task account for tasks that differ.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

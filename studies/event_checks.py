@@ -1,7 +1,5 @@
 """Events of a folder that a user gave: their form, and whether they are ways through its study."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,13 +1,13 @@
 """The events of a study, one after another: nothing else is kept, and all else follows from them."""
 
-from __future__ import annotations
-
 import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any, Protocol
+
+import orjson
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -170,8 +170,6 @@ def event_of(line: bytes, file: str, number: int) -> Event:
     Raises:
         HearthError: BAD_JSON: it is not one.
     """
-    import orjson
-
     try:
         given = orjson.loads(line)
         orjson.dumps(given)  # values from a file may be nested too deep to be written
@@ -186,8 +184,6 @@ def header_of(path: Path) -> dict[str, Any]:
     Raises:
         HearthError: MISSING_FILE; BAD_JSON.
     """
-    import orjson
-
     try:
         found = orjson.loads(read_input(path, LARGEST_TABLE).partition(b"\n")[0])
     except orjson.JSONDecodeError as error:
@@ -205,6 +201,4 @@ FORMAT = "hearth-study-events-1"
 
 
 def _line(data: Mapping[str, Any]) -> bytes:
-    import orjson
-
     return orjson.dumps(data) + b"\n"

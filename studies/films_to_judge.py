@@ -1,13 +1,13 @@
 """The films that people judge: of episodes by people and agents, or of programs written for descriptions."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
+
+import orjson
 
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Record
@@ -139,8 +139,6 @@ def read_films(path: Path) -> tuple[JudgedFilm, ...]:
     Raises:
         HearthError: MISSING_FILE: they were not prepared; BAD_JSON with the number of the film.
     """
-    import orjson
-
     try:
         return films_of(orjson.loads(read_input(path)), str(path))
     except orjson.JSONDecodeError as error:

@@ -1,7 +1,5 @@
 """Films to judge: small, accelerated, by the camera that sees the step best; or replays for a browser's 3D player."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Programs of four bands of LCS for people to judge (thesis 4.6, figure 4-9): a model's, or damaged ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from random import Random

@@ -4,8 +4,6 @@ Nothing of it is a finding about people. A person is the human-like agent with f
 person. Ratings come of a stated model: the result of a trial, the person's own bias, and chance; see `rated`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from random import Random

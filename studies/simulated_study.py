@@ -1,7 +1,5 @@
 """A study simulated with all that it needs: the other study that it is about, the agent's episodes, the films."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A study: its people's tasks, under its conditions, and its questions (thesis 6.6, B.4, C.5)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import blake2b

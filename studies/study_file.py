@@ -1,7 +1,5 @@
 """Reading a study's YAML: every fault is named with its line and its remedy."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from importlib.resources import files

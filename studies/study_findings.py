@@ -1,7 +1,5 @@
 """The results of a study: success, speedup, reward and ratings with standard errors, and the thesis's tests."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

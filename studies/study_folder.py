@@ -1,7 +1,5 @@
 """The folder of a study: its events, the episodes of the human-like agent, the films that are judged."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The preparation of a study with people: the agent's episodes in its tasks, and the films to judge."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A study under way: each person's stage, and the possible next events; for people and for agents in their places."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

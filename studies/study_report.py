@@ -1,13 +1,12 @@
 """The report of a study: one page that opens from disk, with its figure."""
 
-from __future__ import annotations
-
-from importlib.resources import files
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from hearth.schemas.optional_libraries import lacking
 from hearth.storage.files import write_bytes
+from hearth.storage.templates import rendered
 from hearth.studies.comparisons import Comparison
 from hearth.studies.study_figures import draw, names_of, own_figure
 from hearth.studies.study_findings import METRICS, PEOPLE, Figure, Findings, scales
@@ -28,12 +27,10 @@ def write_report(found: Findings, alone: Findings | None, folder: Path) -> list[
 
 def page(found: Findings, pictures: list[str]) -> str:
     """Return the page as HTML; every text is escaped."""
-    import jinja2
-
-    text = (files("hearth.studies") / "study_report.html").read_text("utf-8")
-    template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
     questions = [(each.name, each.text) for each in found.study.questions if each.kind == "scale"]
-    return template.render(
+    return rendered(
+        "hearth.studies",
+        "study_report.html",
         study=found.study,
         found=found,
         people=names_of(found)[PEOPLE],
@@ -122,8 +119,6 @@ def probability(p: float | None) -> str:
 
 def as_json(found: Findings) -> dict[str, Any]:
     """Return the findings for machines."""
-    from dataclasses import asdict
-
     figures = {
         f"{who}/{group}/{metric}": asdict(figure)
         for who, group, metric in found.values

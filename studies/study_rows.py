@@ -1,7 +1,5 @@
 """A row of every table that `study export` writes; each column has its meaning next to its type."""
 
-from __future__ import annotations
-
 from typing import Annotated, TypedDict
 
 

@@ -3,12 +3,12 @@
 It goes on where it was stopped, and ends with the same bytes for any number of workers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import orjson
 
 from hearth.agents.demonstration_goals import agreement
 from hearth.challenges.challenge_definition import challenge
@@ -136,8 +136,6 @@ def simulate(
 
 def play_ahead(ahead: Ahead) -> dict[str, Any]:
     """Return the record of a trial that a simulated person does."""
-    import orjson
-
     record = played(job_of(ahead.study, ahead.planned, ahead.known, ahead.person))
     return dict(orjson.loads(orjson.dumps(episode_data(record))))
 

@@ -1,7 +1,5 @@
 """The tables of a study: participants, trials, decisions, ratings; ids are salted, and there are no names."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -9,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.parquet as pq
 
 from hearth.analysis.episode_drawing import ticks_of
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.tables import comment_of, struct
+from hearth.schemas.tables import comment_of, schema_of
 from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
@@ -28,7 +27,7 @@ HELPER = 1
 """The number of the helper among the characters; the person is 0."""
 
 TABLES: dict[str, pa.Schema] = {
-    name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
+    name: schema_of(row)
     for name, row in {
         "participants": study_rows.ParticipantRow,
         "trials": study_rows.StudyTrialRow,
@@ -51,8 +50,6 @@ def export(collected: Collected, folder: Path) -> dict[str, int]:
 
 def archive(collected: Collected) -> bytes:
     """Return the tables as a zip archive, with the study's file and the meaning of every column."""
-    import pyarrow.parquet as pq
-
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as file:
         for name, table in tables(collected).items():

@@ -1,7 +1,5 @@
 """Trials of a study as episodes of tasks: played by people or by agents, and checked by a replay."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """The server as one ASGI application: rooms, start page, desk, files, and the checks on every request."""
 
-from __future__ import annotations
-
 import asyncio
 import errno
 import hmac

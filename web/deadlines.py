@@ -1,7 +1,5 @@
 """Longest waits of a request: for a thread, for a lock of this process, for the store. A busy server says so soon."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time

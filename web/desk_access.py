@@ -1,7 +1,5 @@
 """The researcher's token: unguessable, from the environment or made once for a folder."""
 
-from __future__ import annotations
-
 import os
 import secrets
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Threads for handlers: apart from those that serve files, with a short queue and a time limit."""
 
-from __future__ import annotations
-
 import asyncio
 import threading
 from collections.abc import Callable

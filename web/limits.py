@@ -1,7 +1,5 @@
 """Limits on the size and the rate of one sender's requests."""
 
-from __future__ import annotations
-
 import time
 from collections import OrderedDict
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The server's log: however much strangers make it say, it grows slowly."""
 
-from __future__ import annotations
-
 import errno
 import logging
 import time

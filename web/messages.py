@@ -1,7 +1,5 @@
 """Messages over a socket: their size, rate, form and order are checked before a room sees them."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A person's socket: messages in are checked, faults are answered, and the room gets only valid messages."""
 
-from __future__ import annotations
-
 import asyncio
 from contextlib import suppress
 from typing import Any

@@ -7,8 +7,6 @@
 puts `tasks` at `/annotate/` for persons and `overview` at `/desk/annotate/` for researchers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from enum import Enum

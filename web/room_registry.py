@@ -1,7 +1,5 @@
 """The rooms, in the order of the navigation. To add one: a folder with a `ROOM`, its row here (web/README.md)."""
 
-from __future__ import annotations
-
 from hearth.web import play, study
 from hearth.web.annotate.annotate_room import ROOM as ANNOTATE
 from hearth.web.room import Room

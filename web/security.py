@@ -1,7 +1,5 @@
 """The rules for every answer and every request, before any room sees it: headers, hosts, origins."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping
 from types import MappingProxyType

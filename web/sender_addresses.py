@@ -1,7 +1,5 @@
 """Addresses of senders: every spelling of one is the same sender, and a network of IPv6 is one sender."""
 
-from __future__ import annotations
-
 from ipaddress import IPv4Address, IPv6Network, ip_address
 
 from starlette.requests import HTTPConnection

@@ -1,7 +1,5 @@
 """Runs the server on this machine until it is stopped."""
 
-from __future__ import annotations
-
 import asyncio
 import socket
 

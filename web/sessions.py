@@ -1,7 +1,5 @@
 """Sessions: each person's own, found by an unguessable token of which the store has a digest alone."""
 
-from __future__ import annotations
-
 import hashlib
 import secrets
 import time

@@ -1,7 +1,5 @@
 """The pages that belong to no room: start, a session's beginning and return, the desk's door."""
 
-from __future__ import annotations
-
 import hmac
 
 from starlette.responses import Response

@@ -3,8 +3,6 @@
 A write is one transaction, isolated from all others and on the disk when it returns: accepted data survives a kill.
 """
 
-from __future__ import annotations
-
 import contextlib
 import random
 import threading

@@ -1,7 +1,5 @@
 """Refusals of the database: in words that name no value of anybody, and as codes that handlers and people know."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
 

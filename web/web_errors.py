@@ -1,7 +1,5 @@
 """The server's refusals, as data: a code, the place, the expected and the received value."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

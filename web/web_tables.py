@@ -1,7 +1,5 @@
 """The store's tables: those that all rooms share, and how a room declares its own."""
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 
 METADATA = sql.MetaData()

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import orjson
 
 from hearth.datasets.damage_faults import reading
@@ -91,8 +92,6 @@ def _mask(dataset: Dataset, name: str) -> NDArray[Any]:
 
 def _things(mask: NDArray[Any], classes: dict[int, str], known: dict[str, int]) -> Iterator[dict[str, Any]]:
     """Yield the annotation of each thing in a picture, by node id."""
-    import numpy as np
-
     for node in np.unique(mask).tolist():
         if classes.get(node) not in known:
             continue
@@ -111,8 +110,6 @@ def _things(mask: NDArray[Any], classes: dict[int, str], known: dict[str, int]) 
 
 def run_lengths(shown: NDArray[Any]) -> list[int]:
     """COCO's run lengths of a mask: column by column, how many pixels are off, on, off, and so on."""
-    import numpy as np
-
     flat = shown.ravel(order="F")
     ends = np.flatnonzero(flat[1:] != flat[:-1]) + 1
     lengths: list[int] = np.diff([0, *ends.tolist(), len(flat)]).tolist()

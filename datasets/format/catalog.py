@@ -12,6 +12,7 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.schemas.yaml_limits import packaged
 from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted, without_patterns
 from hearth.storage.files import replacing, write_bytes
@@ -42,8 +43,6 @@ def statements(root: str = "") -> str:
 
 def comments() -> Iterator[str]:
     """Statements that comment views and macros; a column's comment has those of its nested fields, one a line."""
-    from hearth.schemas.tables import TABLES, comment_of, nested
-
     yield from (files("hearth.datasets.format") / "comments.sql").read_text("utf-8").splitlines(keepends=True)
     for table, schema in TABLES.items():
         yield f"COMMENT ON VIEW {table} IS {quoted(comment_of(schema))};\n"
@@ -91,8 +90,6 @@ def reading(table: str, format: int = FORMAT, root: str = "") -> str:
         format: of the dataset.
         root: the prefix of every path, by default that of the catalog.
     """
-    from hearth.schemas.tables import TABLES
-
     query = earlier(format).get(table, {}).get("query")
     return f"({query.format(**{name: _reading(name, root) for name in TABLES})})" if query else _reading(table, root)
 
@@ -154,8 +151,6 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
         format: of the dataset.
         database: its name, where macros are called from others: names in a macro are looked up at the caller.
     """
-    from hearth.schemas.tables import TABLES
-
     text = statements(f"{pattern_of(folder)}/")
     for table in TABLES:
         here = reading(table, format)
@@ -168,8 +163,6 @@ def define(connection: Any, folder: Path, absent: Sequence[str] = (), format: in
 
 def _qualified(text: str, database: str) -> str:
     """Return the SQL of the catalog with its tables, views and macros as those of a database."""
-    from hearth.schemas.tables import TABLES
-
     place = f"{identifier(database)}.main."
     macros = "|".join(re.findall(r"^CREATE MACRO (\w+)\(", text, re.MULTILINE))
     text = re.sub(rf"(?<!CREATE MACRO )\b({macros})\(", lambda found: place + found[0], text)
@@ -209,8 +202,6 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
         HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
             DuckDB's words; DAMAGED_FILE, where a table is a pipe or a device, which a query would wait for.
     """
-    from hearth.schemas.tables import TABLES
-
     parts = {table: [*(folder / table).glob("*.parquet")] for table in TABLES}
     if pipe := next((path for paths in parts.values() for path in paths if not path.is_file()), None):
         raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(pipe), suggestion="move it elsewhere")

@@ -5,8 +5,6 @@ working directory. So the bytes of the pictures stand in files of their own, `fr
 query of the table reads. Their schema names the feature `Image`, by which the library decodes the column.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from hashlib import sha256
 from pathlib import Path

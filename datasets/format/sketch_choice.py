@@ -1,7 +1,5 @@
 """The choice among a program's sketches: people's, or those inferred from the steps that repairs can restore."""
 
-from __future__ import annotations
-
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

@@ -1,7 +1,5 @@
 """Executions that ran to their ends, by column: the rows of splits are made of them, millions in all."""
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Iterable, Iterator
 

@@ -5,8 +5,6 @@ nearly the same steps, and programs with nearly the same description. If a rule 
 programs outside the latest part have none. The remaining leakage is measured and compared with that of a random split.
 """
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType

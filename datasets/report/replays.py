@@ -1,7 +1,5 @@
 """Runs of a dataset in 3D for its report: shapes of homes, and of the runs that are shown, as scripts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 

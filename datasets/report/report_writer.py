@@ -23,6 +23,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, spread, unseen
+from hearth.storage.templates import rendered
 
 SHARD = 200
 """Programs per file of stories, which a browser loads when a program's page is opened."""
@@ -80,17 +81,11 @@ def _pictured(program: str, looks: Mapping[str, tuple[str, bool]]) -> tuple[str,
 
 
 def _page(dataset: Dataset, programs: int) -> str:
-    import jinja2
-
-    text = (files("hearth.datasets.report") / "assets" / "index.html").read_text("utf-8")
-    template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
     versions = {name: dataset.manifest[name] for name in ("version", "action_set")}
-    drawn = plans(dataset)
     sheet = datasheet(dataset.folder, str(dataset.manifest.get(STRENGTH, MILD)))
     del sheet["bibtex"]
-    return template.render(
-        figures=figures(dataset), plans=drawn, sheet=sheet, programs=programs, shard=SHARD, **versions
-    )
+    values = {"plans": plans(dataset), "figures": figures(dataset), "sheet": sheet, "programs": programs, **versions}
+    return rendered("hearth.datasets.report", "assets/index.html", shard=SHARD, **values)
 
 
 def _rows(dataset: Dataset) -> list[list[Any]]:
@@ -149,31 +144,15 @@ def _write_shard(dataset: Dataset, stories: Stories, to: Path, shard: Shard) -> 
     inside(to, f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(found) + b");\n")
 
 
-# Only drawn edges are read: most changes of a tick are CLOSE edges, which are counted only.
-_DRAWN = ", ".join(f"'{name}'" for name in sorted(DRAWN))
-_EDGES = f"list_filter({{}}, lambda e: e.relation IN ({_DRAWN}))"
-_RUNS = f"""
-    SELECT e.execution_id, e.program_id, e.home, e.failure, e.bindings,
-        list_transform(e.ticks, lambda t: {{
-            'steps': list_transform(t.instructions, lambda i: i.step), 'set_states': t.set_states,
-            'cleared_states': t.cleared_states, 'added': {_EDGES.format("t.added")},
-            'removed': {_EDGES.format("t.removed")}, 'came': len(t.added), 'went': len(t.removed)}}) AS ticks,
-        {{'conditions': v.conditions, 'removed_nodes': v.removed_nodes,
-         'added_nodes': list_transform(v.added_nodes,
-            lambda n: {{'id': n.id, 'class_name': n.class_name, 'states': n.states}}),
-         'set_states': v.set_states, 'cleared_states': v.cleared_states,
-         'added': {_EDGES.format("v.added")}, 'removed': {_EDGES.format("v.removed")}}} AS environment
-    FROM (SELECT * FROM executions e WHERE program_id BETWEEN $low AND $high AND {OWN}) e
-    JOIN (SELECT * FROM environments WHERE program_id BETWEEN $low AND $high) v USING (environment_id)
-    ORDER BY e.execution_id
-"""
 _PROGRAM_COLUMNS = "program_id, parent_id, title, description, origin, activity_id, steps"
 
 
 def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[Row]:
     between = "program_id BETWEEN $low AND $high"
     runs, repairs = defaultdict(list), defaultdict(list)
-    for row in _ask(cursor, _RUNS, asked):
+    relations = ", ".join(f"'{name}'" for name in sorted(DRAWN))
+    query = rendered("hearth.datasets.report", "runs.sql.jinja", relations=relations, own=OWN)
+    for row in _ask(cursor, query, asked):
         runs[row["program_id"]].append(row)
     for row in _ask(cursor, f"SELECT * FROM repairs WHERE {between} ORDER BY program_id, attempt", asked):
         repairs[row["program_id"]].append(row)

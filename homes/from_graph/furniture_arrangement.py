@@ -1,10 +1,7 @@
 """Furniture of a graph's room, the largest first, each where most of its relations are met."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,10 +17,8 @@ from hearth.homes.plans.object_packing import contents
 from hearth.homes.plans.obstacles import Obstacles, Stand
 from hearth.homes.plans.plan import Room
 from hearth.homes.relations import gaps
+from hearth.schemas.graph import Box
 from hearth.schemas.yaml_fields import Faults
-
-if TYPE_CHECKING:
-    from hearth.schemas.graph import Box
 
 ALONG, ACROSS = 0.25, 0.5
 """Metres between places tried along walls, and out in the room."""

@@ -3,8 +3,6 @@
 Nodes that nothing distinguishes have the same score but for rounding, which differs with the batch and the machine.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 SAME = 1e-4

@@ -1,7 +1,5 @@
 """A model's scores for the next step, part by part: one interface for all models and all search methods."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from enum import StrEnum
 from typing import Any, NamedTuple, Protocol

@@ -1,7 +1,5 @@
 """Demonstrations and their steps as tensors."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from random import Random
 from typing import NamedTuple

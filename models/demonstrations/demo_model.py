@@ -19,7 +19,7 @@ from hearth.models.demonstrations.frame_network import FrameBatch, FrameBody, Fr
 from hearth.models.demonstrations.mask_classes import MaskClasses
 from hearth.models.demonstrations.overhead_features import Above, above
 from hearth.models.devices import device
-from hearth.models.films.clip_data import no_programs
+from hearth.models.films.clip_data import OfFilms
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.text.program_writer import Numbers, Writer, beam
 from hearth.models.text.seq2seq import WAYS
@@ -130,8 +130,10 @@ class DemoModel(Settings):
 
 
 @dataclass(frozen=True)
-class TrainedDemoModel:
+class TrainedDemoModel(OfFilms):
     """A network with its vocabulary."""
+
+    name = NAME
 
     settings: DemoModel
     vocabulary: StepVocabulary
@@ -210,14 +212,6 @@ class TrainedDemoModel:
         first = [not place or not step.joins for place, step in enumerate(example.steps)]
         steps = [self.vocabulary.numbers(step) or (0, 0, 0) for step in compress(example.steps, first)]
         return Done((None, *compress(example.keep, first)), ((0, 0, 0), *steps))
-
-    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """It has no programs for requests.
-
-        Raises:
-            HearthError: BAD_ARGUMENT.
-        """
-        raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
         """Return all that `restored` needs."""

@@ -1,7 +1,5 @@
 """Sketches of demonstrations for a table: those of models, and of two yardsticks that learn nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,11 +1,10 @@
 """Sketches from demonstrations compared with sketches from descriptions of the same programs (thesis A.4)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.demonstrations.demonstration_data import Demonstrations, shown
 from hearth.models.interface import Request, Steps
@@ -16,9 +15,6 @@ from hearth.models.text_examples import Example, examples
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring.metrics.lcs import score_pairs
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 LENGTHS = (10, 20, 40)
 """Words of a description, at which groups end."""

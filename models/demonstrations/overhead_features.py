@@ -4,8 +4,6 @@ The person performs every action. A step is therefore about objects near the per
 picture. Lengths are pixels of the picture, about four centimeters each.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple, TypeVar
 
 import numpy as np

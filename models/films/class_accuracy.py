@@ -1,7 +1,5 @@
 """Mean accuracy of classes: how often each action, set of objects and instruction is named right (thesis 4.5.1)."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Sequence
 from typing import Any

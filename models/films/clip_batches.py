@@ -1,7 +1,5 @@
 """Films as tensors for an encoder over clips, and the noise that training has."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from random import Random

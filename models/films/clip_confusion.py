@@ -1,20 +1,16 @@
 """Figure 4-4: which actions clips are taken for, as a matrix."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.films.clip_result_tables import HOMES, looked_at
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 
 class Confusion(NamedTuple):

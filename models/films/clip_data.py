@@ -7,11 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, overload
 
 from numpy.typing import NDArray
 
 from hearth.models.films.film_arrays import COLOURS, LARGEST, MASKS, damaged, film_array
+from hearth.models.interface import Request, Steps
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.input_files import read_input
@@ -145,3 +146,21 @@ def no_programs(model: str) -> HearthError:
     """Return the error of a model of films that is asked for the program of a text or a sketch."""
     message = f"`{model}` is a model of films: it has no programs for texts or sketches"
     return HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model show M FILM` reads a film with it")
+
+
+class OfFilms:
+    """A trained model of films: it has no programs for requests.
+
+    Attributes:
+        name: of its checkpoints.
+    """
+
+    name: ClassVar[str]
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """Refuse to write programs for requests.
+
+        Raises:
+            HearthError: BAD_ARGUMENT.
+        """
+        raise no_programs(self.name)

@@ -5,28 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.checkpoint_weights import filled
 from hearth.models.devices import device, moved, place_of
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import Clips, Instruction, no_programs
+from hearth.models.films.clip_data import Clips, Instruction, OfFilms
 from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
 from hearth.models.films.film_arrays import COLOURS
 from hearth.models.films.frame_data import Labels, Pictures, frames_of, pictures_of
 from hearth.models.films.instruction_scores import Reading
-from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.interface import Settings, Training
 from hearth.models.text_examples import facts_of
 from hearth.models.training import Task, train
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 NAME = "clips-rgb"
 """Name of the model's checkpoints."""
@@ -110,8 +108,10 @@ class ClipModel(Settings):
 
 
 @dataclass(frozen=True)
-class TrainedClipModel:
+class TrainedClipModel(OfFilms):
     """A trained classifier."""
+
+    name = NAME
 
     settings: ClipModel
     labels: Labels
@@ -148,14 +148,6 @@ class TrainedClipModel:
     def _parts(self, frames: NDArray[np.uint8], rows: torch.Tensor) -> torch.Tensor:
         heads = self.network(torch.from_numpy(frames).to(rows.device))
         return torch.stack([scores[:, rows[:, place]] for place, scores in enumerate(heads)]).sum(0)
-
-    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """It has no programs for requests.
-
-        Raises:
-            HearthError: BAD_ARGUMENT.
-        """
-        raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
         """Return all that `restored` needs."""

@@ -3,8 +3,6 @@
 As the thesis's Temporal Relation Network with relations of four frames (4.3.3), on colours (table 4.3 b).
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import torch

@@ -1,7 +1,5 @@
 """Clips as vectors for an encoder: the expected vectors of their actions and objects (thesis 4.3.3)."""
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor, nn
 

@@ -1,13 +1,12 @@
 """Tables 4.2 and 4.3: instructions predicted from clips, with the thesis's figures, ours and yardsticks."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.clip_model import TrainedClipModel
@@ -20,9 +19,6 @@ from hearth.models.model_registry import restore
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 COLUMNS = ("action", "objects", "steps", "mean")
 

@@ -1,7 +1,5 @@
 """An array of a film's file, which may be a stranger's: its header is read first, and nothing larger is allocated."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import prod
 from typing import IO, Any, NamedTuple

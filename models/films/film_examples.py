@@ -1,11 +1,10 @@
 """Films as examples for a writer of programs: a classifier's probabilities for their clips, and their steps."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.execution_trials import Trial
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
@@ -14,9 +13,6 @@ from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.interface import Steps
 from hearth.models.text_examples import facts_of
 from hearth.storage.files import value_digest
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 
 class FilmExample(NamedTuple):

@@ -1,20 +1,16 @@
 """The contents of a dataset's films: the world at their start, and their steps by the classes of the objects."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.execution_trials import Trial, trials
 from hearth.models.interface import Steps
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef
 from hearth.simulation.world.world import World
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 
 class Shown(NamedTuple):

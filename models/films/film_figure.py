@@ -1,16 +1,15 @@
 """Figure 4-7: films of the test part, each with its description, its true program and the predicted program."""
 
-from __future__ import annotations
-
 from base64 import b64encode
 from collections.abc import Iterator
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_result_tables import classifier
 from hearth.models.films.film_arrays import COLOURS, FORMS
@@ -22,9 +21,6 @@ from hearth.models.prediction_stages import side_by_side
 from hearth.rendering.film.clips import RATE
 from hearth.rendering.film.png import encode
 from hearth.schemas.syntax import print_step
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 FRAMES = 8
 """Number of pictures that the figure shows of a film."""

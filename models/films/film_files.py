@@ -1,7 +1,5 @@
 """The files that count as films: arrays of a dataset of clips, and videos."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hearth.rendering.film.clip_file import FILE

@@ -1,7 +1,5 @@
 """A film as a user has it: masks of a dataset of clips, or a video, at the rate and size of clips."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path

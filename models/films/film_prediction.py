@@ -1,7 +1,5 @@
 """A film in: its clips, steps with times, and the program that runs in a home."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

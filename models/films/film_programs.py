@@ -4,8 +4,6 @@ With the engine, each clip gets the possible instruction that best explains it. 
 because each step was done in the world that the steps before it made.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple

@@ -3,13 +3,12 @@
 The programs are executed in the film's home.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.films.film_examples import FilmExample, film_examples
 from hearth.models.films.film_writer import FilmWriter, TrainedFilmWriter
@@ -19,9 +18,6 @@ from hearth.models.text.self_critical import SIM, Reward, go_on, lcs_reward, rew
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 
 @dataclass(frozen=True, slots=True)

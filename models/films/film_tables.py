@@ -1,11 +1,10 @@
 """Table 4.6: programs from films, with the thesis's figures, ours and yardsticks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.evaluation import by_group
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities
@@ -29,9 +28,6 @@ from hearth.scoring.evaluate import METRICS
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 TABLE = "4.6"
 

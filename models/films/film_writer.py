@@ -10,18 +10,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from random import Random
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.checkpoint_weights import filled
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.devices import device
 from hearth.models.films.clip_batches import clip_batch, rows_of, traits_of
-from hearth.models.films.clip_data import no_programs
+from hearth.models.films.clip_data import OfFilms
 from hearth.models.films.clip_probabilities import ClipProbabilities
 from hearth.models.films.clip_reader import ClipReader
 from hearth.models.films.clip_result_tables import classifier
@@ -40,9 +41,6 @@ from hearth.models.training import train
 from hearth.schemas.rng import derive
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 NAME = "films-mle"
 """Name of the model's checkpoints."""
@@ -139,8 +137,10 @@ class FilmWriter(Settings):
 
 
 @dataclass(frozen=True)
-class TrainedFilmWriter:
+class TrainedFilmWriter(OfFilms):
     """A network with its vocabulary, and the classifier whose answers it reads."""
+
+    name = NAME
 
     settings: FilmWriter
     reader: TrainedSeenModel
@@ -188,14 +188,6 @@ class TrainedFilmWriter:
     def scorer(self) -> TextScorer:
         """Return the model for decoding with the engine in the loop; its inputs are films."""
         return TextScorer(self.writer, self.vocabulary, self.read)
-
-    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """It has no programs for requests.
-
-        Raises:
-            HearthError: BAD_ARGUMENT.
-        """
-        raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
         """Return all that `restored` needs."""

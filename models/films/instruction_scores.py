@@ -1,7 +1,5 @@
 """The possible instructions of a film's clips: each that some clip makes probable, scored in every clip."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 

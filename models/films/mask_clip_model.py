@@ -6,30 +6,28 @@ from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from random import Random
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.checkpoint_weights import filled
 from hearth.models.devices import device, moved, place_of
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import PLACES, ClassTable
-from hearth.models.films.clip_data import Clips, Instruction, no_programs
+from hearth.models.films.clip_data import Clips, Instruction, OfFilms
 from hearth.models.films.instruction_scores import Reading, reading
 from hearth.models.films.mask_clip_network import FRAMES, HEADS, SeenBatch, SeenNetwork, loss_of
 from hearth.models.films.mask_clips import SeenClips, joined, offsets, seen_clips
 from hearth.models.films.predicted_masks import mask_predictor, predicted
 from hearth.models.films.step_order import StepOrder, programs_of
-from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.interface import Settings, Training
 from hearth.models.text_examples import facts_of
 from hearth.models.training import Task, train, weights_digest
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 NAME = "clips-seen"
 """Name of the model's checkpoints."""
@@ -154,8 +152,10 @@ def tensors(shown: SeenClips) -> SeenBatch:
 
 
 @dataclass(frozen=True)
-class TrainedSeenModel:
+class TrainedSeenModel(OfFilms):
     """A trained classifier."""
+
+    name = NAME
 
     settings: SeenModel
     table: ClassTable
@@ -208,14 +208,6 @@ class TrainedSeenModel:
                 objects = [self.network.objects(batch, clip, classes, asked, number) for number in range(PLACES)]
                 found = Scored(self.network.actions(clip).cpu().numpy(), torch.stack(objects, 1).cpu().numpy())
             yield found  # outside: generators that take turns would leave gradients off
-
-    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """It has no programs for requests.
-
-        Raises:
-            HearthError: BAD_ARGUMENT.
-        """
-        raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
         """Return all that `restored` needs."""

@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch.nn import functional
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.checkpoint_weights import filled
 from hearth.models.devices import device, moved, place_of
-from hearth.models.films.clip_data import Clips, no_programs
+from hearth.models.films.clip_data import Clips, OfFilms
 from hearth.models.films.film_arrays import COLOURS, MASKS
 from hearth.models.films.mask_network import GROUPS, MaskNetwork
-from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.interface import Settings, Training
 from hearth.models.text_examples import facts_of
 from hearth.models.training import Task, train
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 NAME = "masks"
 """Name of the model's checkpoints."""
@@ -174,7 +172,7 @@ def mean_iou(wanted: NDArray[np.uint8], found: NDArray[np.uint8], classes: int) 
 
 
 @dataclass(frozen=True)
-class TrainedMaskModel:
+class TrainedMaskModel(OfFilms):
     """A trained network.
 
     Attributes:
@@ -183,6 +181,8 @@ class TrainedMaskModel:
         network: with its weights.
         facts: of its training.
     """
+
+    name = NAME
 
     settings: MaskModel
     classes: tuple[int, ...]
@@ -211,14 +211,6 @@ class TrainedMaskModel:
                 scores = self.network(torch.from_numpy(pictures[start : start + AT_ONCE].copy()).to(place))
                 found = scores.argmax(1).to(torch.uint8).cpu().numpy()
             yield found
-
-    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """It has no programs for requests.
-
-        Raises:
-            HearthError: BAD_ARGUMENT.
-        """
-        raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
         """Return all that `restored` needs."""

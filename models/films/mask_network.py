@@ -5,8 +5,6 @@ of the picture, which identifies the room. Their output is brought back to the w
 grabbed are a few pixels.
 """
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor, nn
 from torch.nn import functional

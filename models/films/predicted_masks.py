@@ -1,22 +1,18 @@
 """Films as a network predicts their masks: they stand where true masks would."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.film_arrays import COLOURS
 from hearth.models.films.mask_model import TrainedMaskModel
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 
 def mask_predictor(model: str) -> TrainedMaskModel:

@@ -1,7 +1,5 @@
 """Losses: of imitating choices, and of the advantage actor-critic (A2C; Mnih et al. 2016; thesis B.3.4, B.3.5)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import torch

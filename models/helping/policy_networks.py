@@ -5,8 +5,6 @@ of the goal. A part of the goal counts as often as it is missing by belief, not 
 Impossible actions have no probability.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import torch

@@ -1,7 +1,5 @@
 """The goal proposal network (thesis C.3.2, figure C-2): how often each predicate of the goal is wanted."""
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor, nn
 

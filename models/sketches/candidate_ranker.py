@@ -1,7 +1,5 @@
 """The network that scores candidates: embedded names and numbers of the choice and of each candidate, in two layers."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import torch

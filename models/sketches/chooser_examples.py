@@ -3,8 +3,6 @@
 Nodes and steps before a choice are those of the program; only the choice is predicted.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 from hearth.models.decoding.next_step_options import Grammar

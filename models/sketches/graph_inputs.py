@@ -4,8 +4,6 @@ Of 450 nodes some 40 matter: the character, the rooms, the candidates of the ske
 and the nodes on them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ effect of a step on the states of the character and of its objects: nothing (Gra
 a recurrent cell.
 """
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import torch

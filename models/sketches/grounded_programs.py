@@ -1,7 +1,5 @@
 """Programs with their sketches in their environments, as models of sketches learn from them (thesis 5.5.2)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Ids are not among it: those of things that were added to a home for a program are the highest.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 

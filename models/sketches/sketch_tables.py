@@ -1,13 +1,12 @@
 """Tables 5.2 to 5.5: programs from sketches and graphs, with the thesis's figures, ours and yardsticks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.demonstrations.demo_sketches import demonstrated
 from hearth.models.demonstrations.demonstration_data import Demonstrations
@@ -25,9 +24,6 @@ from hearth.schemas.rng import rng
 from hearth.scoring import baselines
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 TABLES = ("5.2", "5.3", "5.4", "5.5")
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
 
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.interface import Request, Settings, Steps, Training
@@ -17,10 +16,8 @@ from hearth.models.text.pretrained_model import first_phase
 from hearth.models.text.retrieve_edit import RetrieveEdit, TrainedRetrieveEdit, consensus
 from hearth.models.text.text_models import TextModel, TrainedTextModel
 from hearth.models.text.text_scorer import TextScorer
+from hearth.models.text_examples import Corpus
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.models.text_examples import Corpus
 
 
 @dataclass(frozen=True, slots=True)

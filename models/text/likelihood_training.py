@@ -1,7 +1,5 @@
 """The common part of all writers of programs: the first phase of training, and writing programs batch by batch."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from random import Random
 from typing import Any, TypeVar

@@ -1,7 +1,5 @@
 """Classes of objects that a text mentions, and the words that mention them: a model may copy these classes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from hearth.kb.knowledge import Knowledge

@@ -1,18 +1,13 @@
 """The model that a training of texts goes on from, or that another one reads."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from hearth.models.model_registry import MODELS, restore
 from hearth.models.text.text_models import TrainedTextModel
+from hearth.models.text_examples import Corpus
 from hearth.models.training_overlap import refuse_seen_tests
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-
-if TYPE_CHECKING:
-    from hearth.models.text_examples import Corpus
 
 STARTS = {"program": ("programs", "mle-composed"), "sketch": ("sketches", "desc2sketch")}
 """The plural name of each kind of output, and the usual model to go on from."""

@@ -4,12 +4,10 @@ The reward is the LCS of a program with the true one (eq. 4.1), or that and a te
 environment of its example, as scores tell it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from random import Random
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 import torch
 
@@ -20,12 +18,10 @@ from hearth.models.text.pretrained_model import first_phase
 from hearth.models.text.program_writer import Numbers, Writer, beam, sample
 from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
+from hearth.models.text_examples import Corpus
 from hearth.models.training import Task, train, weights_digest
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.storage.parallel import Seen, unseen
-
-if TYPE_CHECKING:
-    from hearth.models.text_examples import Corpus
 
 SIM = 0.1
 """The weight of running in the reward."""

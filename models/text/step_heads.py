@@ -1,7 +1,5 @@
 """The heads of decoders, from a state to probabilities of steps: whole ones of a list, or composed of their parts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Texts and programs as tensors."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from random import Random

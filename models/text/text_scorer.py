@@ -1,7 +1,5 @@
 """A model of texts or films as decoding with the engine in the loop sees it: its classes score the nodes of a home."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 

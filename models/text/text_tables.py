@@ -1,11 +1,9 @@
 """Tables 4.4 and 4.5: programs from descriptions, with the thesis's figures, ours and yardsticks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from hearth.datasets.dataset import Dataset
 from hearth.models.interface import Steps
 from hearth.models.method_scores import Entrant, Row, scored_rows
 from hearth.models.model_registry import restore
@@ -16,9 +14,6 @@ from hearth.models.training_overlap import refuse_seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring import baselines
-
-if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset
 
 TABLES = ("4.4", "4.5")
 

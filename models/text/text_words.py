@@ -1,7 +1,5 @@
 """Words of descriptions: how a text becomes the words that models see."""
 
-from __future__ import annotations
-
 import re
 
 from hearth.models.interface import Request

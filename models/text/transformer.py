@@ -3,8 +3,6 @@
 All steps of a known program are computed at once, which is several times as fast as step by step.
 """
 
-from __future__ import annotations
-
 import math
 
 import torch

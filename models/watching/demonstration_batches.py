@@ -1,16 +1,13 @@
 """Demonstrations as arrays, and two demonstrations as one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from random import Random
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+import numpy as np
 
 from hearth.models.watching.object_sightings import Layout, Seen
-
-if TYPE_CHECKING:
-    import numpy as np
 
 Counts = tuple[int, ...]
 """The number of times that each predicate is wanted."""
@@ -50,8 +47,6 @@ class Packed(NamedTuple):
 
 def packed(examples: Sequence[Watched], predicates: int) -> Packed:
     """Demonstrations as arrays."""
-    import numpy as np
-
     most = max((len(each.things) for each in examples), default=0) or 1
     longest = max((len(thing.places) for each in examples for thing in each.things), default=1)
     shape = (len(examples), most, min(longest, MOST_PLACES))

@@ -1,18 +1,14 @@
 """The most probable goal, of those that there are, given probabilities of the counts of predicates."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import combinations
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.models.watching.demonstration_batches import Counts
 from hearth.schemas.goals import Goal
-
-if TYPE_CHECKING:
-    import numpy as np
 
 BEST = 40
 """Goals of each set that are tried together with those of another."""
@@ -39,8 +35,6 @@ class PossibleGoals:
 
     @cached_property
     def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        import numpy as np
-
         sets = [next(self.set_of[i] for i, count in enumerate(goal) if count) for goal in self.goals]
         return np.array(self.goals), np.array(sets)
 
@@ -50,8 +44,6 @@ class PossibleGoals:
         Args:
             logs: (P, K), the logarithm of the probability of each count of each of P predicates.
         """
-        import numpy as np
-
         goals, sets = self._arrays
         scores = _scores(goals, logs)
         tops = [
@@ -65,8 +57,6 @@ class PossibleGoals:
 
 
 def _scores(goals: np.ndarray, logs: np.ndarray) -> np.ndarray:
-    import numpy as np
-
     found: np.ndarray = logs[np.arange(goals.shape[1]), np.minimum(goals, logs.shape[1] - 1)].sum(1)
     return found
 

@@ -5,8 +5,6 @@ over their mean, and so learns which predicates go together: two activities at o
 asks of each thing whether it counts, and adds up.
 """
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor, nn
 

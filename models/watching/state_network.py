@@ -5,8 +5,6 @@ and a classifier for each predicate's count.
 this network.
 """
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor, nn
 

@@ -1,7 +1,5 @@
 """Two-second clips of films, with the instruction that is done in their middle (thesis 4.3.3)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO

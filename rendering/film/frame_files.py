@@ -5,8 +5,6 @@ no pictures are lines of `VIEW.boxes.jsonl`. `VIEW.index.json` names the files, 
 time, tick and camera of each frame.
 """
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Masks as a film: a colour for each class, the same in every film."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

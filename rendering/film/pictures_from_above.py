@@ -4,8 +4,6 @@ The thesis predicts sketches from such pictures (5.4.3). Homes look the same in 
 the person and the act differ. Each home's objects are drawn once, which halves the time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from io import BytesIO

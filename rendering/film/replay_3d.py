@@ -1,7 +1,5 @@
 """An execution in 3D for pages: the home's shapes, and the shapes removed and added after each tick."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge

@@ -1,7 +1,5 @@
 """The best sequence of shots: which camera to show at each moment, so that acts are seen and no shot is too short."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

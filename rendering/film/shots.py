@@ -1,7 +1,5 @@
 """The shots of a film: which camera shows which seconds, so that every act is seen and no shot is too short."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

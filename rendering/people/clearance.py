@@ -1,7 +1,5 @@
 """Room for arms and bodies among solid things: arms are drawn in, and people stand where they need not enter any."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from math import ceil

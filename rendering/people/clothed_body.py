@@ -1,7 +1,5 @@
 """Dressed people in the rest pose: surfaces of body, hair and clothes with colours, and their skinning to a pose."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Feet that stay, or step one by one, while a body changes its posture."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import hypot, pi, sin
 

@@ -1,7 +1,5 @@
 """Hands that act: the aims of each kind of gesture on the object of a step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from math import radians, sin
 

@@ -1,7 +1,5 @@
 """Hands and gaze in a step: carrying, and reaching for its objects before and after the world changes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Things that are worn on the head: hats, spectacles, headsets. Other garments are the body's own clothes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import asin, atan2, degrees

@@ -1,7 +1,5 @@
 """Holding things: at which point and with which grip, and where held things are."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache

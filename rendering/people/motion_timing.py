@@ -4,8 +4,6 @@ The straight way between two poses is a poor measure: a stooping person moves th
 turns in the hand moves its far end.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hearth.rendering.arrays import Floats

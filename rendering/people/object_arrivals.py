@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import dist, pi
-from typing import TYPE_CHECKING
 
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.gait import eased
@@ -13,10 +12,8 @@ from hearth.rendering.people.held_objects import held_things
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.graph import Point
-
-if TYPE_CHECKING:
-    from hearth.rendering.scene.scene_preparation import PreparedScene
 
 FASTEST = 1.3
 """Metres per second at most."""

@@ -1,7 +1,5 @@
 """Aims of palms: where they go in a person's frame, to carry what they hold or to reach things that stand somewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Things that are pushed or pulled: they slide over the floor, with all that is on and in them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import cos, hypot, radians, sin

@@ -1,8 +1,7 @@
 """People drawn by a seed: sex, age, build, face, skin, hair and clothes."""
 
-from __future__ import annotations
-
 import random
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -69,8 +68,6 @@ def _face(numbers: random.Random) -> tuple[tuple[str, float], ...]:
 
 def _clothed(body: Body, sex: str, age: float, ancestry: Any, numbers: random.Random) -> Body:
     """Return the person with skin, eyes, hair and clothes."""
-    from dataclasses import replace
-
     grey = numbers.random() < min(max((age - 38) / 35, 0.0), 0.95)
     styles = CHOICES["styles"][sex]
     style = numbers.choice(styles["old"] if age > 50 else styles["young"])

@@ -1,7 +1,5 @@
 """The simple figure: a body of balls and rods around the joints, for persons without a shape."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hearth.rendering.models.mesh import Mesh, join, transform

@@ -1,7 +1,5 @@
 """Pictures by cameras that stay, of scenes that follow each other: what each sees of static things is found once."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from hearth.rendering.cameras.camera import Camera

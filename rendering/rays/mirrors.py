@@ -1,7 +1,5 @@
 """Mirrors: pixels that show one show what a ray sees that it throws back. A mirror in a mirror is a shiny plate."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hearth.rendering.arrays import Bytes, Floats, Ints

@@ -4,8 +4,6 @@ A map is made when a light has been asked for so often that it will be worth it.
 pictures do not depend on when that was.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from threading import Lock
 from typing import Any, NamedTuple

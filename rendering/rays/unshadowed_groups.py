@@ -4,8 +4,6 @@ A surface point that lies a little in front of its triangle cannot be shaded by 
 behind the triangle's plane, and the way to the light leads away from it.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Places for furniture that an environment adds to a home: against a wall, where no way is blocked."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import cos, radians, sin

@@ -1,7 +1,5 @@
 """Effects: what is seen of things that are in a state, such as light, changing pictures, trembling and steam."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import cos, pi, radians, sin

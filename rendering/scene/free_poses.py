@@ -1,7 +1,5 @@
 """Free positions for things, on and in others, next to the things that stand there already."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from math import cos, radians, sin
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """A scene in forms that other programs open: glTF (one file, `.glb`) and OBJ, by trimesh."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from itertools import chain, count

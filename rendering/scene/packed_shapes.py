@@ -1,7 +1,5 @@
 """Shapes of things as a few bytes, for pages that draw them with WebGL: corners are shared, light is baked in."""
 
-from __future__ import annotations
-
 import base64
 import zlib
 from typing import Any

@@ -19,7 +19,7 @@ PACKAGES = (
     "data_raw",
 )  # fmt: skip
 APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out", "node_modules", "fetched")
-ENDINGS = {".py", ".yaml", ".csv", ".sql"}
+ENDINGS = {".py", ".yaml", ".csv", ".sql", ".jinja"}
 
 
 def run(*command, cwd):
@@ -56,7 +56,7 @@ def test_the_wheel_holds_the_package_whole_and_nothing_else(wheel):
     }
     assert len(wanted) > 100
     assert wanted <= names, sorted(wanted - names)
-    tops = ("py.typed", "__init__.py", "__init__.pyi", "cli.py", "old_names.py", "version.py")
+    tops = ("py.typed", "__init__.py", "__init__.pyi", "cli.py", "old_names.csv", "old_names.py", "version.py")
     assert {f"hearth/{name}" for name in tops} <= names
     code = {name for name in names if name.startswith("hearth/") and name.endswith(".py")}
     assert not {name for name in code if name.split("/")[1] in ("tests", "benchmarks", "conftest.py", "build")}

@@ -16,8 +16,9 @@ from pathlib import Path
 
 import pytest
 
-from hearth.old_names import MODULES
+from hearth.old_names import modules
 
+MODULES = modules()
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = {
     module: names.split() for module, names in json.loads((ROOT / "tests/golden/names-0.2.json").read_text()).items()

@@ -1,7 +1,5 @@
 """The researcher's view of annotating: the contributions, the missing blocks, the files."""
 
-from __future__ import annotations
-
 from collections import Counter
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The room where people annotate: its addresses."""
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 from starlette.responses import Response
 

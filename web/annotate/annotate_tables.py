@@ -1,7 +1,5 @@
 """The contributions of annotators, by the session that made them (thesis 3.3)."""
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 
 from hearth.web.web_tables import METADATA, owner

@@ -1,7 +1,5 @@
 """Programs in the store: read by sessions that may see them, changed by a session that has read the last version."""
 
-from __future__ import annotations
-
 import secrets
 import time
 

@@ -1,7 +1,5 @@
 """Marks on existing items: sketches of programs (thesis 5.5.1), their completeness (3.4.1), films in words (4.4)."""
 
-from __future__ import annotations
-
 import secrets
 import time
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Blocks from the action grammar: each action with its slots, each declared thing with the slots that take it."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The changes of a step of a run in everyday words: no ids, no names of relations."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hearth.schemas.graph_change import Change

@@ -3,8 +3,6 @@
 The files follow from the store: they are written after each acceptance and when the server starts, and can be deleted.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

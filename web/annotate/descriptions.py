@@ -1,7 +1,5 @@
 """Stage one: a title and a description of an activity that begins in a room that was drawn (thesis 3.3)."""
 
-from __future__ import annotations
-
 import secrets
 import time
 from typing import Any

@@ -1,7 +1,5 @@
 """The check of a program while it is written: the code of `check`, and the faults that `build` would refuse."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple

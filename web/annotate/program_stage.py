@@ -1,7 +1,5 @@
 """Stage two: read a description, set the scene, put the program together, check it, run it, submit it (figure 3-3)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

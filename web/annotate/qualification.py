@@ -1,7 +1,5 @@
 """The test that one passes before one reviews the programs of others (thesis 3.3)."""
 
-from __future__ import annotations
-
 import secrets
 import time
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Review: a second person accepts a program, corrects it, or returns it to its author (thesis 3.3)."""
 
-from __future__ import annotations
-
 import secrets
 import time
 from typing import Any

@@ -1,7 +1,5 @@
 """Reviewers: sessions that the desk invited, for a person can begin as many sessions as it likes."""
 
-from __future__ import annotations
-
 import secrets
 import time
 

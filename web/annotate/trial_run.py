@@ -1,7 +1,5 @@
 """A program run in a home before it is submitted: the changes of each step, and the character's places."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from importlib.resources import files
 from typing import Any

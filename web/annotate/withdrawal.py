@@ -1,7 +1,5 @@
 """Withdrawal of a person: the works on which others built stay, without the person; the desk can erase the rest."""
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 
 from hearth.web.annotate.annotate_tables import ACCEPTED, PROGRAMS, REVIEWS, TEXTS

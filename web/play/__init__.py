@@ -3,8 +3,6 @@
 Studies use `start_trial`, the address of `trial_address`, and `recorded_episode`.
 """
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 
 from hearth.challenges.episodes import Record

@@ -1,7 +1,5 @@
 """The 3D scene of a game, for browsers: a home's fixed part as one glTF, and the present differences from it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 from hashlib import blake2b

@@ -1,7 +1,5 @@
 """The messages to a person's page: at first the whole view, then the differences after each tick."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from functools import reduce
 from operator import or_

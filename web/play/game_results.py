@@ -1,7 +1,5 @@
 """Games as results: people's actions, in the files that `challenge verify`, `score` and `build` read."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Games in the store: begun, joined, decided in, ended. Any process can go on with a game, for all of it is here."""
 
-from __future__ import annotations
-
 import math
 import secrets
 import time

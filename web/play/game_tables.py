@@ -1,7 +1,5 @@
 """The store's tables of games: trials, who plays which character, and every decision that was accepted."""
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 
 from hearth.web.web_tables import METADATA, owner

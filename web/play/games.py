@@ -1,7 +1,5 @@
 """A game: a trial under way. Its decisions determine it: a replay from the store gives the same game."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hearth.agents.agent_registry import HELPERS

@@ -1,7 +1,5 @@
 """The pages of Play: the games to choose from, a game, joining one, and the recorded episode."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

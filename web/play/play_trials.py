@@ -1,7 +1,5 @@
 """A trial: a task that a person does, alone or with a helper, by one of the interfaces. It is stored as JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

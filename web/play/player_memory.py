@@ -1,7 +1,5 @@
 """A person's observations of a game so far: trails of characters, and counts of the goal as last observed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from hearth.envs.json_observations import SeenLiteral, seen_goal

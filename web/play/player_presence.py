@@ -1,7 +1,5 @@
 """The presence of the people of a game: each person's page leaves a sign in the store while it is open."""
 
-from __future__ import annotations
-
 import contextlib
 import time
 

@@ -1,7 +1,5 @@
 """Games of two when one of them withdraws: the game stays, with nobody in that seat."""
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 
 from hearth.web.play.game_tables import GAMES, SEATS

@@ -1,7 +1,5 @@
 """Rooms 3 and 4: people take part in a study, doing tasks or judging films, and its researcher's desk."""
 
-from __future__ import annotations
-
 from hearth.web.room import Room, get, post
 from hearth.web.study import study_desk, study_pages
 

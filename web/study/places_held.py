@@ -1,7 +1,5 @@
 """Places that one address holds: somebody with many free sessions does not take all those of a study."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 from ipaddress import ip_network

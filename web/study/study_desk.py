@@ -1,7 +1,5 @@
 """The desk of a study: how far people are, who has left, tables and report, deletion on request."""
 
-from __future__ import annotations
-
 import time
 from collections import Counter
 from typing import Any

@@ -1,7 +1,5 @@
 """A person's way through a study: consent, tutorial, practice, trials or films, questions, exit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path

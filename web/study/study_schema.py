@@ -1,7 +1,5 @@
 """The store's tables of studies: their files, their places, their events, and the games of their trials."""
 
-from __future__ import annotations
-
 import sqlalchemy as sql
 
 from hearth.web.web_tables import METADATA, owner

@@ -1,7 +1,5 @@
 """A study's events in the server's store: the same that a file of a simulation has."""
 
-from __future__ import annotations
-
 import secrets
 from collections.abc import Callable
 from pathlib import Path

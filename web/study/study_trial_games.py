@@ -1,7 +1,5 @@
 """The games of a study's trials: begun in the room Play, and recorded in the study when they are over."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

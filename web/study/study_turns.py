@@ -1,7 +1,5 @@
 """The stages of a study at which a post is expected, and the notes about unexpected posts."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 
 from hearth.schemas.failures import Code
