@@ -7,12 +7,13 @@ Three small libraries ship what is asked, and none fetches anything at run time:
 * `pyspellchecker` (7 MB) has the words of everyday English that a lexicon of the language lacks, such as `fridge`.
 * `py3langid` (5 MB) names the language of a text in a millisecond; `simplemma` takes seconds.
 
-They are imported by the first sentence that is not understood word by word.
+Their tables are read by the first sentence that is not understood word by word (see `word_tables`).
 """
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
+
+from hearth.kb.language import word_tables
 
 _LANGUAGES = {
     "ar": "Arabic", "cs": "Czech", "da": "Danish", "de": "German", "el": "Greek", "en": "English", "es": "Spanish",
@@ -27,7 +28,7 @@ _FEWEST_WORDS = 4
 
 def is_english(word: str) -> bool:
     """Return whether a word, in small letters, is an English one."""
-    return bool(_lemmas(word)) or word in _everyday()
+    return bool(_lemmas(word)) or word in word_tables.everyday_words()
 
 
 def is_verb(word: str) -> bool:
@@ -47,11 +48,8 @@ def verb_lemmas(word: str) -> tuple[str, ...]:
 
 def inflections(lemma: str) -> tuple[str, ...]:
     """Return the forms of a word as a verb and as a noun: `grabs`, `grabbing`, `grabbed` of `grab`."""
-    import lemminflect
-
     kinds = [kind for kind in ("VERB", "NOUN") if kind in _lemmas(lemma)]
-    found = (lemminflect.getAllInflections(lemma, upos=kind) for kind in kinds)
-    return tuple(dict.fromkeys(form for forms in found for spelt in forms.values() for form in spelt))
+    return tuple(dict.fromkeys(form for kind in kinds for form in word_tables.inflected(lemma, kind)))
 
 
 def noun_lemmas(word: str) -> tuple[str, ...]:
@@ -74,15 +72,5 @@ def foreign_language(lines: Sequence[str]) -> str | None:
 
 
 @lru_cache(maxsize=65_536)
-def _lemmas(word: str) -> dict[str, tuple[str, ...]]:
-    import lemminflect
-
-    found: dict[str, tuple[str, ...]] = lemminflect.getAllLemmas(word)
-    return found
-
-
-@lru_cache(maxsize=1)
-def _everyday() -> Any:
-    from spellchecker import SpellChecker
-
-    return SpellChecker(language="en", distance=1).word_frequency.dictionary
+def _lemmas(word: str) -> word_tables.Forms:
+    return word_tables.lemmas(word.lower())
