@@ -28,7 +28,7 @@ _FEWEST_WORDS = 4
 
 def is_english(word: str) -> bool:
     """Return whether a word, in small letters, is an English one."""
-    return bool(_lemmas(word)) or word in word_tables.everyday_words()
+    return bool(_lemmas(word)) or word_tables.is_everyday(word)
 
 
 def is_verb(word: str) -> bool:

@@ -1,12 +1,13 @@
 """The tables of words that libraries ship, read from their files: the libraries' own loading takes 2 s of a processor.
 
 `lemminflect` decodes a hundred thousand rows, and imports models of words that it does not know; a reading asks for
-some hundred words. So the rows are kept as text, by word, and those of a word are decoded when it is asked for.
+some hundred words. So the tables stay as text, sorted by word as they are, and the rows of a word are looked up in it.
 `tests/kb/test_word_tables.py` holds the answers against the library's own.
 """
 
 import gzip
-from collections.abc import Mapping
+import json
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -28,7 +29,7 @@ _TAGS = {"NOUN": ("NNS",), "VERB": ("VBD", "VBN", "VBG", "VBZ")}
 def lemmas(word: str) -> Forms:
     """Return the words of which a word, in small letters, may be a form, by part of speech."""
     found = {}
-    for row in _rows("lemma_lu.csv.gz").get(word, "").splitlines():
+    for row in _rows("lemma_lu.csv.gz", word):
         _, category, spelt = row.split(",")
         found[category.upper()] = tuple(spelt.lower().split("/"))
     for kind, lemma in _overrides("lemma_overrides.csv").get(word, ()):
@@ -41,7 +42,7 @@ def inflected(lemma: str, kind: str) -> tuple[str, ...]:
     if lemma in _MODALS:
         return _MODALS[lemma] if kind == "VERB" else ()
     found: dict[str, tuple[str, ...]] = {}
-    for row in _rows("infl_lu.csv.gz").get(lemma, "").splitlines():
+    for row in _rows("infl_lu.csv.gz", lemma):
         _, category, *forms = row.split(",")
         if category.upper() == kind:
             found = {"": (lemma,), **dict(zip(_TAGS[kind], (spelt.split("/") for spelt in forms), strict=False))}
@@ -51,22 +52,31 @@ def inflected(lemma: str, kind: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(form.lower() for spelt in found.values() for form in spelt if form))
 
 
-@lru_cache(maxsize=1)
-def everyday_words() -> frozenset[str]:
-    """Return the words of everyday English, from texts of films: many that a lexicon lacks are among them."""
-    import orjson
-
-    return frozenset(orjson.loads(gzip.decompress((_folder("spellchecker") / "en.json.gz").read_bytes())))
+def is_everyday(word: str) -> bool:
+    """Return whether a word is one of everyday English, as in texts of films: a lexicon lacks many of them."""
+    return f"{json.dumps(word, ensure_ascii=False)}:".encode() in _text("spellchecker", "en.json.gz")
 
 
-@lru_cache(maxsize=2)
-def _rows(file: str) -> Mapping[str, str]:
-    """Return the rows of a table as text, by word."""
-    found: dict[str, str] = {}
-    for row in gzip.decompress((_folder("lemminflect") / file).read_bytes()).decode().splitlines():
-        word = row[: row.index(",")]
-        found[word] = f"{found[word]}\n{row}" if word in found else row
-    return found
+def _rows(file: str, word: str) -> Iterator[str]:
+    """Yield the rows of a word in a table."""
+    text, start = _text("lemminflect", file), f"{word},".encode()
+    low, high = 0, len(text)
+    while low < high:
+        middle = (low + high) // 2
+        line = text.rfind(b"\n", 0, middle) + 1
+        if text[line : text.index(b",", line)] < start[:-1]:
+            low = (text.find(b"\n", middle) + 1) or len(text)
+        else:
+            high = line
+    while word and text.startswith(start, low):
+        end = text.index(b"\n", low)
+        yield text[low:end].decode()
+        low = end + 1
+
+
+@lru_cache(maxsize=3)
+def _text(library: str, file: str) -> bytes:
+    return gzip.decompress((_folder(library) / file).read_bytes())
 
 
 @lru_cache(maxsize=2)

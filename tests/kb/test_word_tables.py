@@ -9,7 +9,9 @@ from spellchecker import SpellChecker
 from hearth.kb.language import word_tables
 from hearth.kb.language.lexicon import inflections
 
-WORDS = sorted(word for word in word_tables._rows("lemma_lu.csv.gz") if word.islower())
+LEMMAS = word_tables._text("lemminflect", "lemma_lu.csv.gz").decode().splitlines()
+WORDS = sorted({word for row in LEMMAS if (word := row.split(",")[0]).islower()})
+EVERYDAY = SpellChecker(language="en").word_frequency.dictionary
 MODALS = ["can", "may", "will", "shall", "must", "ought", "dare", "be", "have", "do", "all", "another", "data", "bless"]
 
 
@@ -25,8 +27,22 @@ def test_lemmas_and_forms_are_those_of_the_library(seed):
 
 
 def test_words_of_everyday_english_are_those_of_the_library():
-    assert word_tables.everyday_words() == set(SpellChecker(language="en").word_frequency.dictionary)
-    assert "fridge" in word_tables.everyday_words()
+    for word in [
+        *random.Random(0).sample(sorted(EVERYDAY), 300),
+        *random.Random(1).sample(WORDS, 300),
+        "zzzz",
+        "",
+        "abbé's",
+        "don't",
+    ]:
+        assert word_tables.is_everyday(word) == (word in EVERYDAY), word
+    assert word_tables.is_everyday("fridge") and not word_tables.is_everyday('the": 1')
+
+
+@pytest.mark.parametrize("file", ["lemma_lu.csv.gz", "infl_lu.csv.gz"])
+def test_the_tables_are_sorted_by_word(file):
+    words = [row.split(b",")[0] for row in word_tables._text("lemminflect", file).splitlines()]
+    assert words == sorted(words)
 
 
 def test_the_libraries_are_not_imported_to_read_their_tables():
