@@ -17,6 +17,7 @@ from hearth.homes import library
 from hearth.homes.lint import lint
 from hearth.kb import action_grammar
 from hearth.kb.loading.load import default, load
+from hearth.schemas.failure_words import why
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, from_release
 from hearth.schemas.literals import Literal
@@ -270,7 +271,7 @@ def test_a_thing_that_belongs_nowhere_is_named(maple, tmp_path):
     home = Home.from_graph(library.load_graph("maple", default()), "maple", known)
     failure = sample(read("Zither\nFind it.\n\n\n[Walk] <zither> (1)\n", known), home, 0)
     assert (failure.code, failure.names) == (Code.NO_PLACE, ("zither",))
-    assert "placements.csv" in failure.expected
+    assert "no place is usual for it" in why(failure)
 
 
 @pytest.mark.parametrize("draw", [sample, partial(sample_together, agents=2)])

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.code_functions import Functions, plan_of
-from hearth.kb.language.forms.control_flow import CodeLine, Names, in_order
+from hearth.kb.language.forms.control_flow import CodeLine, ThingNames, in_order
 from hearth.kb.language.forms.form import Form, Placed, note, refused, step, title
 from hearth.kb.language.refusals import Refusal
 
@@ -70,8 +70,8 @@ _RETURNED = re.compile(r"\s*return\s+((?:\w+\.)*\w+\(.*\)\s*)")
 _COMPUTED = "which thing `{}` stands for is known only while the code runs"
 
 
-def _unknown(call: str, names: Names) -> str:
-    """Return the argument of a call that no reading of the code tells."""
+def _unknown(call: str, names: ThingNames) -> str:
+    """Return the argument of a call that is known only when the code runs."""
     try:
         parsed = ast.parse(call, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -95,7 +95,7 @@ def calls_of(text: str) -> list[str]:
     return list(map(called, _ONE.findall(text))) if _CALLS.fullmatch(text) else []
 
 
-def called(call: str, names: Names = MappingProxyType({})) -> str:
+def called(call: str, names: ThingNames = MappingProxyType({})) -> str:
     """Return the step of a call; its arguments are texts or names, and nothing is run.
 
     Args:
@@ -130,7 +130,7 @@ def _called_with_words(call: str) -> str:
     return composed_step(found[1], [each.strip() for each in found[2].split(",")]) if found else call
 
 
-def _name(argument: ast.expr, names: Names) -> str | None:
+def _name(argument: ast.expr, names: ThingNames) -> str | None:
     """Return the thing that an argument names; None for one that is an expression."""
     if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
         return argument.value

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from hearth.kb.language.refusals import Refusal
 
-Names = Mapping[str, str | None]
+ThingNames = Mapping[str, str | None]
 """The thing that each variable stands for; None where only a run would tell."""
 
 
@@ -16,11 +16,11 @@ class CodeLine(NamedTuple):
 
     row: int
     text: str
-    names: Names
+    names: ThingNames
     why: Refusal | None = None
 
 
-Rows = Sequence[tuple[int, str]]
+CodeRows = Sequence[tuple[int, str]]
 
 _MOST = 100
 """Rounds of a loop at most that are unrolled."""
@@ -44,7 +44,7 @@ _ASSIGNED = re.compile(r"\s*(?:await\s+)?(\w+)\s*=\s*(?:await\s+)?(?:\w+\.)*\w+\
 _REASONS = {
     "for": "the loop goes over neither a written list of texts nor `range` of a number",
     "while": "a `while` runs until something changes, which a list of steps cannot say",
-    "with": "a `with` is no step, and its lines depend on it",
+    "with": "a `with` is not a step, and its lines depend on it",
     "try": "a `try` has steps that are done only if others fail",
 }
 _DECIDES = "this line decides while it runs which steps are done"
@@ -55,7 +55,7 @@ def in_order(lines: Sequence[str]) -> list[CodeLine]:
     return list(_run(list(enumerate(lines)), {}))
 
 
-def _run(lines: Rows, names: Names) -> Iterator[CodeLine]:
+def _run(lines: CodeRows, names: ThingNames) -> Iterator[CodeLine]:
     at, names, is_asserted = 0, dict(names), False
     while at < len(lines):
         row, raw = lines[at]
@@ -78,7 +78,7 @@ def _run(lines: Rows, names: Names) -> Iterator[CodeLine]:
                 names[assigned[1]] = _thing(assigned[2], names)
 
 
-def _compound(row: int, raw: str, body: Rows, names: Names, word: str) -> Iterator[CodeLine]:
+def _compound(row: int, raw: str, body: CodeRows, names: ThingNames, word: str) -> Iterator[CodeLine]:
     """Yield the lines of a loop over literals, round by round; else the refused head of the lines below it."""
     loop = _FOR.fullmatch(raw)
     values = _values(loop[2]) if loop else None
@@ -114,7 +114,7 @@ def _values(listed: str) -> list[str | None] | None:
 _LARGEST = 1_000_000
 
 
-def _why_plain(raw: str, below: Rows) -> Refusal | None:
+def _why_plain(raw: str, below: CodeRows) -> Refusal | None:
     """Return why a line that holds no other lines is refused."""
     if leaves := _LEAVES.match(raw):
         follows = any(not _BLANK.match(line) and not _DEF.match(line) for _, line in below)
@@ -129,7 +129,7 @@ def _parameters(text: str) -> list[str]:
     return re.findall(r"(?:^|,)\s*\*{0,2}(\w+)", text.partition(")")[0])
 
 
-def _thing(arguments: str, names: Names) -> str | None:
+def _thing(arguments: str, names: ThingNames) -> str | None:
     """Return the one thing of a call whose result has a name."""
     found = arguments.strip()
     if found in names:
@@ -141,7 +141,7 @@ def _indent(raw: str) -> int:
     return len(raw.expandtabs()) - len(raw.expandtabs().lstrip())
 
 
-def _end(lines: Rows, at: int, indent: int) -> int:
+def _end(lines: CodeRows, at: int, indent: int) -> int:
     """Return where the lines end that are indented deeper."""
     last = at
     while at < len(lines) and (not lines[at][1].strip() or _indent(lines[at][1]) > indent):
