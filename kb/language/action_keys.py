@@ -1,5 +1,6 @@
 """The words by which people, programs and tools name the parts of a step: keys of JSON, attributes, columns."""
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -26,6 +27,10 @@ OBJECTS = frozenset({
     "on", "onto", "in", "inside", "from", "with", "value",
 })  # fmt: skip
 """Keys of the objects of a step; or one with a number, as `arg1`."""
+
+
+INSTANCE = re.compile(r"(?:object[_ ])?inst(?:ance)?s?(?:[_ ](?:id|no|nr|number))?[._ -]?\d*", re.IGNORECASE)
+"""The name of a column or key with the instance of the thing before it, or of the only one."""
 
 
 def names_action(name: str, things: Sequence[str] = ()) -> bool:

@@ -24,6 +24,7 @@ from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
 from hearth.kb.language.refusals import Refusal
 from hearth.kb.language.said_before import SaidBefore
+from hearth.kb.language.self_corrections import corrects_itself
 from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, nearest_steps, plain_step
 from hearth.kb.language.single_clauses import Asked, unclear
 from hearth.kb.language.staying import stays
@@ -221,6 +222,8 @@ class _StepParser:
 
     def _detail(self, words: str, raw: str, number: int) -> bool:
         """Add the steps of a line that may explain; return whether it reads exactly as steps."""
+        if corrects_itself(words):
+            return False
         said = self._before.last_first(words)
         if stays(self.known, words, said):
             self._idle.append((words, raw, number))
@@ -235,6 +238,11 @@ class _StepParser:
         if line.bracketed:
             return self._written(line.text, raw, number)
         words = _ORDINAL.sub("", line.text, count=1)
+        if corrects_itself(words):
+            self._take_back(number)
+            self._before.add_unread(words, number)
+            reason, remedy = "the line takes back its own words", "write the step that is meant, alone"
+            return [self._diagnostic(Code.AMBIGUOUS, reason, raw, words, number, remedy)]
         said = self._before.last_first(words)
         if stays(self.known, words, said):
             self._idle.append((words, raw, number))
@@ -250,6 +258,13 @@ class _StepParser:
         for each in asked:
             self._take_asked(each, raw, words, number)
         return [] if asked else self._read_in_part(words, raw, number, said)
+
+    def _take_back(self, number: int) -> None:
+        """Leave out the steps that sentences before this one on the same line asked for."""
+        while self.lines and self.lines[-1] == number:
+            self._before.take_back()
+            self.lines.pop()
+            self.steps.pop()
 
     def _read_in_part(self, words: str, raw: str, number: int, said: tuple[Mentioned, ...]) -> list[Diagnostic]:
         """Add the steps of the clauses of a line that are understood; a fault for each other, or for all of it."""

@@ -42,6 +42,13 @@ class SaidBefore:
         del self.mentions[size:]
         self._seen, self._kept = min(size, self._seen), min(size, self._kept)
 
+    def take_back(self) -> None:
+        """Forget the last step, and the lines that were not understood after it."""
+        size = len(self.mentions)
+        while size and self.mentions[size - 1].action in (UNREAD, ""):
+            size -= 1
+        self.cut(max(size - 1, 0))
+
     def swap_last(self) -> None:
         """Let the thing before the last one be spoken of last."""
         self.mentions[-2:] = reversed(self.mentions[-2:])

@@ -208,7 +208,28 @@ def _exact(known: Knowledge, words: str, said: Sequence[Mentioned]) -> tuple[Ask
             return ()  # a line that was not understood may have named the thing that is meant
         best = best or readings[0]
         return (Asked(best, _number(best, said) if has_pronoun(words) else 1),)
-    return _ordered(known, words, said) or _counted(known, words, said)
+    return _ordered(known, words, said) or _counted(known, words, said) or _of_numbers(known, words)
+
+
+_NUMBERED = re.compile(r"(?<=[a-z]) (?:#|no\. ?|nr\. ?|number )?([1-9]\d{0,3})(?=$|[ ,.;!])", re.IGNORECASE)
+
+
+def _of_numbers(known: Knowledge, words: str) -> tuple[Asked, ...]:
+    """Return the step of a clause whose things have numbers behind their names: `put cup 2 on table #1`."""
+    found = list(_NUMBERED.finditer(words))
+    meant = understand_exactly(known, _NUMBERED.sub("", words)).meant if found else None
+    if meant is None or not meant.names or len(found) > len(meant.names):
+        return ()
+    numbers: dict[str, int] = {}
+    for each in found:
+        before = _NUMBERED.sub("", words[: each.start()]).lower().split()
+        ends = (thing_of(known, " ".join(before[-length:])) for length in (3, 2, 1))
+        name = next((thing for thing in ends if thing in meant.names), "")
+        if not name or name in numbers:
+            return ()
+        numbers[name] = int(each[1])
+    first, second = (*(numbers.get(name, 1) for name in meant.names), 1, 1)[:2]
+    return (Asked(meant, instance=first, second=second),)
 
 
 def _numbered(meant: Candidate, name: str, number: int) -> Asked:

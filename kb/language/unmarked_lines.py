@@ -142,7 +142,9 @@ def _joined_by(joint: re.Pattern[str], text: str) -> list[str]:
 
 
 def _is_whole(part: str) -> bool:
-    return (" " in part and is_like_step(part)) or bool(operator_step(part))
+    alone = recognition().action(part.strip())
+    is_act = alone is not None and alone.arity == 0
+    return is_act or (" " in part and is_like_step(part)) or bool(operator_step(part))
 
 
 def clauses(text: str) -> list[str]:

@@ -134,6 +134,10 @@ def shown(place: str, columns: FieldColumns) -> str:
     return f"Columns of {place}: {named or 'none is known'}{none}.{note} `--columns` names others.{also}"
 
 
+_OF_RECORDS = [["id"], ["ids"], ["no"], ["nr"], ["number"], ["index"], ["idx"], ["count"], ["length"], ["date"]]
+"""Last words of columns that number and date records, and say nothing of their own: `plan_id`."""
+
+
 def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -> dict[str, str]:
     """Return the column of each field: the given one if the table has it, else that with the likeliest name.
 
@@ -148,7 +152,11 @@ def guessed(names: Iterable[str], given: FieldColumns, *, exact: bool = False) -
     found = {field: name for field, name in given.items() if name in columns}
     words = {name: _OTHER.sub(" ", name.lower()).split() for name in columns}
     for part in (slice(None), slice(-1, None), slice(1))[: 1 if exact else 3]:
-        named = {" ".join(words[name][part]): name for name in reversed(columns)}
+        named = {
+            " ".join(words[name][part]): name
+            for name in reversed(columns)
+            if part == slice(None) or words[name][-1:] not in _OF_RECORDS
+        }
         for field, usual in _usual().items():
             likely = (named[each] for each in usual if each in named)
             name = next((name for name in likely if name not in found.values()), None)

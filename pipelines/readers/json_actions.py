@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from hearth.kb.language.action_keys import ACTIONS, action_key, bare_key, holds_object, last_name
+from hearth.kb.language.action_keys import ACTIONS, INSTANCE, action_key, bare_key, holds_object, last_name
 from hearth.kb.language.composed_steps import class_of
 from hearth.kb.language.program_names import action_of
 from hearth.kb.language.recognition_knowledge import recognition
@@ -61,7 +61,8 @@ def is_only_action(value: Any) -> bool:
         return True
     if not is_action(value) or isinstance(value.get("function"), dict):
         return False
-    return all(key.lower() in ACTIONS or holds_object(key) for key in value) and any(map(holds_object, value))
+    named = all(key.lower() in ACTIONS or holds_object(key) or INSTANCE.fullmatch(key) for key in value)
+    return named and any(map(holds_object, value))
 
 
 def step_of(value: dict[str, Any]) -> str:
@@ -73,8 +74,14 @@ def step_of(value: dict[str, Any]) -> str:
         return _step(call["name"], _arguments(call.get("arguments")))
     key = _action(value)
     assert key is not None
-    said = [(name, relation) for each in value if holds_object(each) for name, relation in _related(each, value[each])]
-    return _step(last_name(value[key]), [name for name, _ in said], said[-1][1] if said else "")
+    said: list[tuple[str, str, str]] = []
+    for each, part in value.items():
+        if holds_object(each):
+            said += [(name, relation, "1") for name, relation in _related(each, part)]
+        elif said and INSTANCE.fullmatch(each) and str(part).isdecimal() and int(part):
+            said[-1] = (*said[-1][:2], str(int(part)))
+    names, numbers = [name for name, _, _ in said], [number for _, _, number in said]
+    return _step(last_name(value[key]), names, said[-1][1] if said else "", numbers)
 
 
 def _related(key: str, value: Any) -> Iterator[tuple[str, str]]:
@@ -118,16 +125,19 @@ def _names(value: Any) -> Iterator[str]:
             yield from _names(part) if isinstance(part, (str, int)) else ()
 
 
-def _step(action: str, names: Sequence[str], relation: str = "") -> str:
+def _step(action: str, names: Sequence[str], relation: str = "", numbers: Sequence[str] = ()) -> str:
+    """Return a step of names; they have the instances of `numbers`, 1 if none are given."""
     are_names = all(map(_NAME.fullmatch, names))
+    numbers = numbers or ["1"] * len(names)
     if _takes(action, len(names)) and are_names:
-        return _written(action, [(class_of(name), "1") for name in names])
+        return _written(action, zip(map(class_of, names), numbers, strict=True))
     *verb, last = re.split(r"[\s_-]+", action.strip())
     if len(names) == 2 and verb and last.lower() in _BETWEEN:
         return composed(" ".join(verb), " ", names[0], f" {last} ", names[1])
     meant = action_of(recognition(), action, names, relation) if names and are_names else ""
     if meant:
-        return _written(meant, [(class_of(name), "1") for name in names])
+        return _written(meant, zip(map(class_of, names), numbers, strict=True))
+    names = [name if number == "1" else f"{name} {number}" for name, number in zip(names, numbers, strict=True)]
     if len(names) == 2 and relation in _BETWEEN:
         return composed(action, " ", names[0], f" {relation} ", names[1])
     return composed(action, *(piece for name in names for piece in (" ", name)))

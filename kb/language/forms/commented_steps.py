@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step
 
-_STEP = re.compile(r"\s*(?P<step>[A-Za-z][^#/\[\](){}=<>|:]*?)\s+(?:#|//)\s*(?P<why>[^#]*\S)\s*")
+_STEP = re.compile(r"\s*(?P<step>[A-Za-z][^#/\[\](){}=<>|:]*?)\s+(?:#(?!\d)|//)\s*(?P<why>[^#]*\S)\s*")
 _COMMENT = re.compile(r"\s*(?:#|//|;)\s*(?P<why>\S.*)")
 _PLAIN = re.compile(r"\s*[A-Za-z][\w ,.'-]*")
 

@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hearth.kb.language.action_keys import ACTIONS, holds_object, names_action
+from hearth.kb.language.action_keys import ACTIONS, INSTANCE, holds_object, names_action
 from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
@@ -100,7 +100,9 @@ def _head(lines: Sequence[str], kind: str, rows: Sequence[list[str]]) -> tuple[s
 
 
 def _is_name(cell: str) -> bool:
-    return bool(_NAMED.fullmatch(cell) or _COUNTS.fullmatch(cell) or holds_object(cell) or cell.lower() in ACTIONS)
+    return bool(
+        _NAMED.fullmatch(cell) or _COUNTS.fullmatch(cell) or holds_object(cell) or cell.lower() in ACTIONS
+    ) or bool(INSTANCE.fullmatch(cell))
 
 
 def _step(cells: Sequence[str], head: Sequence[str]) -> str:
@@ -133,9 +135,16 @@ def _things(cells: Sequence[str], head: Sequence[str], at: int) -> list[str]:
     """Return the cells of things: by the names of their columns, else those behind a known action."""
     if head:
         things = [n for n, name in enumerate(head) if n != at and holds_object(name)]
-        return [cells[n] for n in things if n < len(cells) and _WORDS.search(cells[n])]
+        return [_thing(cells, head, n) for n in things if n < len(cells) and _WORDS.search(cells[n])]
     behind = [cell for cell in cells[at + 1 :] if cell]
     return behind if 0 < len(behind) < _FEW and names_action(cells[at], behind) else []
+
+
+def _thing(cells: Sequence[str], head: Sequence[str], at: int) -> str:
+    """Return the cell of a thing with the instance in the column behind it, `cup 2`."""
+    behind = at + 1
+    is_counted = behind < min(len(head), len(cells)) and INSTANCE.fullmatch(head[behind])
+    return f"{cells[at]} {cells[behind]}" if is_counted and cells[behind].isdecimal() else cells[at]
 
 
 _FEW = 4

@@ -21,7 +21,7 @@ _LAYOUT = re.compile(r"[\s|:-]*|\s*\|[^.]*\|\s*")
 _LABEL = re.compile(
     r"(?:task|title|activity|goal|plan|steps?|answer|actions?|note|tip|thought|act|obs\w*)\b", re.IGNORECASE
 )
-_GOING = re.compile(r"\s*(?:walk|go|head|run) (?:to|into)\b", re.IGNORECASE)
+_GOING = re.compile(r"\s*(?:\(?\d{1,3}[.):]\s*)?(?:walk|go|head|run) (?:to|into)\b", re.IGNORECASE)
 """The first of several steps, and no title."""
 
 _HALF = 0.5
