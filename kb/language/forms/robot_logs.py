@@ -12,7 +12,7 @@ from hearth.kb.language.unmarked_lines import is_like_step
 
 _LINE = re.compile(
     r"(?:[-–]\s+)?(?:<(?P<nick>[\w.@+-]{1,20})>\s*:?"
-    r"|\**(?P<who>[A-Za-z][\w.-]{0,20}(?: [A-Z][\w.-]{0,20})?)\**\s*:\**)\s+"
+    r"|\**(?P<who>[A-Za-z][\w.-]{0,20}(?: (?:[A-Z][\w.-]{0,20}|action|thought|act|step))?)\**\s*:\**)\s+"
     r"(?P<said>[^\s\[<].*|\[\d.*|<(?!\w+>\s*\().*)"
 )
 _ACTS = frozenset(("", "INFO", "DEBUG", "ACTION", "EXEC", "STEP"))
@@ -20,12 +20,13 @@ _ACTS = frozenset(("", "INFO", "DEBUG", "ACTION", "EXEC", "STEP"))
 
 _QUESTION = re.compile(r"\s*\**\s*Q(?:uestion)?\s*\d*\s*:\s*(?P<said>[^*]*)\**\s*")
 ROBOTS = re.compile(
-    r"(?:step|action|do|doing|execut(?:e|ing|ed)|perform(?:ing|ed)?|running|sending|calling|robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}",
+    r"(?:(?:robot|agent|bot) )?(?:step|action|act|do|doing|execut(?:e|ing|ed)|perform(?:ing|ed)?|running|sending"
+    r"|calling|robot|bot|agent|exec(?:utor)?|controller|skill|robo|assistant|ai|gpt|a|answer)\d{0,2}",
     re.IGNORECASE,
 )
 """Names of those that do what they say; `A` answers where a question stands above."""
 
-_PEOPLE = re.compile(r"(?:human|person|operator|owner)\d{0,2}", re.IGNORECASE)
+_PEOPLE = re.compile(r"(?:human|person|operator|owner|instruction)\d{0,2}", re.IGNORECASE)
 _TASK = re.compile(r"(?:task|goal)\s*[=:]\s*[\"']?([^\"']+)[\"']?")
 _JOINT = re.compile(r"\s*(?:->|=>|→|;)\s*|\s+>\s+")
 _NEXT = re.compile(r"(?:^|\s)[(\[]?\d{1,2}[.):\]]\s+")
@@ -126,7 +127,7 @@ SPEAKERS = Form(
     _lines,
     lambda raw: (said := said_of(raw)) is not None and said.is_step,
     re.compile(
-        rf"\s*(?:(?:human|person|operator|owner)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
+        rf"\s*(?:(?:human|person|operator|owner|instruction)\d*:\s+(?!.*\bthank)|\**\s*Q(?:uestion)?\s*\d*\s*:|(?:{STAMP}\s+)?(?:(?!robot|bot|agent)[A-Za-z]\w{{0,20}}):\s+.*\?\s*$|.*\btask\s*=)",
         re.IGNORECASE,
     ),
 )
