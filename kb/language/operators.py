@@ -33,7 +33,7 @@ _KEYED = re.compile(
     r"\[[^\]]*\]|[^=:,;{}<>\"']*?)(?=\s*[,;]?\s*[\"']?[A-Za-z]\w*[\"']?\s*[=:]|\s*[,;]?\s*$)"
 )
 _AROUND = re.compile(r"\s*(?:step\s+)?[({]?(?P<inner>.*?)[)}]?\s*[,;]?\s*")
-_ELEMENT = re.compile(r"\s*<(?P<tag>[A-Za-z]\w*)\s+(?P<inner>[^<>]*?)/?>\s*(?:</\w+>)?\s*")
+_ELEMENT = re.compile(r"\s*<(?P<tag>[A-Za-z]\w*)\s+(?P<inner>[^<>]*?)/?>(?P<within>[^<>]{0,80})(?:</\w+>)?\s*")
 _LONGEST = 300
 
 
@@ -100,6 +100,8 @@ def _of_keys(text: str) -> str:
     pairs = [(found["key"], found["value"].strip().strip("\"'")) for found in _KEYED.finditer(inner)]
     if _KEYED.sub("", inner).strip(" ,;"):
         return ""
+    if element and element["within"].strip():
+        pairs.append(("object", element["within"].strip()))
     name = last_name(dict(pairs).get(action_key(dict(pairs)), ""))
     if element and not (name and names_action(name, _things(pairs))):
         name = element["tag"]

@@ -1,14 +1,19 @@
 """Marks by which the line above plain steps is their title, and those that leave it open."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.lexicon import is_verb
 from hearth.kb.language.recognition_knowledge import recognition
 from hearth.kb.language.refusals import Refusal
+
+if TYPE_CHECKING:
+    from hearth.kb.language.forms.form import Placed
 
 GOES = re.compile(
     r"(?:then |now )?(?:walk|go|head|move|run)s? (?:over |back )?(?:to|into|in|towards?)\b", re.IGNORECASE
