@@ -115,11 +115,19 @@ def called(call: str, names: ThingNames = MappingProxyType({})) -> str:
     arguments = [_name(each, names) for each in (*parsed.args, *(keyword.value for keyword in keywords))]
     relation = (keywords[-1].arg or "") if keywords else ""
     objects = [each for each in arguments if each]
+    if name.lower() in _EXECUTES and len(arguments) == 1 and objects and not keywords:
+        if "(" in objects[0]:
+            return called(objects[0], names)
+        if " " in objects[0].strip():
+            return objects[0]
     return composed_step(name, objects, relation) if name and None not in arguments else call
 
 
 _ACTS = frozenset(("action", "act", "verb", "skill", "command", "primitive"))
 """Keywords of calls that hold the name of the action, where the function only executes it."""
+
+_EXECUTES = frozenset(("run", "do", "execute", "exec", "perform", "step", "act"))
+"""Functions that execute a step given as a text: `robot.execute("walk to the bedroom")`."""
 
 _WITH_WORDS = re.compile(r"(?:\w+\.)*(\w+)\(\s*([A-Za-z][\w '-]*(?:,\s*[A-Za-z][\w '-]*)*)\)")
 

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from hearth.kb.language.composed_steps import written
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.program_names import action_of
+from hearth.kb.language.recognition_knowledge import recognition
 
 _STEP = re.compile(
     r"\s*(?:(?:step\s*)?\d+(?:\.\d+)?\s*[:.)]\s*)?\(\s*([a-z][a-z_-]*)((?:\s+[\w.-]+)*)\s*\)\s*(?:\[[\d.]+\])?\s*(?:;.*)?",
@@ -32,6 +34,8 @@ def pddl_step(raw: str) -> str:
         found[1].lower().replace("-", "_"),
         [each for each in found[2].split() if not _ACTORS.fullmatch(each)],
     )
+    if names and action not in _ACTIONS and recognition().action(action) is None:
+        action = action_of(recognition(), action, names) or action
     return written(_ACTIONS.get(action, action) if names else action, list(map(_name, names)))
 
 
