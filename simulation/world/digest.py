@@ -5,14 +5,14 @@ from its home. The digest finds mistakes and changes; an attacker can make two w
 """
 
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
 from hashlib import blake2b
 from weakref import WeakKeyDictionary
 
-from hearth.schemas.vocabulary import EVERY_STATE, STATES
+from hearth.schemas.vocabulary import FURTHER_STATES, STATES
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.further import counts_of, rows_at_start
+from hearth.simulation.world.further import counts_of, is_wide
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import CLOSE
 from hearth.simulation.world.world import World
@@ -37,9 +37,11 @@ def digest(world: World) -> str:
             if kind == CLOSE:
                 found.update((ids[j], relation, ids[i]) for j in indices(mask))
     total += _sum(came) - _sum(went)
-    for name, before, now in zip(EVERY_STATE, rows_at_start(world), world.states, strict=False):
+    for name, before, now in zip(STATES, home.states, world.states, strict=False):
         if before != now:
             total += _states(ids, name, now & ~before) - _states(ids, name, before & ~now)
+    if is_wide(world):  # the digest of a home has none of the further states
+        total += sum(map(partial(_states, ids), FURTHER_STATES, world.states[len(STATES) :]))
     total += sum(_states(ids, f"ticks {k}", row) for k, row in enumerate(counts_of(world)))
     return blake2b((total % (1 << _BITS)).to_bytes(_BITS // 8, "little"), digest_size=16).hexdigest()
 

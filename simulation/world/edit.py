@@ -10,12 +10,13 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.graph_change import Change
-from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID, FIRST_ADDED_ID, OPPOSITE, STATE_ID
 from hearth.simulation.world import moved_edges as kinds
 from hearth.simulation.world import overlay, placement_fit, rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.derived_homes import Movable, added_nodes, extended, without
+from hearth.simulation.world.further import counts_of, is_wide, rows_at_start, wide_start, without_node
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import Moved
 from hearth.simulation.world.world import World
@@ -110,15 +111,21 @@ def _with_nodes(world: World, nodes: Sequence[Node]) -> World:
     if home.base is None or home.base[0] is not world.home:
         return _moved_over(world, home)
     rest = world.home.everything
-    states = tuple(now | new & ~rest for now, new in zip(world.states, home.states, strict=True))
+    starts = rows_at_start(World(home, world.states, (), world.moved))
+    known, ticks = world.states[: len(starts)], world.states[len(starts) :]
+    states = (*(now | new & ~rest for now, new in zip(known, starts, strict=True)), *ticks)
     agents = (*world.agents, *(agent for agent in home.agent_rows if not rest & agent.bit))
     return World(home, states, agents, world.moved)
 
 
 def _moved_over(world: World, home: Home) -> World:
-    """Return the world in a home with other indices: edges and states anew, memories by id."""
-    start = World.start(home)
-    before = World.start(world.home)
+    """Return the world in a home with other indices: edges and states anew, memories by id.
+
+    In a world of action set 3 processes count from 0 again.
+    """
+    start, before = World.start(home), World.start(world.home)
+    if is_wide(world):
+        start, before = wide_start(start, len(counts_of(world))), wide_start(before, len(counts_of(world)))
     there = apply(start, world.changes(before))
     old, new = world.home.ids, home.index
     agents = list(there.agents)
@@ -140,7 +147,7 @@ def _without_node(world: World, i: int) -> World:
         if agent.index != i:
             memory = tuple(entry for entry in agent.origins if i not in entry[:2])
             agents.append(agent.without(bit)._replace(origins=memory))
-    states = tuple(row & ~bit for row in world.states)
+    states = without_node(world, bit)
     return World(home, states, tuple(agents), world.moved._replace(extra=extra))
 
 
@@ -195,16 +202,19 @@ def _with_states(
     world: World, entered: Iterable[tuple[int, str]], left: Iterable[tuple[int, str]], check: bool
 ) -> World | Failure:
     states = list(world.states)
-    index = world.home.index
+    index, numbers = world.home.index, EVERY_STATE_ID if is_wide(world) else STATE_ID
     for node_id, name in left:
-        states[STATE_ID[name]] &= ~(1 << index[node_id])
+        states[numbers[name]] &= ~(1 << index[node_id])
     for node_id, name in entered:
         failure = placement_fit.impossible(world.home, index[node_id], name) if check else None
         if failure is not None:
             return failure
-        number, bit = STATE_ID[name], 1 << index[node_id]
-        states[number] |= bit
-        states[number ^ 1] &= ~bit
+        bit = 1 << index[node_id]
+        states[numbers[name]] |= bit
+        opposite = OPPOSITE.get(name, "")
+        for other in (opposite,) if opposite else world.home.knowledge.excludes(name):
+            if other in numbers:
+                states[numbers[other]] &= ~bit
     return World(world.home, tuple(states), world.agents, world.moved)
 
 

@@ -1,7 +1,8 @@
 """A world in the middle of an execution as JSON and back, with nothing lost.
 
-The graph is the release's own format, so that other tools read it; a removed thing has no box in it. Two keys hold what
-a graph cannot express: `memories` has the origins of grabbed things, and `poses` the characters' places and strides.
+The graph is the release's own format, so that other tools read it; a removed thing has no box in it. Three keys hold
+what a graph cannot express: `memories` has the origins of grabbed things, `poses` the characters' places and strides,
+and `ticks`, in worlds of action set 3, the rows in which processes count, each as ids of nodes.
 """
 
 from collections.abc import Mapping
@@ -12,6 +13,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release, to_release
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.further import counts_of, is_wide, with_counts
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import CLOSE, INSIDE, ON
 from hearth.simulation.world.pose import Pose
@@ -24,7 +27,7 @@ _NUMBERS = {name: kind for kind, name in _KINDS.items()}
 def export(world: World) -> dict[str, Any]:
     """Return the world as a JSON-able mapping.
 
-    `home`, `graph`, `memories`, and `poses` where characters have places.
+    `home`, `graph`, `memories`, `poses` where characters have places, and `ticks` in worlds of action set 3.
     """
     graph = world.graph()
     moved = world.moved.on | world.moved.inside
@@ -34,7 +37,7 @@ def export(world: World) -> dict[str, Any]:
 
 
 def private(world: World) -> dict[str, Any]:
-    """Return the parts that a graph cannot hold, by node ids: `memories`, and `poses` where characters have places."""
+    """Return the parts that a graph cannot hold, by node ids: `memories`, and `poses` and `ticks` if there are any."""
     ids = world.home.ids
     memories = [
         {"agent": ids[agent.index], "thing": ids[thing], "place": ids[place], "relation": _KINDS[kind]}
@@ -46,7 +49,10 @@ def private(world: World) -> dict[str, Any]:
         for agent in world.agents
         if agent.pose is not None
     ]
-    return {"memories": memories, "poses": poses} if poses else {"memories": memories}
+    found: dict[str, Any] = {"memories": memories, "poses": poses} if poses else {"memories": memories}
+    if is_wide(world):
+        found["ticks"] = [[ids[i] for i in indices(row)] for row in counts_of(world)]
+    return found
 
 
 def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
@@ -79,7 +85,10 @@ def with_private(world: World, data: Mapping[str, Any]) -> World:
     places = {index[each["agent"]]: _place(each) for each in data.get("poses", ())}
     agents = (agent._replace(origins=tuple(by_agent.get(agent.index, ()))) for agent in world.agents)
     placed = (agent._replace(**places.get(agent.index, {})) for agent in agents)
-    return World(world.home, world.states, tuple(placed), world.moved)
+    states = world.states
+    if "ticks" in data:
+        states = with_counts(world, tuple(mask_of(index[node] for node in row) for row in data["ticks"]))
+    return World(world.home, states, tuple(placed), world.moved)
 
 
 def _place(given: Mapping[str, Any]) -> dict[str, Any]:
