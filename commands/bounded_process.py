@@ -91,6 +91,8 @@ def in_time(seconds: float) -> Iterator[None]:
     try:
         with ended_within(seconds):
             yield
+        if over:  # an interrupt at an odd moment was lost, and the work was done before the next one came
+            raise _TimeOver
     except BaseException as error:
         signal.setitimer(signal.ITIMER_REAL, 0)
         if not over:
