@@ -40,7 +40,7 @@ def test_a_command_ends_in_its_time(made, tmp_path, name):
     data = made.out / "publish"
     words = [word.format(data=data, other=data, out=tmp_path / "out") for word in WORDS[name]]
     before = time.monotonic()
-    result = CliRunner().invoke(cli.app, [*words, "--within", "0.02"])
+    result = CliRunner().invoke(cli.app, [*words, "--within", "0.0001"])
     assert result.exit_code == 1 and "TIMED_OUT" in result.stderr and "--within" in result.stderr, result.output
     assert time.monotonic() - before < 10
 
