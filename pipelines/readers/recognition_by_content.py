@@ -64,6 +64,7 @@ _MAGIC: dict[bytes, str] = {
 
 _PACKED = frozenset({".gz", ".zst"})
 _TABLES = frozenset({".csv", ".tsv"})
+_CODE = frozenset({".py", ".js", ".ts", ".sh", ".lua"})
 _JSON = frozenset({".json", ".jsonl", ".ndjson"})
 _YAML = frozenset({".yaml", ".yml"})
 _TEXT = frozenset({"", ".txt", ".text", ".prog"})
@@ -205,7 +206,8 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return Recognised(path, place, crowd.NAME)
     if looks_like_json(line) and not _NUMBER.match(line):
         return _json(path, place, whole)
-    if (suffix in _TABLES and first) or (line.lstrip()[:1] != "|" and program_tables.names_it(line[:10_000])):
+    may_be_table = suffix not in _CODE and line.lstrip()[:1] != "|"
+    if (suffix in _TABLES and first) or (may_be_table and program_tables.names_it(line[:10_000])):
         return Recognised(path, place, program_tables.NAME)
     if suffix in _JSON and first:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator, Sequence
 from types import MappingProxyType
 
+from hearth.kb.language.action_keys import names_action
 from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.code_functions import Functions, plan_of
 from hearth.kb.language.forms.control_flow import CodeLine, ThingNames, in_order
@@ -12,10 +13,13 @@ from hearth.kb.language.forms.form import Form, Placed, note, refused, step, tit
 from hearth.kb.language.refusals import Refusal
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
-_CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*;?\s*(?:#.*|//.*)?$")
+_CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*[;,]?\s*(?:#.*|//.*)?$")
 _LEFT_OUT = re.compile(
     r"\s*(?:(?:assert|else|if|elif|for|while|try|except|import|return|pass|class|with)\b|from\b.*\bimport\b|print\(|\"{3}|'{3})"
 )
+_FRAME = re.compile(r"\s*(?:from\b.*\bimport\b|import\b|[\])}]\s*[,;]?\s*$|\w+\s*=\s*[\[(]\s*$)")
+"""A line of code around the calls: an import, or the begin or end of a list."""
+
 _MADE_TRUE = re.compile(r"\s*else\s*:(?!\s*find\b)\s*(\S.*)")
 """ProgPrompt's act where a state lacks, `else: open('fridge')`; finding a thing again is left out."""
 
@@ -28,7 +32,7 @@ _LONGEST = 500
 
 def _fits(lines: Sequence[str]) -> bool:
     """Return whether most lines are calls: a text in which some line is nothing that code has is none."""
-    code = [line for line in lines if not _COMMENT.match(line) and not _HEAD.fullmatch(line)]
+    code = [x for x in lines if not _COMMENT.match(x) and not _HEAD.fullmatch(x) and not _FRAME.match(x)]
     calls = sum(_is_call(line) for line in code)
     return any(map(_DEF.match, code)) or (calls > 0 and calls >= 0.6 * len(code))
 
@@ -51,7 +55,7 @@ def _placed(line: CodeLine, plan: Functions) -> Iterator[Placed]:
     elif named := _DEF.match(raw):
         if named[1] not in plan.called:
             yield title(row, named[1].replace("_", " "))
-    elif not _COMMENT.match(raw):
+    elif not _COMMENT.match(raw) and not _FRAME.match(raw):
         made_true, returned = _MADE_TRUE.match(raw), _RETURNED.fullmatch(raw)
         own = made_true or returned
         words = own[1] if own else raw
@@ -115,6 +119,8 @@ def called(call: str, names: ThingNames = MappingProxyType({})) -> str:
     arguments = [_name(each, names) for each in (*parsed.args, *(keyword.value for keyword in keywords))]
     relation = (keywords[-1].arg or "") if keywords else ""
     objects = [each for each in arguments if each]
+    if name.lower() in _MAKES and len(objects) == len(arguments) > 0 and names_action(objects[0], objects[1:]):
+        return composed_step(objects[0], objects[1:], relation)
     if name.lower() in _EXECUTES and len(arguments) == 1 and objects and not keywords:
         if "(" in objects[0]:
             return called(objects[0], names)
@@ -125,6 +131,9 @@ def called(call: str, names: ThingNames = MappingProxyType({})) -> str:
 
 _ACTS = frozenset(("action", "act", "verb", "skill", "command", "primitive"))
 """Keywords of calls that hold the name of the action, where the function only executes it."""
+
+_MAKES = frozenset(("step", "action", "act", "do", "execute", "instruction", "command"))
+"""Functions and classes of a step whose first argument is its action: `Step(Walk, "kitchen")`."""
 
 _EXECUTES = frozenset(("run", "do", "execute", "exec", "perform", "step", "act"))
 """Functions that execute a step given as a text: `robot.execute("walk to the bedroom")`."""
