@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
 from hearth.commands.inputs import choose_given, read_knowledge
+from hearth.commands.run_additions import Additions, additions, names_of
 from hearth.kb.language.reading_modes import Fuzzy
 
 if TYPE_CHECKING:
+    from hearth.schemas.program import Program
     from hearth.simulation.engine import Execution
     from hearth.simulation.hazards import Found
     from hearth.simulation.lasting_changes import Lasting
+    from hearth.simulation.world.home import Home
 
 
 def hazards(
@@ -50,7 +53,8 @@ def hazards(
         raise HearthError(given.faults)
     output.report(given.warnings, kind="warning")
     program, place, _ = given.at_home(home, graph, homes, known)
-    execution = _execution(program, place, seed, sample)
+    execution, is_sampled = _execution(program, place, seed, sample)
+    added = _added(place, execution) if is_sampled else None
     found, lost, open_things = found_in(execution), irreversible(execution), left(execution)
     if as_json:
         output.emit(
@@ -58,26 +62,43 @@ def hazards(
                 "home": place.name,
                 "executable": execution.executable,
                 "failure": _failed(execution) or None,
+                "sampled": is_sampled,
+                "additions": added,
                 "hazards": [_row(each) for each in found],
                 "irreversible": [each._asdict() for each in lost],
                 "left": [each._asdict() for each in open_things],
             }
         )
     else:
+        names = names_of(execution.worlds[0].graph()) if added else {}
+        for line in added.lines(names) if added else ():
+            output.line(line)
         _show(execution, found, lost, open_things)
     output.status(bool(found) or not execution.executable, strict=True)
 
 
-def _execution(program: Any, place: Any, seed: int, sample: bool) -> Execution:
-    """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
+def _execution(program: Program, place: Home, seed: int, sample: bool) -> tuple[Execution, bool]:
+    """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it.
+
+    The second value is whether a home was made.
+    """
     from hearth.grounding.grounded_run import LEAST, Trial, as_given, attempt
     from hearth.simulation.rules import CONSEQUENCES
 
     trial = as_given(program, place, seed, CONSEQUENCES)
     if sample and trial.execution.failure is not None:
         found = attempt(program.unbound(), place, seed, CONSEQUENCES, size=LEAST)
-        trial = found if isinstance(found, Trial) else trial
-    return trial.execution
+        if isinstance(found, Trial):
+            return found.execution, True
+    return trial.execution, False
+
+
+def _added(place: Home, execution: Execution) -> Additions:
+    """Return the differences of the home that was made from the home as it is."""
+    from hearth.simulation.processes import widened
+    from hearth.simulation.world.world import World
+
+    return additions(widened(World.start(place)).graph(), execution.worlds[0].graph())
 
 
 def _failed(execution: Execution) -> str:

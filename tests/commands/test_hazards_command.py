@@ -37,3 +37,12 @@ def test_a_program_without_a_hazard_is_clean_and_one_that_stops_is_not(tmp_path)
     assert "0 hazards in 3 steps." in call("hazards", file, "--home", "maple").output
     file.write_text("Sit down\n1. Sit on the chair\n")
     assert "failed" in call("hazards", file, "--home", "maple", status=1).output
+
+
+def test_what_a_made_home_has_besides_is_printed(tmp_path):
+    file = tmp_path / "iron.txt"
+    file.write_text("Iron\n1. Walk to the bedroom\n2. Find the iron\n3. Switch on the iron\n4. Walk to the kitchen\n")
+    text = call("hazards", file, "--home", "maple", "--sample", status=1).output
+    assert "added 1 object: iron (1000)" in text and "[iron_alone]" in text
+    data = json.loads(call("hazards", file, "--home", "maple", "--sample", "--json", status=1).output)
+    assert data["sampled"] and [each["class_name"] for each in data["additions"]["objects"]] == ["iron"]
