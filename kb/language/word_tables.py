@@ -45,7 +45,7 @@ def inflected(lemma: str, kind: str) -> tuple[str, ...]:
     for row in _rows("infl_lu.csv.gz", lemma):
         _, category, *forms = row.split(",")
         if category.upper() == kind:
-            found = {"": (lemma,), **dict(zip(_TAGS[kind], (spelt.split("/") for spelt in forms), strict=False))}
+            found = {"": (lemma,), **dict(zip(_TAGS[kind], (tuple(spelt.split("/")) for spelt in forms), strict=False))}
     for tag, form in _overrides("infl_overrides.csv").get(lemma, ()):
         if tag.startswith(kind[0]):
             found[tag] = (form,)
