@@ -65,15 +65,15 @@ def _entered(execution: Execution, number: int) -> Iterator[Lasting]:
 
 def undone(home: Home, number: int) -> int:
     """Return the things that some act or process brings out of a state, by its row."""
-    found, (plan, kinds, _) = 0, here(home)
+    found, place = 0, here(home)
     for name, effect in _effects(home.knowledge):
         if _ends(effect, number, home.knowledge):
             position = "os".find(effect.literal.terms[0].name)
             found |= home.everything if position < 0 else home.able(name, position)
-    for each in plan.processes:
+    for each in place.plan.processes:
         asked = number not in each.part.thing.lacks  # a process that waits for its absence does not end it
         if asked and any(_ends(effect, number, home.knowledge) for effect in each.process.effects):
-            found |= kinds[each.part.thing.number]
+            found |= place.kind(home, each.part.thing.number)
     return found
 
 

@@ -34,9 +34,9 @@ class Kind(NamedTuple):
     has: tuple[int, ...]
     lacks: tuple[int, ...]
 
-    def nodes(self, world: World, kinds: tuple[int, ...]) -> int:
+    def nodes(self, world: World, here: Here) -> int:
         """Return the nodes that are so."""
-        states, found = world.states, kinds[self.number]
+        states, found = world.states, here.kind(world.home, self.number)
         for number in self.has:
             found &= states[number]
         for number in self.lacks:
@@ -63,11 +63,11 @@ class Devices(NamedTuple):
 class Moment:
     """A world at one moment, with the working devices and the things in or on them, as far as somebody asked."""
 
-    __slots__ = ("kinds", "neighbours", "world")
+    __slots__ = ("here", "neighbours", "world")
 
-    def __init__(self, world: World, kinds: tuple[int, ...]) -> None:
+    def __init__(self, world: World, here: Here) -> None:
         self.world = world
-        self.kinds = kinds
+        self.here = here
         self.neighbours: dict[Devices, tuple[int, int]] = {}
 
     def at(self, devices: Devices) -> int:
@@ -75,7 +75,7 @@ class Moment:
         known = self.neighbours.get(devices)
         if known is None:
             world, found = self.world, 0
-            working = devices.kind.nodes(world, self.kinds)
+            working = devices.kind.nodes(world, self.here)
             row = rows.contents if devices.relation == CONTENTS else rows.bears
             for i in indices(working):
                 found |= row(world, i)
@@ -92,9 +92,9 @@ class Part(NamedTuple):
     def now(self, moment: Moment) -> int:
         """Return the things that take part."""
         if self.devices is None:
-            return self.thing.nodes(moment.world, moment.kinds)
+            return self.thing.nodes(moment.world, moment.here)
         found = moment.at(self.devices)
-        return found and found & self.thing.nodes(moment.world, moment.kinds)
+        return found and found & self.thing.nodes(moment.world, moment.here)
 
 
 class Running(NamedTuple):
@@ -118,7 +118,8 @@ class Running(NamedTuple):
 
     def now(self, moment: Moment) -> int:
         """Return the things that are in it."""
-        if not moment.kinds[self.trigger] & moment.world.states[self.state]:
+        now = moment.world.states[self.state]
+        if not now or not now & moment.here.kind(moment.world.home, self.trigger):
             return 0
         found = self.part.now(moment)
         for each in self.kept if found else ():
@@ -133,13 +134,15 @@ class Plan(NamedTuple):
         processes: in the order of the file.
         formulas: what each kind is, and whether characters are left out of it.
         read: the states that they ask for, each with the kinds of which they ask.
+        asked: these states.
         bits: the rows of counts.
         by_row: the processes by their first row of counts.
     """
 
     processes: tuple[Running, ...]
     formulas: tuple[tuple[Formula, bool], ...]
-    read: tuple[tuple[int, frozenset[int]], ...]
+    read: dict[int, frozenset[int]]
+    asked: tuple[int, ...]
     bits: int
     by_row: dict[int, Running]
 
@@ -154,7 +157,8 @@ def planned(knowledge: Knowledge) -> Plan:
         found.append(_running(process, first, numbers))
         first += found[-1].bits
     every = tuple(each._replace(kept=tuple(_keeping(each, found))) for each in found)
-    return Plan(every, tuple(numbers), tuple(_read(every).items()), first, {each.first: each for each in every})
+    read = _read(every)
+    return Plan(every, tuple(numbers), read, tuple(read), first, {each.first: each for each in every})
 
 
 def _running(process: Process, first: int, numbers: dict[tuple[Formula, bool], int]) -> Running:
@@ -201,42 +205,48 @@ def _read(processes: Iterable[Running]) -> dict[int, frozenset[int]]:
     return found
 
 
-class Here(NamedTuple):
-    """The processes in one home.
+class Here:
+    """The processes in one home: the nodes of each kind, found when they are first asked for.
 
-    Attributes:
-        plan: all processes.
-        kinds: the nodes of each kind.
-        read: the states that processes ask for, each with the nodes of which they ask.
+    Most homes in which programs run are made for one run, and ask for a few. The home is given by callers: one that
+    was kept here would only end with the collector.
     """
 
-    plan: Plan
-    kinds: tuple[int, ...]
-    read: tuple[tuple[int, int], ...]
+    __slots__ = ("_kinds", "_read", "plan")
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self._kinds: dict[int, int] = {}
+        self._read: dict[int, int] = {}
+
+    def kind(self, home: Home, number: int) -> int:
+        """Return the nodes of a kind."""
+        found = self._kinds.get(number)
+        if found is None:
+            formula, things_only = self.plan.formulas[number]
+            found = kind_of(home, formula) & (~home.characters if things_only else -1)
+            self._kinds[number] = found
+        return found
+
+    def read(self, home: Home, state: int) -> int:
+        """Return the nodes of which processes ask whether they are in a state, by its row."""
+        found = self._read.get(state)
+        if found is None:
+            found = 0
+            for number in self.plan.read[state]:
+                found |= self.kind(home, number)
+            self._read[state] = found
+        return found
 
 
 def here(home: Home) -> Here:
     """Return the processes in a home, kept with it."""
     known = home.kinds.get(_HERE)
     if known is None:
-        known = home.kinds[_HERE] = (None, _here(home))
+        known = home.kinds[_HERE] = (None, Here(planned(home.knowledge)))
     found: Here = known[1]
     return found
 
 
 _HERE = -1
 """The place of a home's processes among its `kinds`; no identity is below 0."""
-
-
-def _here(home: Home) -> Here:
-    plan = planned(home.knowledge)
-    kinds = tuple(
-        kind_of(home, formula) & (~home.characters if things_only else -1) for formula, things_only in plan.formulas
-    )
-    read = []
-    for state, numbers in plan.read:
-        nodes = 0
-        for number in numbers:
-            nodes |= kinds[number]
-        read.append((state, nodes))
-    return Here(plan, kinds, tuple(read))

@@ -42,12 +42,12 @@ _NARROW = len(STATES)
 
 
 def _widened(world: World) -> World:
-    plan, kinds, _ = here(world.home)
-    nothing = Ticks((0,) * plan.bits)
+    place = here(world.home)
+    nothing = Ticks((0,) * place.plan.bits)
     rows: tuple[Any, ...] = (*world.states, *world.home.further, nothing)
     wide = World(world.home, rows, world.agents, world.moved)
-    moment = Moment(wide, kinds)
-    done = [(each, now) for each in plan.processes if each.process.at_start and (now := each.now(moment))]
+    moment = Moment(wide, place)
+    done = [(each, now) for each in place.plan.processes if each.process.at_start and (now := each.now(moment))]
     wide = _ended(wide, done) if done else wide
     return _with_ticks(wide, _of_now(wide, nothing.rows))
 
@@ -102,8 +102,9 @@ def _is_as_before(before: World, world: World, ticks: Ticks) -> bool:
     """Return whether nothing has changed of which a process asks."""
     was, now = before.states, world.states
     if was is not now:
-        for number, nodes in here(world.home).read:
-            if was[number] != now[number] and (was[number] ^ now[number]) & nodes:
+        place = here(world.home)
+        for number in place.plan.asked:
+            if was[number] != now[number] and (was[number] ^ now[number]) & place.read(world.home, number):
                 return False
     one, other = before.moved, world.moved
     if one is not other:
@@ -120,9 +121,9 @@ def _of_now(world: World, known: tuple[int, ...]) -> Ticks:
     rows = [0] * len(known)
     going_on: list[GoingOn] = []
     due = 0
-    plan, kinds, _ = here(world.home)
-    moment = Moment(world, kinds)
-    for each in plan.processes:
+    place = here(world.home)
+    moment = Moment(world, place)
+    for each in place.plan.processes:
         now = each.now(moment)
         if now:
             for k in range(each.first, each.first + each.bits):
@@ -170,11 +171,11 @@ def _ended(world: World, ready: Iterable[tuple[Running, int]]) -> World:
 def seen(world: World) -> tuple[tuple[int, str], ...]:
     """Return the ids of the things in a process, each with its visible sign in words."""
     world = widened(world)
-    plan, kinds, _ = here(world.home)
-    moment = Moment(world, kinds)
+    place = here(world.home)
+    moment = Moment(world, place)
     return tuple(
         (world.home.ids[i], each.process.seen)
-        for each in plan.processes
+        for each in place.plan.processes
         if each.process.seen
         for i in indices(each.now(moment))
     )
