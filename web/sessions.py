@@ -1,4 +1,7 @@
-"""Sessions: each person's own, found by an unguessable token of which the store has a digest alone."""
+"""Sessions: each person's own, found by an unguessable token of which the store has a digest alone.
+
+A session has no end of its own: it stays until its person deletes it. Connections have one (see `connections`).
+"""
 
 import hashlib
 import secrets
