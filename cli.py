@@ -173,6 +173,8 @@ class Commands(TyperGroup):
         except (BrokenPipeError, typer.Abort, typer.Exit):
             raise
         except KeyboardInterrupt as stop:
+            if isinstance(fault := getattr(stop, "fault", None), HearthError):
+                _fail(fault, as_json=ctx.meta["hearth.json"])
             kept = ctx.invoked_subcommand in COMMANDS["Make a dataset"]
             after = " Complete parts are kept: the same command continues from there." if kept else ""
             sys.stderr.write(f"Stopped.{after}\n")

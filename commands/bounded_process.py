@@ -58,7 +58,15 @@ def bounded_memory(most: int) -> Iterator[None]:
 
 
 class _TimeOver(KeyboardInterrupt):
-    """The time of a command is over: what it does is stopped as at the keyboard, its other processes too."""
+    """The time of a command is over: what it does is stopped as at the keyboard, its other processes too.
+
+    The command line prints its fault: the signal may come just before or after the block that `in_time` bounds.
+    """
+
+    def __init__(self, seconds: float):
+        message, remedy = f"the command took longer than {seconds:g} s", "give more time with --within (0: no limit)"
+        self.fault = HearthError.of(Code.TIMED_OUT, message, suggestion=remedy)
+        super().__init__(message)
 
 
 @contextmanager
@@ -77,12 +85,13 @@ def in_time(seconds: float) -> Iterator[None]:
         with ended_within(seconds):
             yield
         return
-    over = False
+    over, heeded = False, False
 
     def stop(_number: int, _frame: FrameType | None) -> None:
         nonlocal over
         over = True
-        raise _TimeOver
+        if heeded:
+            raise _TimeOver(seconds)
 
     done = threading.Event()
     threading.Thread(target=_interrupting, args=(done, seconds), daemon=True).start()
@@ -90,18 +99,20 @@ def in_time(seconds: float) -> Iterator[None]:
     signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
     try:
         with ended_within(seconds):
-            yield
-        if over:  # an interrupt at an odd moment was lost, and the work was done before the next one came
-            raise _TimeOver
+            try:
+                heeded = True
+                yield
+            finally:
+                heeded = False  # an interrupt from here on would break the clearing up
+        if over:  # an interrupt was lost at an odd moment, or came before it could be heeded
+            raise _TimeOver(seconds)
     except BaseException as error:
-        signal.setitimer(signal.ITIMER_REAL, 0)
         if not over:
             raise
-        message, remedy = f"the command took longer than {seconds:g} s", "give more time with --within (0: no limit)"
-        raise HearthError.of(Code.TIMED_OUT, message, suggestion=remedy) from error
+        raise _TimeOver(seconds).fault from error
     finally:
-        done.set()
         signal.setitimer(signal.ITIMER_REAL, 0)
+        done.set()
         signal.signal(signal.SIGALRM, before)
 
 

@@ -51,15 +51,15 @@ def as_given(program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT
     need_somebody(home)
     rules = suited(program, home.knowledge, rules)
     world = with_agents(World.start(home), _characters(program), seed)
-    program, failure = _bound_far(program, world, rules)
+    program, failure = bound_far(program, world, rules)
     execution = run(world, program, rules)
     if failure is not None and failure.tick == len(execution.worlds) - 1:
         execution = replace(execution, failure=failure)
     return Trial(execution)
 
 
-def _bound_far(program: Program, world: World, rules: Rules) -> tuple[Program, Failure | None]:
-    """Return the program bound as far as it runs, and why it goes no further.
+def bound_far(program: Program, world: World, rules: Rules) -> tuple[Program, Failure | None]:
+    """Return a program bound to nodes of a world as far as it runs, and why it goes no further.
 
     No object fits that a later step misuses; then the steps before that one are bound without it, so that it fails.
     """

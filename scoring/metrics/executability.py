@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import lru_cache
 
+from hearth.grounding.grounded_run import bound_far
 from hearth.kb.action_grammar import affordances, check
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
@@ -16,11 +17,11 @@ from hearth.scoring.metrics.parsability import parsability
 from hearth.scoring.predicted_nodes import bind
 from hearth.scoring.signature import signature
 from hearth.simulation.engine import act, run
-from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world import rows
 from hearth.simulation.world.world import World
 
-SIGNATURE = signature("executable", 2, level="program", empty=0)
+SIGNATURE = signature("executable", 3, level="program", empty=0)
 
 
 class ErrorClass(StrEnum):
@@ -117,7 +118,8 @@ def executability(
     Args:
         lines: the prediction.
         world: the environment at its start.
-        reference: the bound reference, which guides the binding (see `predicted_nodes`).
+        reference: the bound reference, which guides the binding (see `predicted_nodes`). Without one the objects are
+            bound as `run` binds them: as many steps as possible run.
         rules: of simulation.
 
     Examples:
@@ -129,6 +131,9 @@ def executability(
     knowledge = world.home.knowledge
     faults = {fault.line: fault.code for fault in parsability(lines, knowledge).faults}
     program = Program(steps=tuple([_canonical(step, knowledge) for step in steps_of(lines)]))
+    if reference is None:
+        rules = suited(program, knowledge, rules)
+        program, _ = bound_far(program, world, rules)
     program = bind(program, nodes_of(world.home), knowledge, reference)
     place = [number for number, line in enumerate(lines) if isinstance(line, Step)]
     steps = zip(place, program.steps, strict=True)
