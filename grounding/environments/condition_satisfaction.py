@@ -32,11 +32,15 @@ def _at_reach(partial: PartialEnvironment, condition: Condition) -> None:
     """Place a node close to the other, and to the other's support or container."""
     one, other = (_node(partial, key) for key in condition.objects)
     partial.close(one, other)
-    if other in partial.new and not partial.places(other):
+    if other in partial.new and not partial.places(other) and not _is_held(partial, other):
         _set_down(partial, other)
     for place in partial.places(other):
         if place != one:
             partial.close(one, place)
+
+
+def _is_held(partial: PartialEnvironment, node_id: int) -> bool:
+    return any(edge.target == node_id and edge.relation in HANDS for edge in partial.added)
 
 
 def _set_down(partial: PartialEnvironment, node_id: int) -> None:
@@ -61,6 +65,7 @@ def _holds(partial: PartialEnvironment, condition: Condition) -> None:
     node_id = _node(partial, condition.objects[0])
     me = partial.base.character
     full = any(edge.source == me and edge.relation == HANDS[0] for edge in partial.added)
+    partial.take_up(node_id)
     partial.added.append(Edge(me, HANDS[full], node_id))
     partial.close(me, node_id)
 

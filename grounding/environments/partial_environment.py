@@ -93,13 +93,30 @@ class PartialEnvironment:
         self.where[node_id] = (relation, place)
         self.load[place] = self.load.get(place, 0) + 1
         self.added.append(Edge(node_id, relation, place))
-        self.close(node_id, place)
+        for other in self._around(node_id, relation, place):
+            self.close(node_id, other)
+
+    def _around(self, node_id: int, relation: str, place: int) -> list[int]:
+        """Return a place and its other contents in the base."""
         home = self.base.home
         i = home.index.get(place)
-        if i is not None:
-            for j in indices(home.bears[i] if relation == "ON" else home.contents[i]):
-                if home.ids[j] != node_id:
-                    self.close(node_id, home.ids[j])
+        contents = 0 if i is None else home.bears[i] if relation == "ON" else home.contents[i]
+        return [place, *(home.ids[j] for j in indices(contents) if home.ids[j] != node_id)]
+
+    def take_up(self, node_id: int) -> None:
+        """Take a node off the place where it was put, or where the base has it: it is in its room only, as after Grab.
+
+        Clothes stay on the character: PutOff needs them there, and leaves them in the hand that has them.
+        """
+        if node_id in self.where:
+            relation, place = self.where.pop(node_id)
+            self.load[place] -= 1
+            gone = {("CLOSE", other) for other in self._around(node_id, relation, place)} | {(relation, place)}
+            self.added = [e for e in self.added if e.source != node_id or (e.relation, e.target) not in gone]
+        elif node_id not in self.room:
+            room = self.room_of(node_id)
+            self.lift(node_id)
+            self.settle(node_id, room)
 
     def close(self, one: int, other: int) -> None:
         """Make two nodes CLOSE to each other."""

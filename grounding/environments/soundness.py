@@ -48,7 +48,10 @@ def _in_hands(world: World) -> Failure | None:
         if seen & agent.held:
             return _fault(world, Code.CONFLICT, seen & agent.held, "one who holds it", "two")
         seen |= agent.held
-    return None
+    home = world.home
+    places = ~(home.rooms | home.characters)  # clothes in a hand may be worn, too: PutOff then leaves them in the hand
+    placed = sum(1 << i for i in indices(seen & ~home.characters) if (home.on[i] | home.inside[i]) & places)
+    return _fault(world, Code.CONFLICT, placed, "held, in a room only", "also in its place") if placed else None
 
 
 def _in_places(world: World, touched: int) -> Failure | None:
