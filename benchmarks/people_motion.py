@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.analysis.coverage import Script, scripts
+from hearth.analysis.programs_in_homes import Script, scripts
 from hearth.commands import inputs
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library

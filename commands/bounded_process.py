@@ -63,7 +63,7 @@ class _TimeOver(KeyboardInterrupt):
     The command line prints its fault: the signal may come just before or after the block that `in_time` bounds.
     """
 
-    def __init__(self, seconds: float):
+    def __init__(self, seconds: float) -> None:
         message, remedy = f"the command took longer than {seconds:g} s", "give more time with --within (0: no limit)"
         self.fault = HearthError.of(Code.TIMED_OUT, message, suggestion=remedy)
         super().__init__(message)

@@ -124,7 +124,7 @@ def program(
       hearth score program predictions.jsonl --graph home.json --by activity
       hearth score program plans.txt --home maple
     """
-    from hearth.commands.scored_programs import ALL, in_homes, read_predictions
+    from hearth.commands.score_inputs import ALL, in_homes, read_predictions
     from hearth.homes.library import names
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
@@ -243,8 +243,8 @@ def graphs(
       hearth score graphs mine.json theirs.json --nodes 41,65
     """
     from hearth.homes.library import read_graph
-    from hearth.scoring.graph_files import node_ids
     from hearth.scoring.metrics.graph_f1 import f1_signature, score
+    from hearth.scoring.node_ids_option import node_ids
 
     ours, theirs = node_ids(nodes)
     final, expected = (read_graph(path, "final_graph") for path in (predicted, reference))

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.row_conversion import program_of
 from hearth.datasets.format.sketch_choice import ANNOTATED, sketches_query
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened

@@ -9,7 +9,7 @@ from typing import Any
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import Source, start_of
-from hearth.datasets.format.codecs import bindings_of, program_of
+from hearth.datasets.format.row_conversion import bindings_of, program_of
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
 from hearth.kb.language.reading_modes import Fuzzy

@@ -24,8 +24,8 @@ from typer.testing import CliRunner
 import hearth
 from hearth import cli
 from hearth.datasets.diff import compare
-from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
+from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.report.report_writer import write_report
 from hearth.datasets.verify import verify

@@ -12,9 +12,9 @@ from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film import png
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model
-from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
+from hearth.rendering.people.person_appearance import BODIES
 from hearth.rendering.rays.camera_shot import shoot
 from hearth.rendering.rays.optical_flow import flow, flow_of
 from hearth.rendering.scene.instances import Thing

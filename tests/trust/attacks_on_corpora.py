@@ -85,7 +85,7 @@ def _programs() -> tuple[list[Any], list[Any]]:
     """The programs that are annotated, and a home."""
     from tempfile import TemporaryDirectory
 
-    from hearth.analysis.coverage import Script, scripts
+    from hearth.analysis.programs_in_homes import Script, scripts
     from hearth.homes import library
     from hearth.simulation.world.home import Home
 
@@ -221,7 +221,7 @@ def numbered(path: Path) -> Any:
 
 def released(path: Path) -> Any:
     """The facts of a knowledge file of the release."""
-    from hearth.kb.tools.release_facts import read_release
+    from hearth.kb.tools.published_knowledge import read_release
 
     path.replace(path.with_name("object_states.json"))
     return read_release(path.parent)

@@ -114,7 +114,7 @@ def _goals(scratch: Path) -> One:
 
 def _sayings(scratch: Path) -> One:
     """What a language model, or an agent that may talk, answers."""
-    from hearth.envs.text_protocol import understood
+    from hearth.envs.text_agent import understood
     from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.simulation.actions.legal import legal

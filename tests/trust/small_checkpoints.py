@@ -211,8 +211,8 @@ def _of_clips() -> Any:
 
 
 def _seen(**changed: Any) -> Any:
-    from hearth.models.films.class_table import ClassTable
     from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel
+    from hearth.models.films.object_class_properties import ClassTable
     from hearth.models.films.step_order import StepOrder
 
     done, _ = _of_clips()

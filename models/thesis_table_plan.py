@@ -126,7 +126,7 @@ class Plan:
         seeded: models that are trained with each seed.
         varied: the same, with a setting changed: a model's name, and the setting.
         given: methods that need no training.
-        repaired: as of `text_tables.table`.
+        repaired: as of `text_result_tables.table`.
     """
 
     table: str
@@ -235,16 +235,16 @@ def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen
         most: test executions of 5.2 to 5.4.
         seen: reports executions.
     """
-    from hearth.models.films import clip_result_tables, film_tables
-    from hearth.models.sketches import sketch_tables
-    from hearth.models.text import text_tables
+    from hearth.models.films import clip_result_tables, film_result_tables
+    from hearth.models.sketches import sketch_result_tables
+    from hearth.models.text import text_result_tables
 
     models: list[Any] = [*plan.given, *(each.folder(out) for each in plan.needed(seeds))]
     data = Dataset.open(dataset)
     if plan.table in clip_result_tables.TABLES:
         return clip_result_tables.clip_table(plan.table, data, models)
-    if plan.table == film_tables.TABLE:
-        return film_tables.film_table(data, models, seen=seen)
-    if plan.table in sketch_tables.TABLES:
-        return sketch_tables.table(plan.table, data, plan.split, models, beam=1, most=most, seen=seen)
-    return text_tables.table(plan.table, data, plan.split, models, beam=1, repaired=plan.repaired)
+    if plan.table == film_result_tables.TABLE:
+        return film_result_tables.film_table(data, models, seen=seen)
+    if plan.table in sketch_result_tables.TABLES:
+        return sketch_result_tables.table(plan.table, data, plan.split, models, beam=1, most=most, seen=seen)
+    return text_result_tables.table(plan.table, data, plan.split, models, beam=1, repaired=plan.repaired)

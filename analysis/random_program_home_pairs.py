@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from hearth.analysis.coverage import Script, scripts
+from hearth.analysis.programs_in_homes import Script, scripts
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge

@@ -1,8 +1,8 @@
 """Agreement of a planner with the engine: problems are solved by Fast Downward, and the plans run in the engine.
 
-Besides the pruning of `problems`, three measures shorten the search: actions without an effect or with a substitute are
-omitted (`dispensable`); actions without objects in the problem are omitted; and objects must themselves be CLOSE, while
-the engine also accepts objects next to a CLOSE one.
+Besides the pruning of `pddl_problems`, three measures shorten the search: actions without an effect or with a
+substitute are omitted (`dispensable`); actions without objects in the problem are omitted; and objects must themselves
+be CLOSE, while the engine also accepts objects next to a CLOSE one.
 """
 
 from collections import Counter
@@ -14,9 +14,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted
-from hearth.datasets.export.planning_domain import TO_DOOR, planning_domain
-from hearth.datasets.export.problems import Task, object_names, problem, tasks
+from hearth.datasets.export.pddl_domain import TO_DOOR, planning_domain
+from hearth.datasets.export.pddl_problems import Task, object_names, problem, tasks
+from hearth.datasets.export.program_batches import Wanted
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.optional_libraries import library
 from hearth.schemas.program import ObjectRef, Program, Step

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.analysis.coverage import Coverage, Script
+    from hearth.analysis.programs_in_homes import Coverage, Script
     from hearth.pipelines.engine.build_homes import Homes
     from hearth.schemas.failures import Failure
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | None, limit: int | None, strict: bool,
          as_json: bool) -> None:  # fmt: skip
     """Run and print; with `strict` the status is 1 if a pair failed that is not proven impossible."""
-    from hearth.analysis.coverage import measure_coverage, scripts
+    from hearth.analysis.programs_in_homes import measure_coverage, scripts
     from hearth.commands.progress_line import bar, watched
     from hearth.grounding.environments.sampling import Size
     from hearth.pipelines.engine.build_homes import Homes
@@ -42,7 +42,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
 
 
 def _impossible(found: Coverage, homes: Homes) -> Iterator[dict[str, Any]]:
-    from hearth.analysis.coverage import ANY_HOME
+    from hearth.analysis.programs_in_homes import ANY_HOME
     from hearth.grounding.preconditions.precondition_inference import at_odds
 
     for script, where, failure in found.impossible:

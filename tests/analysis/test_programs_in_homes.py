@@ -4,7 +4,7 @@ import orjson
 import pytest
 from typer.testing import CliRunner
 
-from hearth.analysis.coverage import measure_coverage, scripts
+from hearth.analysis.programs_in_homes import measure_coverage, scripts
 from hearth.cli import app
 from hearth.grounding.environments.sampling import Size
 from hearth.pipelines.engine.build_homes import Homes

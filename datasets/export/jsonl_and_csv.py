@@ -7,7 +7,7 @@ from typing import Any
 import orjson
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted, stream
+from hearth.datasets.export.program_batches import Wanted, stream
 from hearth.datasets.query_output import write_separated
 from hearth.schemas.tables import TABLES
 from hearth.storage.names import inside

@@ -8,7 +8,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.models.execution_trials import Trial
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
-from hearth.models.films.film_executions import shown_films
+from hearth.models.films.film_contents import shown_films
 from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.interface import Steps
 from hearth.models.text_examples import facts_of

@@ -14,7 +14,7 @@ from hearth.agents.protocol import Resigned
 from hearth.challenges.episode_loop import Player, play
 from hearth.envs.agent_answers import by_text
 from hearth.envs.json_observations import observation, seen_goal
-from hearth.envs.text_protocol import MOST_LISTED, TextAgent, description, menu, plain, understood
+from hearth.envs.text_agent import MOST_LISTED, TextAgent, description, menu, plain, understood
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.actions.legal import legal

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.datasets.file_ranges import reading_between
+from hearth.datasets.file_id_ranges import reading_between
 
 PARTS = {"part-00000": ["a", "b", "c"], "part-00001": ["d", "e"], "part-00002.test": ["b", "f"]}
 
@@ -60,7 +60,7 @@ def test_a_range_of_numbers_is_none_of_ids(folder):
 
 ASKING = """
 import sys, pathlib
-from hearth.datasets.file_ranges import reading_between
+from hearth.datasets.file_id_ranges import reading_between
 print(reading_between(pathlib.Path(sys.argv[1]), "programs", "a", "b"))
 """
 

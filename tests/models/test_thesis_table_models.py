@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.models import table_models
+from hearth.models import thesis_table_models
 from hearth.models.model_registry import MODELS
-from hearth.models.sketches import sketch_tables
-from hearth.models.table_models import KINDS, fits, refuse_others
-from hearth.models.table_plan import PLANS
-from hearth.models.text import text_tables
+from hearth.models.sketches import sketch_result_tables
+from hearth.models.text import text_result_tables
+from hearth.models.thesis_table_models import KINDS, fits, refuse_others
+from hearth.models.thesis_table_plan import PLANS
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -25,7 +25,7 @@ TAKES = {
 
 @pytest.mark.parametrize("table", TAKES)
 def test_models_that_a_table_takes(table, monkeypatch):
-    monkeypatch.setattr(table_models, "named", lambda model: model)
+    monkeypatch.setattr(thesis_table_models, "named", lambda model: model)
     taken, refused = TAKES[table]
     refuse_others(table, [taken])
     for name in refused:
@@ -45,6 +45,6 @@ def test_tables_take_the_models_of_their_plans():
 
 def test_tables_ask(parted):
     with pytest.raises(HearthError, match="it takes random-retrieval, nearest"):
-        text_tables.table("4.5", parted, "activities", ["planner"])
+        text_result_tables.table("4.5", parted, "activities", ["planner"])
     with pytest.raises(HearthError, match="it takes planner, unaries"):
-        sketch_tables.table("5.2", parted, "activities", ["mle-composed"], most=2)
+        sketch_result_tables.table("5.2", parted, "activities", ["mle-composed"], most=2)

@@ -1,4 +1,4 @@
-"""The nodes that programs name from the command line."""
+"""The option `--nodes`: the node ids that the objects of a prediction and its reference stand for."""
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

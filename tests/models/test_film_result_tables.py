@@ -6,10 +6,10 @@ import numpy as np
 
 import hearth
 from hearth.models.execution_trials import Trial
-from hearth.models.films import film_tables
+from hearth.models.films import film_result_tables
 from hearth.models.films.clip_data import Clip, Clips, Instruction
-from hearth.models.films.film_executions import Shown, by_class
-from hearth.models.films.film_tables import COLUMNS, THESIS, WAYS
+from hearth.models.films.film_contents import Shown, by_class
+from hearth.models.films.film_result_tables import COLUMNS, THESIS, WAYS
 from hearth.models.films.film_writer import TrainedFilmWriter
 from hearth.models.films.instruction_scores import Reading
 from hearth.models.films.step_order import StepOrder
@@ -64,14 +64,16 @@ def test_writers_stand_beside_classifiers_and_seeds_are_one_row(monkeypatch):
     clips = tuple(Clip(film, 0, DONE[0], kind, 1) for film, kind in enumerate(("seen", "unseen")))
     models = {"a": ("films-mle", Writer(steps, steps)), "b": ("films-mle", Writer((), steps))}
     test = Clips(("one", "two"), [np.zeros((9, 2, 2), np.uint16)] * 2, clips, 9)
-    monkeypatch.setattr(film_tables.Clips, "of", lambda *_, **__: test)
-    monkeypatch.setattr(film_tables, "restore", models.__getitem__)
+    monkeypatch.setattr(film_result_tables.Clips, "of", lambda *_, **__: test)
+    monkeypatch.setattr(film_result_tables, "restore", models.__getitem__)
     shown = [Shown(Trial(world, Program(steps=steps), DEFAULT, name), steps) for name in "xy"]
-    monkeypatch.setattr(film_tables, "shown_films", lambda *_: shown)
-    monkeypatch.setattr(film_tables, "film_probabilities", lambda *_: (None, None))
-    monkeypatch.setattr(film_tables, "score_steps", lambda dataset, pairs: [None for _ in pairs])
-    monkeypatch.setattr(film_tables, "METRICS", dict.fromkeys(("executable", "goal", "goal_whole"), lambda _: 1.0))
-    rows = {(row.method, row.homes): row for row in film_tables.film_table(None, ["a", "b"])}
+    monkeypatch.setattr(film_result_tables, "shown_films", lambda *_: shown)
+    monkeypatch.setattr(film_result_tables, "film_probabilities", lambda *_: (None, None))
+    monkeypatch.setattr(film_result_tables, "score_steps", lambda dataset, pairs: [None for _ in pairs])
+    monkeypatch.setattr(
+        film_result_tables, "METRICS", dict.fromkeys(("executable", "goal", "goal_whole"), lambda _: 1.0)
+    )
+    rows = {(row.method, row.homes): row for row in film_result_tables.film_table(None, ["a", "b"])}
     free, engine = rows["films-mle, free", "all"], rows["films-mle, engine", "unseen"]
     assert free.seeds == engine.seeds == 2 and free.films == 2 and engine.films == 1
     assert free.scores["mean"].mean == free.spread == 0.5

@@ -1,4 +1,4 @@
-"""Faults of the JSON of a scene graph, in words: the first node or edge that lacks a key, and its own keys."""
+"""Faults in the JSON of a scene graph, in words: the first node or edge that lacks a key, and its own keys."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final

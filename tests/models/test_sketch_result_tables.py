@@ -11,8 +11,8 @@ from hearth import cli
 from hearth.analysis.augmentation_results import figures
 from hearth.datasets.graph_sizes import graph_sizes
 from hearth.models.fit_model import fit
-from hearth.models.sketches.dataset_table import dataset_table
-from hearth.models.sketches.sketch_tables import COLUMNS, _other_person, table
+from hearth.models.sketches.dataset_size_table import dataset_table
+from hearth.models.sketches.sketch_result_tables import COLUMNS, _other_person, table
 from hearth.models.text_examples import requests
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import parse_program

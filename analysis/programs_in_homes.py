@@ -1,4 +1,4 @@
-"""Coverage: runs every program of some sources in every home, in environments sampled for it; writes nothing.
+"""Runs of every program of some sources in every home, in environments sampled for it; nothing is written.
 
 Impossible programs are proven: by two contradictory steps, or by a fact that forbids the program in any home.
 """
@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hearth.datasets.format.case_rows import environment_of
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.row_conversion import program_of
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample, unplaceable
 from hearth.grounding.preconditions.precondition_inference import infer

@@ -9,10 +9,10 @@ from hearth.models.evaluation import by_group
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities
 from hearth.models.films.clip_result_tables import HOMES, looks_at_masks, standard_error
-from hearth.models.films.film_examples import film_probabilities
-from hearth.models.films.film_executions import Shown, by_class, shown_films
+from hearth.models.films.film_contents import Shown, by_class, shown_films
 from hearth.models.films.film_prediction import cut
 from hearth.models.films.film_programs import FilmProgram, alone, described, followed
+from hearth.models.films.film_training_examples import film_probabilities
 from hearth.models.films.film_writer import TrainedFilmWriter
 from hearth.models.films.instruction_scores import Reading
 from hearth.models.films.mask_clip_model import TrainedSeenModel

@@ -9,11 +9,11 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.cli import app
-from hearth.models import table_plan
+from hearth.models import thesis_table_plan
 from hearth.models.checkpoint import Checkpoint, save
 from hearth.models.fit_model import STATE
 from hearth.models.model_registry import MODELS
-from hearth.models.table_plan import ONCE, PLANS, Plan, chosen, rows, train, training
+from hearth.models.thesis_table_plan import ONCE, PLANS, Plan, chosen, rows, train, training
 from hearth.pipelines.build import build
 from hearth.schemas.diagnostics import HearthError
 
@@ -85,11 +85,11 @@ def test_a_training_that_was_stopped_goes_on_only_by_the_same_recipe(made, tmp_p
         state.mkdir(parents=True, exist_ok=True)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(table_plan, "fit", stopped)
+    monkeypatch.setattr(thesis_table_plan, "fit", stopped)
     for minutes in (0, 0, 1):
         with pytest.raises(KeyboardInterrupt):
             train(needed, made.out, tmp_path, minutes)
-    (state.parent / table_plan.RECIPE).write_text("{")  # another recipe: it cannot be read
+    (state.parent / thesis_table_plan.RECIPE).write_text("{")  # another recipe: it cannot be read
     with pytest.raises(KeyboardInterrupt):
         train(needed, made.out, tmp_path, 1)
     assert found == [False, True, False, False]

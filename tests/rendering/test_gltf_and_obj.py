@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hearth.homes.library import load_graph
+from hearth.rendering.scene.gltf_and_obj import write
 from hearth.rendering.scene.instances import placed
-from hearth.rendering.scene.interchange import write
 from hearth.rendering.scene.scene_preparation import PreparedScene
 from hearth.schemas.diagnostics import HearthError
 

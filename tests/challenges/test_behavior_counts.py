@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from hearth.challenges.behavior_counts import analysed
 from hearth.challenges.challenge_definition import challenge
-from hearth.challenges.failure_analysis import analysed
 from hearth.kb.loading.load import default
 from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node

@@ -1,4 +1,4 @@
-"""Bodies: the appearance of people."""
+"""The appearance of a person: body, skin, hair and clothes."""
 
 from dataclasses import dataclass
 

@@ -17,9 +17,9 @@ from itertools import combinations
 from pathlib import Path
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted, runs, write
-from hearth.datasets.export.planning_domain import planning_domain, relation_predicate
-from hearth.datasets.format.codecs import change_of
+from hearth.datasets.export.pddl_domain import planning_domain, relation_predicate
+from hearth.datasets.export.program_batches import Wanted, runs, write
+from hearth.datasets.format.row_conversion import change_of
 from hearth.datasets.published_program import Run
 from hearth.datasets.verify import StoredHomes
 from hearth.kb.tools.pddl import LIMITS, limit_predicate, option_predicate, options, predicate, unary_predicates

@@ -8,8 +8,8 @@ from hearth.models.interface import Steps
 from hearth.models.method_scores import Entrant, Row, scored_rows
 from hearth.models.model_registry import restore
 from hearth.models.prediction_files import completed
-from hearth.models.table_models import refuse_others
 from hearth.models.text_examples import Example, examples
+from hearth.models.thesis_table_models import refuse_others
 from hearth.models.training_overlap import refuse_seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from hearth.models.fit_model import fit
-from hearth.models.text.text_tables import COLUMNS, table
+from hearth.models.text.text_result_tables import COLUMNS, table
 from hearth.schemas.diagnostics import HearthError
 
 HOW = {"epochs": 1, "minutes": 0.0, "rate": 1e-3, "seed": 0}
