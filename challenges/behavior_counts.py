@@ -1,4 +1,4 @@
-"""Counts of helpful and unhelpful behavior of two agents in an episode, from its ticks alone (thesis 6.5.3, figure 6-7).
+"""Counts of helpful and harmful behavior of two agents in an episode, from its ticks (thesis 6.5.3, figure 6-7).
 
 Everything is counted in the real world, from the actions and from each agent's visible nodes, so that a replay counts
 the same.

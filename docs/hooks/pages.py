@@ -329,7 +329,7 @@ COPIED = {
 """Documents of the checkout that are pages, too."""
 
 ELSEWHERE = {"docs/examples": "examples/own-corpus.md", "NOTICE": "about/notice.md", "LICENSE": "about/notice.md"}
-"""What documents link to and the documentation has elsewhere."""
+"""Targets of links in documents that the documentation has under another address."""
 
 
 def copied(file: str) -> str:
@@ -345,7 +345,7 @@ def copied(file: str) -> str:
 
 
 def cost() -> str:
-    """What large datasets and many episodes take."""
+    """Return the page of costs: large datasets and many episodes."""
     return str(beside("cost_page").page())
 
 

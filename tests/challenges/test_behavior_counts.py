@@ -1,4 +1,4 @@
-"""What the failure analysis counts between two agents, in a kitchen with a plate on its table."""
+"""Counts of behavior between two agents, in a kitchen with a plate on its table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What helpers believe in episodes, how it is scored and drawn, and people who are unlike the one it was tuned with."""
+"""Helpers' beliefs in episodes, their scores and drawings, and people unlike the one that helpers were tuned with."""
 
 from __future__ import annotations
 

@@ -194,7 +194,7 @@ def test_a_difference_knows_the_embedded_corpus_by_both_names(ours, tmp_path):
 
 @pytest.mark.parametrize("version", ["0.1"], indirect=True)
 def test_it_is_compared_with_one_of_now(folder, tmp_path):
-    """What is known or repaired may grow; what was read, and where it runs, is identified as it was."""
+    """Knowledge and repairs may grow; the records and the homes in which they run keep their ids."""
     inputs = GOLDEN / "pipelines/input"
     build(
         sources=(str(inputs / "programs/evening.txt"), str(inputs / "crowd")),

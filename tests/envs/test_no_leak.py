@@ -1,4 +1,4 @@
-"""What an agent does not see changes no byte of what it is given, in any form."""
+"""A node that an agent does not see changes no byte of the agent's observation, in any form."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def asked(text, seen, may, read=by_text):
 @given(seed=st.integers(0, 10_000), mix=st.integers(0, 10_000))
 @settings(max_examples=10)
 def test_answers_ask_nothing_about_what_is_unseen(seed, mix):
-    """What is refused, and in which words, is the same; unseen nodes are like those that there are not."""
+    """The refusals and their words are the same; unseen nodes are refused as nodes that do not exist."""
     (seen, may), (again, may_again) = pair(seed, 10, 0, mix)
     chooser = random.Random(mix)
     there = seen.world.home

@@ -59,7 +59,7 @@ def reader():
 
 
 def seen(steps, table, sure=0.9, clips=3):
-    """What a classifier says of a film of some steps, each in some clips."""
+    """Return a classifier's probabilities for a film of some steps, each in some clips."""
     rows = [table.numbers(Instruction(step.action, tuple(ref.name for ref in step.objects))) for step in steps]
     actions = np.full((len(rows) * clips, len(table.actions)), (1 - sure) / len(table.actions), np.float32)
     objects = np.full((len(rows) * clips, 2, len(table) + 1), (1 - sure) / len(table), np.float32)

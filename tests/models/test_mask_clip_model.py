@@ -242,7 +242,7 @@ def test_a_network_with_context_is_restored(clips, model, tmp_path):
 
 
 def test_a_stopped_training_goes_on_with_its_own_dataset_alone(clips, monkeypatch):
-    """What was begun is known by the dataset's files and by the weights that predict masks."""
+    """A stopped training is known by the dataset's files and by the weights that predict masks."""
     tasks = []
     monkeypatch.setattr(Clips, "of", lambda dataset, part, films=0: clips)
     monkeypatch.setattr(mask_clip_model, "predicted", lambda *_: clips)

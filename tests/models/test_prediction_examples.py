@@ -56,7 +56,7 @@ def test_both_programs_stand_side_by_side(parted, given):
 
 
 def test_pictures_are_of_the_home_as_built_and_what_its_environment_moves(parted, given, monkeypatch):
-    """What an environment moves is found by comparing its graph with the home's, which must be the home's own."""
+    """Things that an environment moves are found by comparing its graph with the home's own."""
     pytest.importorskip("open3d")
     asked = []
     whole = snapshots.trajectory_of

@@ -1,4 +1,4 @@
-"""Which models the tables of chapters 4 and 5 need, and tables made of them."""
+"""The models that the tables of chapters 4 and 5 need, and tables made of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What augmented programs inherit of the annotated sketches of their parents."""
+"""Annotated sketches that augmented programs inherit from their parents."""
 
 from hypothesis import given
 from hypothesis import strategies as st

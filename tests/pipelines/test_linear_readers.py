@@ -121,7 +121,7 @@ HOSTILE = {
 
 
 def calls(path):
-    """How many functions are called while the file is read."""
+    """Count the functions that are called while the file is read."""
     count = 0
 
     def counted(_frame, event, _value):

@@ -50,7 +50,7 @@ def faults_of(path):
 
 
 def shown_at(text, fault):
-    """Whether the words that a fault shows stand at its place, as JSON and CSV may write them."""
+    """Return whether the words that a fault shows stand at its place, as JSON and CSV may write them."""
     line = text.split("\n")[fault.line - 1][fault.column - 1 :]
     first = fault.found.replace("\t", " ").removesuffix(" now")  # a tab, which is shown as a blank
     ways = {first, json.dumps(first)[1:-1], json.dumps(first, ensure_ascii=False)[1:-1], first.replace('"', '""')}

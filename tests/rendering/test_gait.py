@@ -1,4 +1,4 @@
-"""How fast one turns on the way, and how long the steps of who runs are."""
+"""Speeds of turns on the way, and lengths of the steps of people that run."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def test_the_message_names_what_is_lacking_and_no_python_error(name):
 @pytest.mark.parametrize("names", [("from", "relation", "to"), ("source", "relation_type", "target"),
                                    ("subject", "predicate", "object"), ("from_id", "rel", "To")])  # fmt: skip
 def test_keys_of_others_are_named_with_ours(names):
-    """What the message says to rename makes the graph readable."""
+    """A graph whose keys are renamed as the message asks can be read."""
     graph = {"nodes": [NODE], "edges": [dict(zip(names, (1, "ON", 1), strict=True))]}
     with pytest.raises(HearthError) as caught:
         from_release(graph)

@@ -69,7 +69,7 @@ def _files(kind: str, reader: Callable[[Path], Any], *, limited: bool = True) ->
 
 
 def _true(kind: str, reader: Callable[[Path], Any], text: str) -> Attack:
-    """What is changed in the attacks is read where it is not."""
+    """Return an attack that changes nothing: the text must be read."""
 
     def read(ground: Ground) -> None:
         try:
@@ -97,7 +97,7 @@ def _programs() -> tuple[list[Any], list[Any]]:
 
 
 def judged(path: Path) -> Any:
-    """What is said of annotations: of programs whose sketches are inferred to be all else, and beside each other."""
+    """Return the output about annotations: of programs whose sketches are inferred to be all else, and side by side."""
     from hearth.analysis.sketch_agreement import compare
     from hearth.analysis.sketch_evaluation import SketchEvaluation, annotated
 
@@ -199,7 +199,7 @@ def rated(path: Path) -> Any:
 
 
 def keyed(path: Path) -> Any:
-    """How well faults are found, by a key."""
+    """Return the scores of found faults, by a key."""
     from hearth.analysis.error_detection import Found, read_key, score
 
     return score(Found({"a": {"EMPTY"}}, 1), read_key(path))

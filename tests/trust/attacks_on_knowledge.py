@@ -59,7 +59,7 @@ def layer(name: str) -> bytes:
 
 
 def used(known: Knowledge, folder: Path) -> Any:
-    """What commands make of knowledge."""
+    """Return the output of commands that use some knowledge."""
     from hearth.commands.inputs import read_programs
     from hearth.datasets.export.pddl_domain import planning_domain
     from hearth.kb.consistency import lint
