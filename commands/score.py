@@ -44,9 +44,10 @@ def lcs(
       hearth score lcs mine.jsonl
     """
     from hearth.scoring.bootstrap import intervals
-    from hearth.scoring.evaluate import METRICS, Scored, lcs_of
+    from hearth.scoring.evaluate import lcs_of
     from hearth.scoring.line_reader import LineReader
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
+    from hearth.scoring.prediction_scores import METRICS, Scored
     from hearth.scoring.predictions import read_pairs
     from hearth.scoring.refused_rows import FirstFaults
 

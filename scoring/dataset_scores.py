@@ -17,10 +17,11 @@ from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
-from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, note_goal, scored
+from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, lcs_of, note_goal, scored
 from hearth.scoring.line_reader import LineReader
 from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.prediction_rows import Named
+from hearth.scoring.prediction_scores import Scored
 from hearth.scoring.predictions import Pair, read_pairs
 from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.engine import run

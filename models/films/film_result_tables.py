@@ -24,8 +24,8 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.scoring.bootstrap import Interval
 from hearth.scoring.dataset_scores import score_steps
-from hearth.scoring.evaluate import METRICS
 from hearth.scoring.metrics.lcs import score_pairs
+from hearth.scoring.prediction_scores import METRICS
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen
 

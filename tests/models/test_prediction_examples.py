@@ -14,9 +14,9 @@ from hearth.models.prediction_files import write
 from hearth.models.text_examples import examples
 from hearth.rendering.film import snapshots
 from hearth.scoring.dataset_scores import score_given
-from hearth.scoring.evaluate import Scored
 from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.metrics.lcs import LcsScore
+from hearth.scoring.prediction_scores import Scored
 from hearth.scoring.predictions import Pair
 
 
