@@ -36,7 +36,7 @@ def described(command: Callable[..., Any]) -> Callable[..., Any]:
             return parameter
         return parameter.replace(annotation=Annotated[parameter.annotation, _parameter(**entry)])
 
-    groups = {each.name: each.annotation for each in _given(command) if is_dataclass(each.annotation)}
+    groups: dict[str, Any] = {each.name: each.annotation for each in _given(command) if is_dataclass(each.annotation)}
 
     @wraps(command)
     def called(**values: Any) -> Any:
@@ -52,13 +52,14 @@ def described(command: Callable[..., Any]) -> Callable[..., Any]:
 def parameters_of(command: Callable[..., Any]) -> Iterator[Parameter]:
     """Yield the parameters of a command, those of a group one by one in its place."""
     for parameter in _given(command):
-        if is_dataclass(parameter.annotation):
-            yield from _given(parameter.annotation)
+        group: Any = parameter.annotation
+        if is_dataclass(group):
+            yield from _given(group)
         else:
             yield parameter
 
 
-def _given(function: Callable[..., Any]) -> Iterable[Parameter]:
+def _given(function: Any) -> Iterable[Parameter]:
     return signature(function, eval_str=True).parameters.values()
 
 
