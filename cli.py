@@ -117,12 +117,12 @@ def load(name: str) -> Any:
     described = importlib.import_module("hearth.commands.options").described
     if isinstance(target, typer.Typer):
         for each in target.registered_commands:
-            described(each.callback)
+            each.callback = described(each.callback)
         target.rich_markup_mode = None
         command: Any = typer.main.get_group(target)
         command.name = name
     else:
-        described(target)
+        target = described(target)
         single = typer.Typer(add_completion=False, rich_markup_mode=None)
         single.command(name)(target)
         command = typer.main.get_command(single)

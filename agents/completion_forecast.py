@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from hearth.agents.object_groups import HELPER, MAIN, Situation
+from hearth.agents.interchangeable_objects import HELPER, MAIN, Situation
 
 BOTH_HANDS = 6
 """Ticks that it takes more to open something with both hands full."""

@@ -17,7 +17,7 @@ import numpy as np
 from hearth.agents.completion_forecast import GIVE, HANDS, TAKE, Forecast, Stop
 from hearth.agents.goal_posterior import ActionModel
 from hearth.agents.goal_space import Edge, GoalsIn
-from hearth.agents.object_groups import HELPER, Situation
+from hearth.agents.interchangeable_objects import HELPER, Situation
 from hearth.agents.online_helper import OnlineHelper
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View

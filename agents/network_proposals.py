@@ -6,7 +6,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from hearth.agents.goal_space import Counts, GoalSpace, Places
-from hearth.agents.state_changes import StateChanges
+from hearth.agents.predicate_count_changes import StateChanges
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

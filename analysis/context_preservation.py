@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import rerun
-from hearth.datasets.format.codecs import bindings_of
+from hearth.datasets.format.row_conversion import bindings_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.grounding.preconditions.postconditions import Postconditions, missing, nodes_of

@@ -9,8 +9,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.datasets.format.codecs import steps_of
 from hearth.datasets.format.ids import activity_id
+from hearth.datasets.format.row_conversion import steps_of
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
 from hearth.pipelines.engine.sources import labelled

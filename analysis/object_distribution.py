@@ -11,7 +11,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from hearth.analysis.coverage import Script, scripts
+from hearth.analysis.programs_in_homes import Script, scripts
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.precondition_inference import infer

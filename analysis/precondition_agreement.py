@@ -4,7 +4,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable
 from typing import Any
 
-from hearth.analysis.coverage import Script
+from hearth.analysis.programs_in_homes import Script
 from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.grounding.preconditions.release_rules import by_rules, compare
 from hearth.kb.knowledge import Knowledge

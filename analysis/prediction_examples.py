@@ -17,8 +17,8 @@ from hearth.models.prediction_stages import Beside, side_by_side
 from hearth.models.text_examples import requests
 from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import print_step
-from hearth.scoring.evaluate import METRICS, Scored
 from hearth.scoring.line_sequences import steps_of
+from hearth.scoring.prediction_scores import METRICS, Scored
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
 from hearth.storage.templates import rendered

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from hearth.analysis.corpus_figures import blank, saved
 from hearth.schemas.optional_libraries import library
-from hearth.scoring.evaluate import METRICS, Scored
+from hearth.scoring.prediction_scores import METRICS, Scored
 
 BANDS = (0.25, 0.5, 0.65, 0.8, 0.95)
 """Lower bounds of bands of LCS, after 0; from .5 on as in figure 4-9."""

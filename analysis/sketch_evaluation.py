@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hearth.analysis.coverage import Script
+from hearth.analysis.programs_in_homes import Script
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers import sketches as reader
 from hearth.repair.sketch import Keep, sketch

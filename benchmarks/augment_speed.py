@@ -18,7 +18,7 @@ import plain_reference
 from measurement import Figure, Passes, as_line, finish, parser, passes, rate
 
 from hearth.analysis.augmentation_results import GIVEN_UP
-from hearth.analysis.coverage import Script, scripts
+from hearth.analysis.programs_in_homes import Script, scripts
 from hearth.grounding.environments.default_state import prepared
 from hearth.homes import library
 from hearth.kb.loading.load import default

@@ -21,7 +21,7 @@ RADIUS = 0.042
 
 
 class Head(NamedTuple):
-    """Where vertices are on the head of the mean body.
+    """Places of vertices on the head of the mean body.
 
     Attributes:
         eye: (3,) the left eye's middle.
@@ -184,7 +184,7 @@ def _curtain(source: Source, head: Head, slot: int, length: float) -> Part:
 
 
 def _front(face: float, level: int, levels: int) -> float:
-    """How far, in radians, a column is in front of the curtain's edge: it begins at the temples, lower down behind."""
+    """Return the angle, in radians, of a column before the curtain's edge: at the temples, lower down behind."""
     begins = np.interp(level, [0, 2, 4, levels - 1], [1.2, 1.5, 1.85, 1.95])
     return float(begins - face)
 

@@ -90,7 +90,7 @@ def thinned(points: Array, triangles: Array, keep: int, dear: Array) -> Array:
 
 
 def _folds(points: Array, faces: dict[int, list[int]], around: dict[int, set[int]], gone: int, stays: int) -> bool:
-    """Whether collapsing an edge would turn a triangle over or join more than the edge's two sides."""
+    """Return whether collapsing an edge would turn a triangle over or join more than the edge's two sides."""
     one = {v for n in around[gone] for v in faces[n]} & {v for n in around[stays] for v in faces[n]}
     if len(one - {gone, stays}) != 2:
         return True

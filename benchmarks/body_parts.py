@@ -115,7 +115,7 @@ def _garments(source: Source, fields: Fields) -> dict[str, Part]:
 
 
 def _straight(source: Source, fields: Fields, x: Array) -> Array:
-    """How much farther outside trouser legs are than the leg: at least 6.5 cm from the bone below the knee."""
+    """Return the distance of trouser legs from the leg: at least 6.5 cm from the bone below the knee."""
     found = np.zeros(len(x))
     for side, sign in (("l", 1), ("r", -1)):
         a, b = source.joint(f"calf_{side}"), source.joint(f"foot_{side}")

@@ -94,7 +94,7 @@ class Source:
 
 
 class Fields:
-    """Where each vertex of the mean body is on its limb."""
+    """The place of each vertex of the mean body on its limb."""
 
     def __init__(self, source: Source) -> None:
         v = source.mean

@@ -35,7 +35,7 @@ Key = tuple[str, str]
 """A benchmark, and the name of its row."""
 
 LONG = ("render", "workers")
-"""What `--quick` leaves out."""
+"""Benchmarks that `--quick` leaves out."""
 
 LESS = re.compile(r"^(s|ms|us|MB|MiB)$")
 """Units of which less is better; of rates and shares more is."""

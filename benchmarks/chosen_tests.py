@@ -1,4 +1,4 @@
-"""Which quick tests run which lines, and those that are run for a mutation: the fastest and the broadest."""
+"""The lines that quick tests run, and the tests chosen for a mutation: the fastest and the broadest."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ omit = */tests/*
 patch = subprocess
 context = ${{PYTEST_CURRENT_TEST-}}
 """
-"""How coverage is measured: a program that a test starts runs its lines for that test."""
+"""Settings of the coverage measurement: a program that a test starts runs its lines for that test."""
 
 CONTEXT = re.compile(r"\|(setup|run|teardown)$| \((setup|call|teardown)\)$")
-"""What a coverage context has besides the test: the phase, of the test itself or of a program that it started."""
+"""The part of a coverage context after the test: the phase, of the test itself or of a program that it started."""
 
 BUDGET = 60
 """Seconds that the tests of one mutation take at most, as they took in the run that measured the coverage."""
@@ -37,7 +37,7 @@ Reached = Mapping[str, Mapping[str, Sequence[str]]]
 
 
 def measured(rooms: Sequence[str], jobs: int) -> tuple[Reached, dict[str, float]]:
-    """Which quick tests run which lines of the rooms, and how many seconds each takes."""
+    """Return the lines of the rooms that each quick test runs, and the seconds that each test takes."""
     import coverage
 
     with tempfile.TemporaryDirectory() as folder:
@@ -79,7 +79,7 @@ def durations(times: Path) -> dict[str, float]:
 
 
 def breadths(reached: Reached) -> dict[str, Counter[str]]:
-    """How many lines of each room a test runs."""
+    """Return the number of lines of each room that a test runs."""
     found: dict[str, Counter[str]] = defaultdict(Counter)
     for file, lines in reached.items():
         for tests in lines.values():

@@ -26,7 +26,7 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act, final, run
 from hearth.simulation.rules import CONSEQUENCES, DEFAULT, Rules
-from hearth.simulation.world.further import WIDTH
+from hearth.simulation.world.action_set_3_states import WIDTH
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.rejects import Reject

@@ -1,4 +1,4 @@
-"""What the engine in the loop costs: programs decoded with it and freely, by networks with random weights.
+"""The cost of the engine in the loop: programs decoded with it and freely, by networks with random weights.
 
     python benchmarks/decoding_speed.py [--programs N]
 
@@ -58,7 +58,7 @@ def seconds(scorer: Any, starts: list[Start], constrained: bool) -> tuple[float,
 
 
 def compared(name: str, scorer: Any, given: Any, number: int) -> Figure:
-    """How many times as long constrained decoding takes, for a step; the median of three turns."""
+    """Return the ratio of the times of constrained and free decoding, for a step; the median of three turns."""
     starts = [Start(world, given, Random(n)) for n, world in enumerate(worlds(number))]
     ratios = []
     for _ in range(3):

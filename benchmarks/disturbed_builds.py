@@ -53,7 +53,7 @@ def started(out: Path, *words: str, largest: int = 0) -> subprocess.Popen[str]:
 
 
 def ended(build: subprocess.Popen[str], code: str, faults: Faults) -> bool:
-    """Whether a build got to its end; another end must name the code, without a traceback."""
+    """Return whether a build got to its end; another end must name the code, without a traceback."""
     printed = build.communicate()[1]
     if build.returncode and (f"error[{code}]" not in printed or "Traceback" in printed or "error in Hearth" in printed):
         faults.append(f"status {build.returncode}: {printed[-300:]}")

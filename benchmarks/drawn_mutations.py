@@ -36,7 +36,7 @@ STARTING = 30
 
 
 class Result(NamedTuple):
-    """What became of a mutation."""
+    """The outcome of a mutation."""
 
     mutation: Mutation
     outcome: str
@@ -44,7 +44,7 @@ class Result(NamedTuple):
     line: str
     """The line as the mutation makes it."""
     tests: int
-    """How many tests were run at most."""
+    """The largest number of tests that were run."""
 
 
 def tried(copy: Path, mutation: Mutation, tests: Sequence[str], seconds: Mapping[str, float]) -> Result:
@@ -97,7 +97,7 @@ def _shown(result: Result) -> None:
 
 
 def summary(results: Sequence[Result]) -> dict[str, Any]:
-    """How many of each room were noticed, and of all."""
+    """Return the number of mutations that tests noticed, of each room and of all."""
     rooms: dict[str, list[bool]] = defaultdict(list)
     for result in results:
         rooms[result.mutation.file.partition("/")[0]].append(result.outcome == "noticed")

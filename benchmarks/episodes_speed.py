@@ -91,7 +91,7 @@ def fetched(number: int) -> Env:
 
 
 def seen(each: Tick) -> None:
-    """What each agent sees and could do."""
+    """Compute each agent's view and possible actions."""
     for agent in (0, 1):
         view(each.world, agent)
         dict(legal(each.world, agent).masks)
@@ -150,7 +150,7 @@ def records(count: int) -> list[Figure]:
 
 
 def _again(file: Path, seed: str) -> int:
-    """How many episodes of a file another process with another hash seed does again with equal digests."""
+    """Return the number of a file's episodes that a process with another hash seed repeats with equal digests."""
     env = os.environ | {"PYTHONHASHSEED": seed}
     done = subprocess.run([sys.executable, "-c", AGAIN, file], check=True, capture_output=True, text=True, env=env)
     return int(done.stdout)

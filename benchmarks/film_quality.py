@@ -21,7 +21,7 @@ from typing import NamedTuple
 from measurement import Figure, as_line, finish, parser
 
 from hearth.analysis.episode_drawing import ticks_of
-from hearth.analysis.program_home_pairs import FilmedPair, pairs
+from hearth.analysis.random_program_home_pairs import FilmedPair, pairs
 from hearth.challenges.episode_films import execution_of
 from hearth.challenges.result_files import read
 from hearth.homes.library import load_graph

@@ -16,7 +16,7 @@ from time import process_time
 import plain_reference
 from measurement import Figure, as_line, finish, parser, passes, rate, runs, seconds, stalls
 
-from hearth.analysis.coverage import Script, scripts
+from hearth.analysis.programs_in_homes import Script, scripts
 from hearth.grounding.environments.sampling import Size, sample
 from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.homes import library

@@ -28,7 +28,7 @@ VARYING = {"timing.json", "catalog.duckdb", ".lock"}
 """Files with varying bytes: times, DuckDB's database, and the lock."""
 
 MEASURED = re.compile(rb"(\bminutes['\"]?: )[0-9.]+")
-"""How long a training took, which its checkpoint says."""
+"""The time of a training, which its checkpoint reports."""
 
 STUDY = """
 name: short

@@ -50,7 +50,7 @@ MUTATIONS = (
 
 
 def noticed(copy: Path, mutation: Mutation) -> bool:
-    """Whether the tests fail while the copy has the fault."""
+    """Return whether the tests fail while the copy has the fault."""
     file = copy / mutation.file
     text = file.read_text("utf-8")
     if text.count(mutation.right) < 1:
@@ -63,7 +63,7 @@ def noticed(copy: Path, mutation: Mutation) -> bool:
 
 
 def passes(copy: Path, tests: str) -> bool:
-    """Whether the quick tests of some folders pass, with the package taken from the copy."""
+    """Return whether the quick tests of some folders pass, with the package taken from the copy."""
     place = copy.parent
     code = (
         f"import sys; sys.path.insert(0, {str(place)!r}); import pytest; "

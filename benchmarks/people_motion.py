@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.analysis.coverage import Script, scripts
+from hearth.analysis.programs_in_homes import Script, scripts
 from hearth.commands import inputs
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
@@ -75,7 +75,7 @@ MOST = 4
 
 
 class Found(NamedTuple):
-    """What the films of some pairs showed."""
+    """Measurements of the films of some pairs."""
 
     sliding: list[float]
     heads: list[float]
@@ -182,7 +182,7 @@ def _tensor(array: NDArray[Any]) -> Any:
 
 
 def _solids(trajectory: Trajectory, tick: int, shown: list[Frame], found: Found) -> None:
-    """Which joints of a tick's poses are in solids."""
+    """Return the joints of a tick's poses that are in solids."""
     scene = trajectory.keyframes[min(tick, len(trajectory.keyframes) - 1)].scene
     apart = {actor.node.id for frame in shown for actor in frame.actors}
     apart |= {actor.place for frame in shown for actor in frame.actors}
@@ -220,7 +220,7 @@ def _extent(thing: Thing) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
 
 
 def _reaches(thing: Thing, points: NDArray[Any]) -> bool:
-    """Whether a thing's box contains any of some points."""
+    """Return whether a thing's box contains any of some points."""
     low, high = _extent(thing)
     return bool(((points >= low) & (points <= high)).all(axis=1).any())
 

@@ -23,11 +23,11 @@ class Mutation(NamedTuple):
     column: int
     operator: str
     occurrence: int
-    """Which of the places in the file at which the operator applies."""
+    """The number of the place in the file, of those at which the operator applies."""
 
 
 def _without_behaviour(tree: ast.AST) -> set[tuple[int, int]]:
-    """Where types stand, the slots of classes and the sizes of caches: what is mutated there cannot be noticed."""
+    """Return the places of types, slots of classes and sizes of caches: no test can notice a mutation there."""
     found: set[tuple[int, int]] = set()
     for node in ast.walk(tree):
         fields = [getattr(node, name, None) for name in ("annotation", "returns")]

@@ -19,7 +19,7 @@ from measurement import Figure, Passes, as_line, finish, parser, passes, rate, r
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.execution_graphs import ExecutionGraphs
-from hearth.datasets.format.codecs import bindings_of, program_of
+from hearth.datasets.format.row_conversion import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.homes import library
 from hearth.kb.loading.load import default

@@ -60,7 +60,7 @@ exit:
 """
 
 HALT = (ConnectionClosed, OSError, httpx.HTTPError)
-"""What a person sees of a server that is killed."""
+"""Errors that a person gets from a server that is killed."""
 
 
 @dataclass
@@ -94,7 +94,7 @@ def go_on(address: str, person: Person, chooser: random.Random) -> bool:
 
 
 def _one(client: httpx.Client, address: str, person: Person, page: str, chooser: random.Random) -> None:
-    """What the page asks for: one form, or one game."""
+    """Answer the page: one form, or one game."""
     if "/study/agree" in page:
         person.agreed |= client.post("/study/agree", data={"agree": "yes"}).status_code == 303
     elif "/study/understood" in page:
@@ -129,7 +129,7 @@ def play(address: str, person: Person, game: str, chooser: random.Random) -> Non
 
 
 def lost(store: Store, file: Path, people: list[Person]) -> list[str]:
-    """What was confirmed and is not in the store."""
+    """Return the confirmed answers that are not in the store."""
     conduct, missing = conducted(store, named(str(file)), default), []
     there = conduct.ledger.streams()
     for person in people:

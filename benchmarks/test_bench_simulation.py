@@ -1,4 +1,4 @@
-"""How fast worlds are made and programs run in them, against the plain reference: `pytest benchmarks --benchmark-only`.
+"""The speed of making worlds and running programs, against the plain reference: `pytest benchmarks --benchmark-only`.
 
 Each benchmark says how many units one run of it is, so that rates are printed by unit (see `conftest`).
 """

@@ -30,7 +30,7 @@ INSIDE = "HEARTH_INSIDE_NAMESPACE"
 
 
 def permitted() -> str:
-    """Why namespaces cannot be made here; nothing if they can."""
+    """Return the reason why namespaces cannot be made here; nothing if they can."""
     if not shutil.which("unshare") or not shutil.which("ip"):
         return "`unshare` or `ip` is not installed"
     tried = "ip link add try0 type bridge && mount -t tmpfs none /run && ip netns add try"

@@ -12,10 +12,10 @@ from typing import Any
 from hearth.agents.agent_registry import MainAgent
 from hearth.agents.protocol import Choice
 from hearth.challenges.agent_output import StandardDescriptors
+from hearth.challenges.behavior_counts import analysed
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_loop import play
-from hearth.challenges.failure_analysis import analysed
 from hearth.challenges.metrics import Outcome, outcome
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
-from hearth.challenges.instruction_nouns import EVERY, Nouns, nouns, wordings
+from hearth.challenges.instruction_object_names import EVERY, Nouns, nouns, wordings
 from hearth.challenges.instruction_writer import SEPARATOR
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

@@ -10,7 +10,7 @@ from itertools import groupby
 from random import Random
 from typing import NamedTuple
 
-from hearth.challenges.instruction_nouns import EVERY, Counted, listed, noun, the, wordings
+from hearth.challenges.instruction_object_names import EVERY, Counted, listed, noun, the, wordings
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name

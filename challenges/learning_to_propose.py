@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hearth.agents.agent_registry import MAIN
 from hearth.agents.goal_space import GoalSpace
-from hearth.agents.state_changes import StateChanges
+from hearth.agents.predicate_count_changes import StateChanges
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.episodes import Known

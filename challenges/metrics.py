@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, overload
 
+from hearth.challenges.behavior_counts import NAMES, Columns
 from hearth.challenges.challenge_definition import Challenge
-from hearth.challenges.failure_analysis import NAMES, Columns
 
 PER_TICK = 0.004
 """Price of a tick, in units of the reward."""

@@ -8,10 +8,10 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any
 
+from hearth.challenges.behavior_counts import Columns
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import is_own
 from hearth.challenges.episodes import Job, Record, played, start_of
-from hearth.challenges.failure_analysis import Columns
 from hearth.challenges.metrics import outcome
 from hearth.pipelines.engine.dask_engine import DaskEngine
 from hearth.pipelines.engine.engines import engine as made

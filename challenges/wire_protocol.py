@@ -17,7 +17,7 @@ from hearth.agents.protocol import Choice
 from hearth.challenges.agent_channels import Channel
 from hearth.envs.agent_answers import Fault, Keep, by_number, by_words, keep_nothing, row
 from hearth.envs.json_observations import instruction_text, observation
-from hearth.envs.text_protocol import description
+from hearth.envs.text_agent import description
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

@@ -150,10 +150,10 @@ def sample(
                                      param_hint="--nodes, --limit")  # fmt: skip
         _run(context, "sample", {**context.params, "homes": folder})
         return
-    from hearth.commands import coverage
+    from hearth.commands import sample_in_homes
 
     settings = _settings({"seed": seed, "home": home, "homes": folder, "kb": kb})
-    coverage.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
+    sample_in_homes.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
 
 
 def augment(

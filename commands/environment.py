@@ -74,8 +74,8 @@ def rules(source: Path, limit: int | None = None, as_json: bool = False) -> None
     Example:
       hearth environment rules release.zip
     """
-    from hearth.analysis.coverage import scripts
     from hearth.analysis.precondition_agreement import agreement
+    from hearth.analysis.programs_in_homes import scripts
 
     known = inputs.read_knowledge(None)
     found = agreement(islice(scripts([str(source)], known), limit), known)

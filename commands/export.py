@@ -30,9 +30,9 @@ def export(
     """
     from hearth.commands.bounded_process import in_time
     from hearth.datasets.dataset import Dataset
-    from hearth.datasets.export.batches import Wanted
     from hearth.datasets.export.formats import COUNTED, FORMATS
     from hearth.datasets.export.formats import export as exported
+    from hearth.datasets.export.program_batches import Wanted
 
     if not form:
         raise typer.BadParameter(f"choose a form: {', '.join(FORMATS)}", param_hint="--format")

@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
-from hearth.commands.inputs import choose_given, read_knowledge
 from hearth.commands.run_additions import Additions, additions, names_of
-from hearth.kb.language.reading_modes import Fuzzy
+from hearth.commands.shared_options import HomeOptions, ProgramOptions
 
 if TYPE_CHECKING:
     from hearth.schemas.program import Program
@@ -20,15 +19,10 @@ if TYPE_CHECKING:
 
 def hazards(
     file: Path,
-    home: str = "",
-    graph: Path | None = None,
-    homes: Path | None = None,
-    kb: Path | None = None,
+    place: HomeOptions = HomeOptions(),
     seed: int = 0,
     sample: bool = False,
-    which: int = 1,
-    columns: str = "",
-    fuzzy: Fuzzy = Fuzzy.TYPOS,
+    chosen: ProgramOptions = ProgramOptions(),
     as_json: bool = False,
 ) -> None:
     """Run a program by action set 3, and print the hazards, the lasting harm, and the things it leaves on or open.
@@ -47,19 +41,19 @@ def hazards(
     from hearth.simulation.hazards import hazards as found_in
     from hearth.simulation.lasting_changes import irreversible, left
 
-    known = read_knowledge(kb, home, graph, homes)
-    given = choose_given(file, known, which, columns, fuzzy)
+    known = place.knowledge()
+    given = chosen.given(file, known)
     if given.faults:
         raise HearthError(given.faults)
     output.report(given.warnings, kind="warning")
-    program, place, _ = given.at_home(home, graph, homes, known)
-    execution, is_sampled = _execution(program, place, seed, sample)
-    added = _added(place, execution) if is_sampled else None
+    program, home = place.placed(given, known)
+    execution, is_sampled = _execution(program, home, seed, sample)
+    added = _added(home, execution) if is_sampled else None
     found, lost, open_things = found_in(execution), irreversible(execution), left(execution)
     if as_json:
         output.emit(
             {
-                "home": place.name,
+                "home": home.name,
                 "executable": execution.executable,
                 "failure": _failed(execution) or None,
                 "sampled": is_sampled,

@@ -174,8 +174,8 @@ def export(
       hearth home export maple --format gltf
       hearth home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
     """
+    from hearth.rendering.scene.gltf_and_obj import ENDINGS, write
     from hearth.rendering.scene.home_geometry import with_geometry
-    from hearth.rendering.scene.interchange import ENDINGS, write
     from hearth.rendering.scene.scene_preparation import PreparedScene
 
     known = read_knowledge(None)

@@ -74,7 +74,7 @@ class Given(NamedTuple):
         Raises:
             HearthError: UNKNOWN_HOME, or a fault of a graph.
         """
-        from hearth.datasets.format.codecs import graph_of
+        from hearth.datasets.format.row_conversion import graph_of
         from hearth.grounding.binding import Binding, bind_stored
         from hearth.simulation.world.home import Home
         from hearth.simulation.world.world import World
@@ -235,14 +235,14 @@ def name_of(file: Path) -> str:
 def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     from hearth.kb import action_grammar
     from hearth.kb.language.numbered_steps import parse_steps
-    from hearth.pipelines.readers import plans
+    from hearth.pipelines.readers import natural_language_plans
     from hearth.schemas.syntax import parse_program
     from hearth.schemas.text_places import TextPlaces
 
     text, place = row["text"] or "", row["place"]
     places = TextPlaces(row["line"] or 0, row["places"] or ())
     own = next(iter(row["groundings"] or ()), None)
-    if row["origin"] == plans.NAME:
+    if row["origin"] == natural_language_plans.NAME:
         steps = parse_steps(text, 0, place, known, fuzzy)
         lines = tuple(map(places.line, steps.program.lines))
         faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])

@@ -62,15 +62,15 @@ def table(
         _statistics(data, as_json)
         return
     if number.startswith("5."):
-        from hearth.models.sketches import sketch_tables
+        from hearth.models.sketches import sketch_result_tables
 
         with bar("executions") as seen:
-            rows = sketch_tables.table(number, data, split, models or (), beam=beam, sketches=sketches, most=most,
-                                       seed=seed, seen=seen)  # fmt: skip
+            rows = sketch_result_tables.table(number, data, split, models or (), beam=beam, sketches=sketches,
+                                              most=most, seed=seed, seen=seen)  # fmt: skip
     else:
-        from hearth.models.text import text_tables
+        from hearth.models.text import text_result_tables
 
-        rows = text_tables.table(number, data, split, models or (), beam=beam, repaired=repair, seed=seed)
+        rows = text_result_tables.table(number, data, split, models or (), beam=beam, repaired=repair, seed=seed)
     if as_json:
         output.emit(rows)
     else:
@@ -79,7 +79,7 @@ def table(
 
 def _statistics(dataset: Any, as_json: bool) -> None:
     """Table 5.1."""
-    from hearth.models.sketches.dataset_table import dataset_table
+    from hearth.models.sketches.dataset_size_table import dataset_table
 
     found = dataset_table(dataset)
     output.emit(found) if as_json else output.records([each._asdict() for each in found])
@@ -88,27 +88,27 @@ def _statistics(dataset: Any, as_json: bool) -> None:
 def _of_films(number: str, dataset: Any, models: Sequence[str], beam: int, seed: int, as_json: bool) -> None:
     """Tables 4.2, 4.3, its part (b), and 4.6."""
     from hearth.commands.progress_line import bar
-    from hearth.models.films import clip_result_tables, film_tables
+    from hearth.models.films import clip_result_tables, film_result_tables
 
     with bar("films") as seen:
         if number in clip_result_tables.TABLES:
             rows: Sequence[Any] = clip_result_tables.clip_table(number, dataset, models, seed)
         else:
-            rows = film_tables.film_table(dataset, models, seed, beam=beam, seen=seen)
+            rows = film_result_tables.film_table(dataset, models, seed, beam=beam, seen=seen)
     output.emit(rows) if as_json else _print_films(number, rows)
 
 
 def _print_films(number: str, rows: Sequence[Any]) -> None:
-    from hearth.models.films import clip_result_tables, film_tables
+    from hearth.models.films import clip_result_tables, film_result_tables
 
     if number in clip_result_tables.TABLES:
         shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_result_tables.COLUMNS),
                   row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
         output.table(["method", "of", "homes", *clip_result_tables.COLUMNS, "error", "clips", "seeds"], shown)
     else:
-        shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
+        shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_result_tables.COLUMNS),
                   row.spread, row.films, row.seeds or None] for row in rows]  # fmt: skip
-        output.table(["method", "of", "homes", *film_tables.COLUMNS, "error", "films", "seeds"], shown)
+        output.table(["method", "of", "homes", *film_result_tables.COLUMNS, "error", "films", "seeds"], shown)
 
 
 def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketches: str, as_json: bool) -> None:
@@ -152,18 +152,18 @@ def tables(
       hearth model tables data_out --clips data_out/clips --out data_out/tables --table 4.3 --table 4.6
     """
     from hearth.commands.progress_line import bar
-    from hearth.models import table_plan
+    from hearth.models import thesis_table_plan
     from hearth.storage.names import inside
 
     data = {"people": dataset, "drawn": drawn or dataset / "synthetic", "clips": clips or dataset / "clips"}
-    plans = table_plan.chosen(only or (), () if data["clips"].is_dir() else ("clips",))
-    for each in (missing := table_plan.training(plans, seeds)):
+    plans = thesis_table_plan.chosen(only or (), () if data["clips"].is_dir() else ("clips",))
+    for each in (missing := thesis_table_plan.training(plans, seeds)):
         with bar(f"epochs of {each.folder(out).name}") as seen:
-            table_plan.train(each, data[each.data], out, minutes, seen)
+            thesis_table_plan.train(each, data[each.data], out, minutes, seen)
     found: dict[str, list[Any]] = {}
     for plan in plans:
         with bar(f"executions of {plan.name}") as seen:
-            found[plan.name] = table_plan.rows(plan, data[plan.data], out, seeds, most, seen)
+            found[plan.name] = thesis_table_plan.rows(plan, data[plan.data], out, seeds, most, seen)
         output.write(inside(out, f"{plan.name}.json"), found[plan.name])
     if as_json:
         output.emit({"models": len(missing), "tables": found})
@@ -174,12 +174,12 @@ def tables(
 
 
 def _columns(number: str) -> Mapping[str, str]:
-    from hearth.models.sketches import sketch_tables
-    from hearth.models.text import text_tables
+    from hearth.models.sketches import sketch_result_tables
+    from hearth.models.text import text_result_tables
 
-    if number in text_tables.TABLES:
-        return text_tables.COLUMNS
-    return sketch_tables.COLUMNS | ({"sketch": ""} if number in sketch_tables.PREDICTED else {})
+    if number in text_result_tables.TABLES:
+        return text_result_tables.COLUMNS
+    return sketch_result_tables.COLUMNS | ({"sketch": ""} if number in sketch_result_tables.PREDICTED else {})
 
 
 def _print(rows: Sequence[Row], columns: Mapping[str, str]) -> None:

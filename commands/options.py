@@ -1,11 +1,13 @@
 """Flags, names of values and help of the commands' options and arguments, from `options.yaml`.
 
-A command is a function with plain types and defaults; `described` adds the rest by the names of its parameters.
+A command is a function with plain types and defaults; `described` adds the rest by the names of its parameters. A
+parameter whose type is a group of `shared_options` stands for the fields of the group.
 """
 
 import os
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import fields, is_dataclass
+from functools import cache, wraps
 from inspect import Parameter, signature
 from typing import Annotated, Any, get_origin
 
@@ -23,8 +25,8 @@ def _table() -> dict[str, _Entries]:
     return table
 
 
-def described(command: Callable[..., Any]) -> None:
-    """Give the parameters of a command their entries; a parameter without one stays as it is."""
+def described(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a command whose parameters have their entries; a parameter without one stays as it is."""
     own, shared = _table().get(command.__module__.rpartition(".")[2], {}), _table()["shared"]
 
     def entered(parameter: Parameter) -> Parameter:
@@ -34,17 +36,38 @@ def described(command: Callable[..., Any]) -> None:
             return parameter
         return parameter.replace(annotation=Annotated[parameter.annotation, _parameter(**entry)])
 
-    given = signature(command, eval_str=True)
-    command.__signature__ = given.replace(  # type: ignore[attr-defined]
-        parameters=[entered(parameter) for parameter in given.parameters.values()]
-    )
+    groups: dict[str, Any] = {each.name: each.annotation for each in _given(command) if is_dataclass(each.annotation)}
+
+    @wraps(command)
+    def called(**values: Any) -> Any:
+        for name, group in groups.items():
+            values[name] = group(**{field.name: values.pop(field.name) for field in fields(group)})
+        return command(**values)
+
+    parameters = [entered(parameter) for parameter in parameters_of(command)]
+    called.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
+    return called
 
 
-def _parameter(*, flags: list[str] | None = None, processes: bool = False, **fields: Any) -> Any:
+def parameters_of(command: Callable[..., Any]) -> Iterator[Parameter]:
+    """Yield the parameters of a command, those of a group one by one in its place."""
+    for parameter in _given(command):
+        group: Any = parameter.annotation
+        if is_dataclass(group):
+            yield from _given(group)
+        else:
+            yield parameter
+
+
+def _given(function: Any) -> Iterable[Parameter]:
+    return signature(function, eval_str=True).parameters.values()
+
+
+def _parameter(*, flags: list[str] | None = None, processes: bool = False, **more: Any) -> Any:
     """Return an option with these flags, or an argument if there are none."""
     if processes:
-        fields["callback"] = _processes
-    return typer.Option(*flags, **fields) if flags else typer.Argument(**fields)
+        more["callback"] = _processes
+    return typer.Option(*flags, **more) if flags else typer.Argument(**more)
 
 
 def _processes(count: int) -> int:

@@ -18,7 +18,7 @@ def plan(dataset: Path, problems: int = 200, workers: int = 0, as_json: bool = F
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
-    from hearth.datasets.export.planning import agreement
+    from hearth.datasets.export.planner_agreement import agreement
 
     with bar("problems") as seen:
         found = agreement(Dataset.open(dataset), problems, workers, seen)

@@ -132,7 +132,7 @@ def _seats(given: list[str]) -> list[_Seat]:
 
 def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
     from hearth.challenges.wire_protocol import WireAgent
-    from hearth.envs.text_protocol import TextAgent
+    from hearth.envs.text_agent import TextAgent
 
     if seat.spec == TEXT:
         return TextAgent(_asked_at_terminal(how.as_json), how.keep, how.messages)

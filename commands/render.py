@@ -234,7 +234,7 @@ def gallery(
     Example:
       hearth render-gallery --fine --width 224 --out docs/pictures/steps.png
     """
-    from hearth.analysis.coverage import Script, scripts
+    from hearth.analysis.programs_in_homes import Script, scripts
     from hearth.analysis.step_gallery import gallery as pictured
     from hearth.commands.progress_line import bar, watched
     from hearth.kb.loading.load import default
@@ -305,7 +305,7 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
     """Yield executable programs drawn by the seed, each in the next of our homes, with its objects' visibility."""
-    from hearth.analysis.program_home_pairs import pairs
+    from hearth.analysis.random_program_home_pairs import pairs
     from hearth.rendering.cameras.visibility import tick_visibilities
     from hearth.rendering.film.snapshots import trajectory_of
 

@@ -12,7 +12,8 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.failure_output import failure_document
-from hearth.commands.inputs import read_given, read_knowledge
+from hearth.commands.inputs import read_given
+from hearth.commands.shared_options import HomeOptions
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 
@@ -27,10 +28,7 @@ if TYPE_CHECKING:
 
 def repair(
     file: Path,
-    home: str = "",
-    graph: Path | None = None,
-    homes: Path | None = None,
-    kb: Path | None = None,
+    place: HomeOptions = HomeOptions(),
     seed: int = 0,
     variants: int = 1,
     strength: str = "mild",
@@ -51,16 +49,16 @@ def repair(
     """
     from hearth.repair.augmentation import Options, augment
 
-    known = read_knowledge(kb, home, graph, homes)
+    known = place.knowledge()
     given = read_given(file, known, which, strict, columns)
-    program, place, _ = given.at_home(home, graph, homes, known)
-    found = augment(program, place, seed, program.title, Options(variants, strength=_strength(strength, perturb)))
+    program, home = place.placed(given, known)
+    found = augment(program, home, seed, program.title, Options(variants, strength=_strength(strength, perturb)))
     if isinstance(found, Failure):
-        _refuse(found, program, place.name, as_json)
+        _refuse(found, program, home.name, as_json)
     if as_json:
-        output.emit({"home": place.name, "seed": seed, **_json(found)})
+        output.emit({"home": home.name, "seed": seed, **_json(found)})
     else:
-        _print(program, found, place.name, known)
+        _print(program, found, home.name, known)
     failed = sum(pair.failure is not None and pair.failure.code not in _HARMLESS for pair in found.pairs)
     output.status(failed, strict=True)
 

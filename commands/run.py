@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import typer
 
 from hearth.commands import output
-from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
+from hearth.commands.inputs import Given, read_goals, read_rules
 from hearth.commands.run_output import Outcome, document, show
-from hearth.kb.language.reading_modes import Fuzzy
+from hearth.commands.shared_options import HomeOptions, ProgramOptions
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 
@@ -23,18 +23,13 @@ if TYPE_CHECKING:
 
 def run(
     file: Path,
-    home: str = "",
-    graph: Path | None = None,
-    homes: Path | None = None,
-    kb: Path | None = None,
+    place: HomeOptions = HomeOptions(),
     seed: int = 0,
     sample: bool = False,
     as_is: bool = False,
     explain: bool = False,
     goal: list[str] | None = None,
-    which: int = 1,
-    columns: str = "",
-    fuzzy: Fuzzy = Fuzzy.TYPOS,
+    chosen: ProgramOptions = ProgramOptions(),
     skip_faults: bool = False,
     strict: bool = False,
     rules: Literal["auto", "default", "replay", "evolving_graph", "consequences"] = "auto",
@@ -58,11 +53,11 @@ def run(
       hearth run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
-    known = read_knowledge(kb, home, graph, homes)
-    given = choose_given(file, known, which, columns, fuzzy)
+    known = place.knowledge()
+    given = chosen.given(file, known)
     _refuse_faults(given, skip_faults, strict)
-    program, place, _ = given.at_home(home, graph, homes, known)
-    outcome = _outcome(program, place, seed, sample, read_rules(rules, place))
+    program, home = place.placed(given, known)
+    outcome = _outcome(program, home, seed, sample, read_rules(rules, home))
     progress = _progress(goal, outcome) if goal else None
     if as_json:
         goals = {"goal": _goal_json(progress)} if progress else {}

@@ -87,7 +87,7 @@ def show(outcome: Outcome, explain: bool) -> None:
 
 def document(outcome: Outcome, explain: bool) -> dict[str, Any]:
     """Return a run for machines. Steps are counted from 1, ticks from 0."""
-    from hearth.datasets.format.codecs import change_row
+    from hearth.datasets.format.row_conversion import change_row
     from hearth.schemas.syntax import print_step
 
     execution, found = outcome.trial.execution, outcome.additions()

@@ -44,9 +44,10 @@ def lcs(
       hearth score lcs mine.jsonl
     """
     from hearth.scoring.bootstrap import intervals
-    from hearth.scoring.evaluate import METRICS, Scored, lcs_of
+    from hearth.scoring.evaluate import lcs_of
     from hearth.scoring.line_reader import LineReader
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
+    from hearth.scoring.prediction_scores import METRICS, Scored
     from hearth.scoring.predictions import read_pairs
     from hearth.scoring.refused_rows import FirstFaults
 
@@ -124,7 +125,7 @@ def program(
       hearth score program predictions.jsonl --graph home.json --by activity
       hearth score program plans.txt --home maple
     """
-    from hearth.commands.scored_programs import ALL, in_homes, read_predictions
+    from hearth.commands.score_inputs import ALL, in_homes, read_predictions
     from hearth.homes.library import names
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
@@ -243,8 +244,8 @@ def graphs(
       hearth score graphs mine.json theirs.json --nodes 41,65
     """
     from hearth.homes.library import read_graph
-    from hearth.scoring.graph_files import node_ids
     from hearth.scoring.metrics.graph_f1 import f1_signature, score
+    from hearth.scoring.node_ids_option import node_ids
 
     ours, theirs = node_ids(nodes)
     final, expected = (read_graph(path, "final_graph") for path in (predicted, reference))

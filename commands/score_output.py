@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.scoring.evaluate import Options, Scored, Summary
+    from hearth.scoring.evaluate import Options, Summary
+    from hearth.scoring.prediction_scores import Scored
     from hearth.scoring.refused_rows import FirstFaults
 
 
@@ -36,7 +37,7 @@ def _program_json(
     groups: dict[str, dict[str, Summary]],
     rejects: FirstFaults,
 ) -> dict[str, Any]:
-    from hearth.scoring.evaluate import METRICS
+    from hearth.scoring.prediction_scores import METRICS
 
     rows = [
         {

@@ -13,7 +13,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
-    from hearth.analysis.coverage import Script
+    from hearth.analysis.programs_in_homes import Script
     from hearth.analysis.sketch_evaluation import SketchEvaluation
     from hearth.kb.knowledge import Knowledge
     from hearth.simulation.world.home import Home
@@ -47,7 +47,7 @@ def sketch(
       hearth sketch release.zip --judge sketch_annotation.json --fit people.json
       hearth sketch watch_tv.txt --model people.json
     """
-    from hearth.analysis.coverage import scripts
+    from hearth.analysis.programs_in_homes import scripts
     from hearth.storage.rejects import Reject
 
     known = read_knowledge(kb)

@@ -10,7 +10,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
-    from hearth.analysis.coverage import Script
+    from hearth.analysis.programs_in_homes import Script
     from hearth.kb.knowledge import Knowledge
     from hearth.simulation.world.home import Home
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.consistent_reads import steady, version
 from hearth.datasets.damage_faults import reading, refused_question, too_slow, using
-from hearth.datasets.file_ranges import reading_between
+from hearth.datasets.file_id_ranges import reading_between
 from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, define_as, describe, without_zones
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.published_manifest import published_manifest

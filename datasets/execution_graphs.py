@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.codecs import Bindings, program_of
+from hearth.datasets.format.row_conversion import Bindings, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.tensors import GraphSample, Tensors, to_tensors
 from hearth.schemas.call_errors import explained

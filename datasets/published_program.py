@@ -46,7 +46,7 @@ class Entry:
     @property
     def program(self) -> Program:
         """Return the program, unbound."""
-        from hearth.datasets.format.codecs import program_of
+        from hearth.datasets.format.row_conversion import program_of
 
         with reading(self.row.get("place") or self.row["program_id"]):
             return program_of(self.row)
@@ -98,7 +98,7 @@ class Run:
 
     def bindings(self) -> dict[tuple[str, int], int]:
         """Return the node id of each object in the program, by (class, instance)."""
-        from hearth.datasets.format.codecs import bindings_of
+        from hearth.datasets.format.row_conversion import bindings_of
 
         return bindings_of(self.row["bindings"])
 
@@ -114,7 +114,7 @@ class Run:
             >>> [node.states for tick in (0, 3) for node in run.graph(tick).nodes if node.id == fridge]
             [('CLEAN', 'CLOSED', 'OFF', 'PLUGGED_IN'), ('CLEAN', 'OFF', 'OPEN', 'PLUGGED_IN')]
         """
-        from hearth.datasets.format.codecs import change_of
+        from hearth.datasets.format.row_conversion import change_of
 
         ticks = self.row["ticks"]
         if not 0 <= tick <= len(ticks):
@@ -150,7 +150,7 @@ class Run:
 
     @cached_property
     def _start(self) -> WorkingGraph:
-        from hearth.datasets.format.codecs import environment_change
+        from hearth.datasets.format.row_conversion import environment_change
 
         change = environment_change(self.row["environment"])
         added = tuple(in_states(node, node.states) for node in change.added_nodes)

@@ -26,7 +26,7 @@ class StoredHome(NamedTuple):
         Raises:
             KeyError: the name is unknown.
         """
-        from hearth.datasets.format.codecs import edges_of, node_of
+        from hearth.datasets.format.row_conversion import edges_of, node_of
 
         nodes = tuple(map(node_of, rows("SELECT * FROM home_nodes WHERE home = $id ORDER BY id", name)))
         if not nodes:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hearth.datasets.format.codecs import Bindings
+from hearth.datasets.format.row_conversion import Bindings
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.short_repr import brief

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, seen_instances
-from hearth.envs.text_protocol import USUAL, plain
+from hearth.envs.text_agent import USUAL, plain
 from hearth.envs.text_protocols import Protocol
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal

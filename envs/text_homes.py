@@ -16,7 +16,7 @@ from hearth.envs.answer_forms import WALK
 from hearth.envs.compact_text import said_step
 from hearth.envs.rewards import USUAL_REWARDS, Reward, checked_reward
 from hearth.envs.session import MOST_TICKS, Opening, opening
-from hearth.envs.text_protocol import plain
+from hearth.envs.text_agent import plain
 from hearth.envs.text_protocols import CURRENT, protocol
 from hearth.envs.text_worlds import Play, Task, TextWorld, begun, commanded, observed, seen
 from hearth.schemas.diagnostics import HearthError

@@ -11,9 +11,10 @@ from hearth.homes.plans.floor import HEAD
 from hearth.homes.plans.furniture import NoPlaceError
 from hearth.homes.plans.home_shell import Thing, interior, strip
 from hearth.homes.plans.layout import Layout
-from hearth.homes.plans.object_packing import FAR, local_of, stand, support_of
+from hearth.homes.plans.object_packing import stand
 from hearth.homes.plans.obstacles import Obstacles
 from hearth.homes.plans.plan import Piece
+from hearth.homes.plans.support_surfaces import FAR, local_of, support_of
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -6,7 +6,7 @@ import numpy as np
 
 from hearth.schemas.rng import derive
 from hearth.scoring.bootstrap import DIGITS, LEVEL, RESAMPLES, Interval
-from hearth.scoring.evaluate import METRICS, Scored
+from hearth.scoring.prediction_scores import METRICS, Scored
 
 
 def means(found: Sequence[Scored], seed: int = 0) -> dict[str, Interval]:

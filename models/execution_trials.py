@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
-from hearth.datasets.format.codecs import bindings_of, program_of
+from hearth.datasets.format.row_conversion import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.models.interface import Steps

@@ -8,7 +8,7 @@ from hearth.models.evaluation import by_group
 from hearth.models.interface import Steps
 from hearth.scoring.bootstrap import Interval
 from hearth.scoring.dataset_scores import score_steps
-from hearth.scoring.evaluate import METRICS
+from hearth.scoring.prediction_scores import METRICS
 
 
 class Row(NamedTuple):

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.row_conversion import program_of
 from hearth.datasets.format.sketch_choice import ANNOTATED, sketches_query
 from hearth.datasets.format.splits import RULES
 from hearth.datasets.format.stored_cases import stored_cases

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import cache, cached_property, lru_cache
 
 from hearth.datasets.format.case_rows import environment_of, rerun, run_row
-from hearth.datasets.format.codecs import (
+from hearth.datasets.format.row_conversion import (
     condition_rows,
     conditions_of,
     environment_row,

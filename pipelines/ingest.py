@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
 
-from hearth.datasets.format.codecs import graph_of
+from hearth.datasets.format.row_conversion import graph_of
 from hearth.datasets.format.shared_homes import write_home
 from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
@@ -23,7 +23,7 @@ from hearth.pipelines.readers import (
     crowd,
     enclosed_json,
     json_records,
-    plans,
+    natural_language_plans,
     program_tables,
     program_text,
     published_dataset,
@@ -50,8 +50,8 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     release.NAME: release.scan,
     crowd.NAME: crowd.scan,
     program_text.NAME: program_text.scan,
-    plans.NAME: plans.scan,
-    TEXTS: plans.scan_list,
+    natural_language_plans.NAME: natural_language_plans.scan,
+    TEXTS: natural_language_plans.scan_list,
     json_records.NAME: json_records.scan,
     LISTED: json_records.scan_list,
     DOCUMENT: json_records.scan_document,
@@ -71,7 +71,7 @@ READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
     crowd.NAME: lambda item, salt: [crowd.read(item, salt)],
     program_text.NAME: lambda item, salt: [program_text.read(item)],
-    plans.NAME: lambda item, salt: [plans.read(item)],
+    natural_language_plans.NAME: lambda item, salt: [natural_language_plans.read(item)],
     json_records.NAME: json_records.read,
     published_dataset.NAME: lambda item, salt: published_dataset.read(item),
     sketches.NAME: lambda item, salt: [sketches.read(item)],
@@ -80,7 +80,13 @@ READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
 }
 """The function that reads one record, by reader. To add one: a file in `readers/`, a row here and in `SCANNERS`."""
 
-WEIGHTS = {program_text.NAME: 1, plans.NAME: 4, json_records.NAME: 4, release.NAME: 256, scene_graphs.NAME: 1024}
+WEIGHTS = {
+    program_text.NAME: 1,
+    natural_language_plans.NAME: 4,
+    json_records.NAME: 4,
+    release.NAME: 256,
+    scene_graphs.NAME: 1024,
+}
 """The weight of a record in filling a partition, by reader; others weigh `_USUAL`."""
 
 _USUAL = 64

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from hearth.datasets.format.codecs import binding_rows, graph_of, named, step_rows, warning_row
+from hearth.datasets.format.row_conversion import binding_rows, graph_of, named, step_rows, warning_row
 from hearth.grounding.binding import bind_stored
 from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
@@ -14,7 +14,7 @@ from hearth.kb.language.reading_modes import Fuzzy
 from hearth.pipelines.checks import free_text_steps, program_checks
 from hearth.pipelines.engine.build_context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.stage import Stage
-from hearth.pipelines.readers import plans
+from hearth.pipelines.readers import natural_language_plans
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
@@ -51,7 +51,7 @@ def process_as(record: IngestedRow, reading: Reading) -> list[ValidatedRow | Rej
     """Check one program and each of its groundings; a faulty grounding is refused alone."""
     known = reading.known
     natural = partial(checked_natural_language, fuzzy=reading.fuzzy, strict=reading.strict)
-    check = natural if record["origin"] == plans.NAME else checked
+    check = natural if record["origin"] == natural_language_plans.NAME else checked
     places = TextPlaces(record["line"] or 0, record["places"] or ())
     program, faults, warnings = check(record["text"] or "", 0, record["place"], known)
     faults, warnings = (tuple(map(places.placed, found)) for found in (faults, warnings))

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, cast
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph_faults import REMEDY, graph_fault
+from hearth.schemas.graph_json_faults import REMEDY, graph_fault
 from hearth.schemas.numbers import stored
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import RELATIONS

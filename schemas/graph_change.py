@@ -1,8 +1,8 @@
 """The difference of two graphs: the form in which ticks, environments and final graphs are published.
 
 `encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by their
-movements (`simulation.world.world_change`), with the same result; `datasets.format.codecs` reads and writes rows of
-tables.
+movements (`simulation.world.world_change`), with the same result; `datasets.format.row_conversion` reads and writes
+rows of tables.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.row_conversion import program_of
 from hearth.datasets.format.sketch_choice import ANNOTATED, sketches_query
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
@@ -19,8 +19,9 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
 from hearth.schemas.row_types import DifferenceRow
 from hearth.scoring.dataset_scores import score_steps
-from hearth.scoring.evaluate import METRICS, Scored, summarise
+from hearth.scoring.evaluate import summarise
 from hearth.scoring.metrics.lcs import matrix
+from hearth.scoring.prediction_scores import METRICS, Scored
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act
 from hearth.simulation.rules import RULES, Rules

@@ -9,7 +9,7 @@ from typing import Any
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import Source, start_of
-from hearth.datasets.format.codecs import bindings_of, program_of
+from hearth.datasets.format.row_conversion import bindings_of, program_of
 from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
 from hearth.datasets.verify import opened
 from hearth.kb.language.reading_modes import Fuzzy
@@ -17,10 +17,11 @@ from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
-from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, Scored, lcs_of, note_goal, scored
+from hearth.scoring.evaluate import GOALS, BothLcs, Options, Reference, lcs_of, note_goal, scored
 from hearth.scoring.line_reader import LineReader
 from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.prediction_rows import Named
+from hearth.scoring.prediction_scores import Scored
 from hearth.scoring.predictions import Pair, read_pairs
 from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.engine import run

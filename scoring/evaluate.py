@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -34,7 +34,8 @@ from hearth.scoring.metrics.graph_f1 import (
 from hearth.scoring.metrics.graph_f1 import score as graph_score
 from hearth.scoring.metrics.lcs import LEVELS, LcsScore, lcs_signature, score_pairs
 from hearth.scoring.metrics.parsability import SIGNATURE as PARSABLE
-from hearth.scoring.metrics.parsability import Parsability, parsability
+from hearth.scoring.metrics.parsability import parsability
+from hearth.scoring.prediction_scores import METRICS, Scored
 from hearth.scoring.predictions import Pair
 from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.engine import run
@@ -49,88 +50,6 @@ NO_LCS = LcsScore(0.0, 0.0, 0.0)
 
 BothLcs = tuple[LcsScore, LcsScore]
 """Similarity by class, or as the options say, and by instance; 0 without a reference."""
-
-
-@dataclass(frozen=True, slots=True)
-class Options:
-    """Settings for scoring predictions.
-
-    Attributes:
-        rules: of simulation.
-        match: assignment of instances in final graphs.
-        scope: the program whose objects are compared in final graphs.
-        instances: whether LCS distinguishes instances at all levels; `Scored.by_instance` always does.
-        seed: of the intervals.
-    """
-
-    rules: Rules = DEFAULT
-    match: MatchBy = MATCH
-    scope: Scope = SCOPE
-    instances: bool = False
-    seed: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Scored:
-    """One prediction's scores. Scores that do not apply are None; a missing prediction fails in all that apply.
-
-    Attributes:
-        pair: the prediction and its reference.
-        lcs: similarity of the programs, by class unless the options say otherwise; 0 without a reference.
-        by_instance: similarity where each object is an instance, as in tables 5.2 to 5.5.
-        parse: None for a missing prediction.
-        execution: None without an environment, and for a missing prediction.
-        graph: None without an environment, or if the reference does not run.
-        goal: of the row's own goal, else of the goal that the reference achieves; None without either.
-        comparable: whether the reference runs; None without an environment or a reference.
-        placed: whether there is an environment.
-        goal_faults: why the row's own goal can't be read; such a row has every score but those of the goal.
-    """
-
-    pair: Pair
-    lcs: LcsScore
-    by_instance: LcsScore
-    parse: Parsability | None = None
-    execution: Executability | None = None
-    graph: GraphScore | None = None
-    goal: GoalScore | None = None
-    comparable: bool | None = None
-    placed: bool = False
-    goal_faults: tuple[Diagnostic, ...] = ()
-
-    __repr__ = brief
-
-    @property
-    def missing(self) -> bool:
-        """Return whether the prediction is missing."""
-        return self.pair.predicted is None
-
-    @property
-    def empty(self) -> bool:
-        """Return whether the prediction has no lines."""
-        return self.pair.predicted == ()
-
-
-def _left(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
-    """Return the value of a goal of which something was left to do at the start."""
-    return float(value(scored.goal)) if scored.goal and scored.goal.left else None
-
-
-def _whole(scored: Scored, value: Callable[[GoalScore], float]) -> float | None:
-    return float(value(scored.goal)) if scored.goal else None
-
-
-def _f1(value: Callable[[GraphScore], float]) -> Callable[[Scored], float | None]:
-    """Return an F1 of final graphs, which is 0 for a prediction without steps."""
-    return lambda scored: None if scored.graph is None else 0.0 if scored.empty else value(scored.graph)
-
-
-def _lcs(level: str, by_instance: bool = False) -> Callable[[Scored], float | None]:
-    def value(scored: Scored) -> float | None:
-        found: float = getattr(scored.by_instance if by_instance else scored.lcs, level)
-        return found if scored.pair.referenced else None
-
-    return value
 
 
 def given_goal(pair: Pair) -> Any:
@@ -160,42 +79,23 @@ def _read_goal_score(
         return None, tuple(error.diagnostics)
 
 
-def _executable(scored: Scored) -> float | None:
-    if not scored.placed:
-        return None
-    return float(scored.execution is not None and scored.execution.executable)
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Settings for scoring predictions.
 
+    Attributes:
+        rules: of simulation.
+        match: assignment of instances in final graphs.
+        scope: the program whose objects are compared in final graphs.
+        instances: whether LCS distinguishes instances at all levels; `Scored.by_instance` always does.
+        seed: of the intervals.
+    """
 
-METRICS: dict[str, Callable[[Scored], float | None]] = {
-    "lcs_step": _lcs("step"),
-    "lcs_action": _lcs("action"),
-    "lcs_object": _lcs("object"),
-    "lcs_mean": _lcs("mean"),
-    "lcs_step_instances": _lcs("step", by_instance=True),
-    "lcs_object_instances": _lcs("object", by_instance=True),
-    "parsable": lambda s: float(s.parse is not None and s.parse.parsable),
-    "parsable_names": lambda s: float(s.parse is not None and s.parse.named),
-    "executable": _executable,
-    "executable_filled": lambda s: None if s.empty else _executable(s),
-    "f1_state": _f1(lambda found: found.states.f1),
-    "f1_relation": _f1(lambda found: found.relations.f1),
-    "f1": _f1(lambda found: found.both.f1),
-    "f1_state_published": lambda s: s.graph.states.f1 if s.graph else None,
-    "f1_relation_published": lambda s: s.graph.relations.f1 if s.graph else None,
-    "f1_published": lambda s: s.graph.both.f1 if s.graph else None,
-    "goal": lambda s: _left(s, lambda found: found.reached),
-    "goal_fraction": lambda s: _left(s, lambda found: found.fraction),
-    "goal_whole": lambda s: _whole(s, lambda found: found.whole),
-    "goal_whole_fraction": lambda s: _whole(s, lambda found: found.whole_fraction),
-}
-"""Every score by name, from 0 to 1; None if it does not apply.
-
-`f1` of an empty prediction is 0. In the thesis's reading, `f1_published`, an empty program runs: it shares the
-character's place with its reference, or has no state as its reference. `goal` counts only literals that did not hold at
-the start. `goal_whole` is the reading before version 2, which counts all.
-
-To add a scorer: a module, a row here, a test.
-"""
+    rules: Rules = DEFAULT
+    match: MatchBy = MATCH
+    scope: Scope = SCOPE
+    instances: bool = False
+    seed: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from hearth.kb.formula import And, Formula, Or, free
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Hazard
-from hearth.simulation.actions.readings import Reading, candidates
+from hearth.simulation.actions.formula_evaluation import Reading, candidates
 from hearth.simulation.engine import Execution
 from hearth.simulation.processes import widened
 from hearth.simulation.rules import CONSEQUENCES

@@ -14,7 +14,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Process
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
-from hearth.simulation.actions.readings import kind_of
+from hearth.simulation.actions.formula_evaluation import kind_of
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home

@@ -13,8 +13,8 @@ from typing import Any
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.literal_effects import made
 from hearth.simulation.process_plan import Moment, Running, here
+from hearth.simulation.world.action_set_3_states import WIDTH
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.further import WIDTH
 from hearth.simulation.world.moved_edges import CONTENTS, NOTHING
 from hearth.simulation.world.process_ticks import GoingOn, Ticks, ticks_left
 from hearth.simulation.world.world import World
@@ -63,7 +63,7 @@ def advanced(before: World, world: World) -> World:
     if len(states) == _NARROW:
         world = widened(world)
         states = world.states
-    ticks: Ticks = states[WIDTH]  # type: ignore[assignment] # see `further`
+    ticks: Ticks = states[WIDTH]  # type: ignore[assignment] # see `action_set_3_states`
     try:
         known = before.settled
     except AttributeError:

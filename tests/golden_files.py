@@ -36,14 +36,14 @@ def full(value: object) -> str:
 
 
 def known(name: str) -> dict[str, Any]:
-    """What a golden file has; nothing where it is not there yet."""
+    """Return the content of a golden file; nothing where the file does not exist yet."""
     file = FOLDER / name
     found: dict[str, Any] = json.loads(file.read_text("utf-8")) if file.is_file() else {}
     return found
 
 
 def compare(name: str, found: Mapping[str, object], part: str = "", others: bool = False) -> None:
-    """Whether a golden file, or a part of it, has just this; with HEARTH_REFRESH=1 it is written there.
+    """Assert that a golden file, or a part of it, has just this; with HEARTH_REFRESH=1 it is written there.
 
     Args:
         name: of the file.

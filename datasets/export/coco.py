@@ -12,7 +12,7 @@ import orjson
 
 from hearth.datasets.damage_faults import reading
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted
+from hearth.datasets.export.program_batches import Wanted
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.names import inside

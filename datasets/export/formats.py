@@ -5,12 +5,12 @@ from pathlib import Path
 
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.coco import coco
 from hearth.datasets.export.graphs import graphml, node_link
-from hearth.datasets.export.json_lines import csv, jsonl
+from hearth.datasets.export.jsonl_and_csv import csv, jsonl
 from hearth.datasets.export.natural_language import nl
-from hearth.datasets.export.problems import pddl
+from hearth.datasets.export.pddl_problems import pddl
+from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.export.python_code import code
 from hearth.datasets.export.rdf import rdf
 from hearth.datasets.export.release_layout import release

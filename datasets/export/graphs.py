@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import orjson
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted, runs, write
+from hearth.datasets.export.program_batches import Wanted, runs, write
 from hearth.storage.names import file_name, inside
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import Any
 import orjson
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted, programs, write
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.export.program_batches import Wanted, programs, write
+from hearth.datasets.format.row_conversion import program_of
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.step_phrases import say
 from hearth.schemas.program import Program

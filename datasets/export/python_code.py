@@ -7,8 +7,8 @@ from pathlib import Path
 from unicodedata import category
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted, programs, write
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.export.program_batches import Wanted, programs, write
+from hearth.datasets.format.row_conversion import program_of
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.published_rows import ProgramRow
 

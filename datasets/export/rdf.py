@@ -5,7 +5,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted, programs
+from hearth.datasets.export.program_batches import Wanted, programs
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.published_rows import ProgramRow
 

@@ -6,8 +6,8 @@ from typing import Any
 import orjson
 
 from hearth.datasets.dataset import OWN, Dataset
-from hearth.datasets.export.batches import Wanted, programs, runs, write
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.export.program_batches import Wanted, programs, runs, write
+from hearth.datasets.format.row_conversion import program_of
 from hearth.datasets.published_program import Run
 from hearth.schemas.graph import to_release
 from hearth.schemas.program import Program

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Protocol
 
-from hearth.datasets.format.codecs import (
+from hearth.datasets.format.row_conversion import (
     binding_rows,
     bindings_of,
     change_of,

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from hearth.datasets.format.codecs import graph_of
+from hearth.datasets.format.row_conversion import graph_of
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, to_release
 from hearth.schemas.row_types import GraphRow
 from hearth.storage.files import write_json

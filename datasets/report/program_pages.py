@@ -8,7 +8,7 @@ from functools import cache, cached_property, partial
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.codecs import change_of, edges_of, program_of
+from hearth.datasets.format.row_conversion import change_of, edges_of, program_of
 from hearth.datasets.report.copied_pictures import shown_as
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.graph_change import Change, WorkingGraph

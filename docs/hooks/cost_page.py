@@ -13,7 +13,7 @@ MEASURED = 2
 """Processors of the measured runs."""
 
 PROGRAM = "programs: processor a program"
-"""What a whole build takes, by its size."""
+"""The figure of RESULTS.md for a whole build, by its size."""
 
 FIGURES = {
     "speedup": ("workers", "augment: two workers against one"),
@@ -67,7 +67,7 @@ def program() -> tuple[int, float]:
 
 
 def whole() -> list[str]:
-    """What whole runs took: programs built, episodes played and done again; nothing where none was run."""
+    """Return the cost of whole runs: programs built, episodes played and repeated; nothing where none was run."""
     lines = []
     for section, what, time, each, memory in WHOLE_RUNS:
         spent, most = sizes(section, each), sizes(section, memory)
@@ -111,7 +111,7 @@ WHOLE_RUNS = (
 
 
 def memory() -> list[str]:
-    """What publishing keeps of a program: the slope between the smallest and the largest build, if there are two."""
+    """Return the memory that publishing keeps of a program: the slope from the smallest to the largest build."""
     found = sizes("scale", "programs: publish: largest process")
     if len(found) < 2:
         return []

@@ -71,8 +71,9 @@ def ran(script: str, folder: Path, checkout: Path = ROOT) -> str:
 
 
 def shown(text: str, printed: str) -> bool:
-    """Whether the lines of a block are successive lines of the output, those after `...` further below; numbers of
-    several digits may differ.
+    """Return whether the lines of a block are successive lines of the output, those after `...` further below.
+
+    Numbers of several digits may differ.
     """
     lines = [_plain(line) for line in printed.splitlines() if line.strip()]
     at = 0

@@ -29,7 +29,7 @@ PICTURES: dict[str, dict[str, Any]] = {
     "play-3d-360": {"task": "0", "challenge": "wah", "helper": "hp_true", "width": 360, "scheme": "dark",
                     "interface": "visual"},
 }  # fmt: skip
-"""What is played in each picture, and how it is seen."""
+"""The game of each picture, and its camera and size."""
 
 
 def take(page: Any, address: str, how: dict[str, Any], file: Path) -> None:

@@ -33,7 +33,7 @@ STATES = {
     "missing": "not yet",
     "design": "an overview, an architecture or a setting: where ours stands",
 }
-"""What there is of ours, and what that means."""
+"""States of a figure of ours, and their meanings."""
 
 NONE = "not yet"
 
@@ -97,8 +97,9 @@ def _item(item: dict[str, Any]) -> Iterator[str]:
 
 
 def value_at(document: Any, place: str) -> Any:
-    """What stands at a place of a JSON document: names and numbers by `/`; `key=value` finds an entry of a list, and
-    `key=value&key=value` one that has both.
+    """Return the value at a place of a JSON document: names and numbers by `/`.
+
+    `key=value` finds an entry of a list, and `key=value&key=value` one that has both.
 
     Raises:
         LookupError: there is nothing.

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import load
 from hearth.kb.tools.correction_reasons import FIELDS, Reasons, root_of
-from hearth.kb.tools.release_facts import Fact, is_release, read_release
+from hearth.kb.tools.published_knowledge import Fact, is_release, read_release
 
 
 class Difference(NamedTuple):

@@ -6,7 +6,7 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.source_files import Faults, read_yaml, strings
-from hearth.kb.tools.release_facts import Fact
+from hearth.kb.tools.published_knowledge import Fact
 
 FIELDS: dict[str, tuple[str, ...]] = {
     "properties": ("class", "property"),

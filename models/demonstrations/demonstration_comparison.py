@@ -9,9 +9,9 @@ from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.demonstrations.demonstration_data import Demonstrations, shown
 from hearth.models.interface import Request, Steps
 from hearth.models.model_registry import MODELS, restore
-from hearth.models.table_models import refuse_others
 from hearth.models.text.text_words import words
 from hearth.models.text_examples import Example, examples
+from hearth.models.thesis_table_models import refuse_others
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring.metrics.lcs import score_pairs

@@ -8,8 +8,8 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_probabilities import ClipProbabilities
+from hearth.models.films.object_class_properties import ClassTable
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import InputBatch
 

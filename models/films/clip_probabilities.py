@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.models.films.class_table import PLACES, ClassTable
 from hearth.models.films.film_prediction import cut
 from hearth.models.films.mask_clip_model import Scored, TrainedSeenModel
+from hearth.models.films.object_class_properties import PLACES, ClassTable
 
 
 @dataclass(frozen=True, slots=True)

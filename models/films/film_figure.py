@@ -13,7 +13,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_result_tables import classifier
 from hearth.models.films.film_arrays import COLOURS, FORMS
-from hearth.models.films.film_executions import shown_films
+from hearth.models.films.film_contents import shown_films
 from hearth.models.films.film_prediction import cut
 from hearth.models.films.film_programs import followed
 from hearth.models.interface import Steps

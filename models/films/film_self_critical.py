@@ -10,7 +10,7 @@ from typing import Literal
 
 from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import Checkpoint
-from hearth.models.films.film_examples import FilmExample, film_examples
+from hearth.models.films.film_training_examples import FilmExample, film_examples
 from hearth.models.films.film_writer import FilmWriter, TrainedFilmWriter
 from hearth.models.interface import Settings, Steps, Training
 from hearth.models.model_registry import restore

@@ -26,7 +26,7 @@ from hearth.models.films.clip_data import OfFilms
 from hearth.models.films.clip_probabilities import ClipProbabilities
 from hearth.models.films.clip_reader import ClipReader
 from hearth.models.films.clip_result_tables import classifier
-from hearth.models.films.film_examples import FilmExample, film_examples
+from hearth.models.films.film_training_examples import FilmExample, film_examples
 from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.text.likelihood_training import likelihood, written

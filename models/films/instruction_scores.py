@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Instruction
 from hearth.models.films.film_programs import Moves, Scores
+from hearth.models.films.object_class_properties import ClassTable
 from hearth.models.films.step_order import START, StepOrder
 
 OF_A_CLIP = 8

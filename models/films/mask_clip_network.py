@@ -12,8 +12,8 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from hearth.models.films.class_table import PLACES
 from hearth.models.films.mask_features import NUMBERS, PEOPLE
+from hearth.models.films.object_class_properties import PLACES
 
 FRAMES = 9
 LOOKED_AT = slice(0, FRAMES, 2)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Clip, Clips
 from hearth.models.films.mask_features import NUMBERS, SeenFilm, seen_film
+from hearth.models.films.object_class_properties import ClassTable
 from hearth.storage.parallel import Seen, unseen
 
 MOST_SEEN = 40

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 
 from hearth.models.decoding.next_step_options import Grammar
 from hearth.models.sketches.candidate_choices import Choice
-from hearth.models.sketches.grounded_programs import Grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import Habits
 from hearth.models.sketches.node_features import Places, node_choice
+from hearth.models.sketches.sketch_examples import Grounded
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Offer
 from hearth.models.sketches.text_features import NO_CLUES, Clues

@@ -18,8 +18,8 @@ from hearth.models.devices import device
 from hearth.models.interface import Request, Settings, Steps, Training, texts
 from hearth.models.sketches.graph_inputs import NO_NODE, Batch, GraphInput, batched, graph_input, targets
 from hearth.models.sketches.graph_network import Change, GraphNetwork, Memory, loss_of
-from hearth.models.sketches.grounded_programs import grounded
 from hearth.models.sketches.name_numbers import Words
+from hearth.models.sketches.sketch_examples import grounded
 from hearth.models.text_examples import Corpus, Example
 from hearth.models.training import Task, train
 from hearth.schemas.program import Program, Step

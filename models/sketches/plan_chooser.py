@@ -25,10 +25,10 @@ from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.sketches.candidate_choices import Choice, Packed, joined, packed
 from hearth.models.sketches.candidate_ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.chooser_examples import node_choices, step_choices
-from hearth.models.sketches.grounded_programs import grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import Habits
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
+from hearth.models.sketches.sketch_examples import grounded
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Offer
 from hearth.models.sketches.text_features import AROUND, NO_CLUES, Clues, frequent

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from hearth.pipelines.crowd.key_counts import SeenSet, digest
-from hearth.pipelines.readers import crowd, json_records, plans, program_text
+from hearth.pipelines.readers import crowd, json_records, natural_language_plans, program_text
 from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.rejects import Reject
@@ -60,7 +60,7 @@ class Repeated:
         if self._was_numbered(name) or self._seen.add(digest(name)):
             what = "this id"
         elif answer is not None and self._seen.add(digest(answer)):
-            what = "this text" if item.reader == plans.NAME else "this answer of the same worker"
+            what = "this text" if item.reader == natural_language_plans.NAME else "this answer of the same worker"
         else:
             return item
         return _copy(what, item)
@@ -93,8 +93,8 @@ def _answer(item: Item) -> Any:
 
     A crowd worker's answer without its id, or natural-language steps.
     """
-    if item.reader == plans.NAME:
-        return [plans.NAME, item.value["text"]]
+    if item.reader == natural_language_plans.NAME:
+        return [natural_language_plans.NAME, item.value["text"]]
     if item.reader != crowd.NAME:
         return None
     return {name: cell for name, cell in item.value["cells"].items() if name in crowd.COLUMNS}

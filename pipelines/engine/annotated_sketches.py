@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from typing import Any, NamedTuple, cast
 
-from hearth.datasets.format.codecs import steps_of
+from hearth.datasets.format.row_conversion import steps_of
 from hearth.repair.sketch import inherited
 from hearth.schemas.failures import Code
 from hearth.schemas.published_rows import ProgramRow

@@ -14,10 +14,10 @@ from hearth.datasets.dataset_knowledge import copy_overlay
 from hearth.datasets.format import splits
 from hearth.datasets.format.card import write_card
 from hearth.datasets.format.catalog import write_catalog
-from hearth.datasets.format.codecs import node_row
 from hearth.datasets.format.croissant import write_croissant
 from hearth.datasets.format.ids import STAMP
 from hearth.datasets.format.image_tables import write_images
+from hearth.datasets.format.row_conversion import node_row
 from hearth.datasets.format.split_runs import Run, Runs
 from hearth.datasets.format.split_summary import summary
 from hearth.datasets.tensors import EDGE_TYPES
@@ -25,9 +25,9 @@ from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.activity_tables import COUNTED, Activities
 from hearth.pipelines.engine.annotated_sketches import ANNOTATED, Annotations, fitting, inherited_annotations
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.split_tables import write_split_rows
 from hearth.pipelines.engine.stage import Job
 from hearth.pipelines.engine.stages import STAGES, record_of
+from hearth.pipelines.engine.tables_by_part import write_split_rows
 from hearth.schemas import published_rows, stage_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

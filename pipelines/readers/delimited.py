@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from hearth.pipelines.readers.placed_texts import text_at
+from hearth.pipelines.readers.located_texts import text_at
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, fault_of, lines
 from hearth.pipelines.readers.record_ends import RecordEnds
 from hearth.schemas.diagnostics import Diagnostic

@@ -9,7 +9,7 @@ from hearth.pipelines.readers import json_records
 from hearth.pipelines.readers.field_columns import Asked
 from hearth.pipelines.readers.found_records import holds_program, named
 from hearth.pipelines.readers.json_documents import located
-from hearth.pipelines.readers.placed_texts import Located
+from hearth.pipelines.readers.located_texts import Located
 from hearth.pipelines.readers.reader_items import Item, opened
 from hearth.pipelines.readers.step_rows import Entry
 from hearth.schemas.program_boundaries import TITLE

@@ -7,7 +7,7 @@ from typing import Any
 
 import orjson
 
-from hearth.pipelines.readers.placed_texts import Located, Pairs
+from hearth.pipelines.readers.located_texts import Located, Pairs
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, opened
 from hearth.pipelines.readers.relaxed_json import strict
 from hearth.schemas.diagnostics import Diagnostic

@@ -6,7 +6,7 @@ from contextlib import suppress
 from typing import Any
 
 from hearth.pipelines.readers.json_documents import located, parsed
-from hearth.pipelines.readers.placed_texts import Located
+from hearth.pipelines.readers.located_texts import Located
 from hearth.pipelines.readers.reader_items import fault_of, pieces
 from hearth.pipelines.readers.relaxed_json import uncommented
 from hearth.schemas.failures import Code

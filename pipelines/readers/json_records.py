@@ -10,14 +10,14 @@ from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
 from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan, is_unmarked
-from hearth.pipelines.readers import plans
+from hearth.pipelines.readers import natural_language_plans
 from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, lacks
 from hearth.pipelines.readers.found_records import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.json_actions import is_action, step_of
 from hearth.pipelines.readers.json_documents import located, located_document
 from hearth.pipelines.readers.json_elements import located_entries
+from hearth.pipelines.readers.located_texts import Located, Text, pieces_of, texts_in
 from hearth.pipelines.readers.model_outputs import is_message
-from hearth.pipelines.readers.placed_texts import Located, Text, pieces_of, texts_in
 from hearth.pipelines.readers.program_text import header
 from hearth.pipelines.readers.reader_items import (
     Item,
@@ -133,7 +133,7 @@ def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> 
         faults = (replace(fault, line=fault.line or line) for fault in value.diagnostics)
         return refused(place, Reject.because(faults, place), name, line)
     if isinstance(value, str):
-        return plans.checked(value, line, f"{plans.NAME}:{name}", place)
+        return natural_language_plans.checked(value, line, f"{natural_language_plans.NAME}:{name}", place)
     if isinstance(value, list):
         value = {"steps": value}
     if not isinstance(value, dict):
@@ -214,7 +214,7 @@ def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Rejec
         kind,
         words["title"] or title,
         words["description"] or description,
-        origin=plans.NAME if in_sentences else origin if origin in _ORIGINS else NAME,
+        origin=natural_language_plans.NAME if in_sentences else origin if origin in _ORIGINS else NAME,
         description_id=current_id(words["description_id"] or ""),
         scene=words["scene"],
         worker=worker_hash(words["worker"], salt) if words["worker"] else None,

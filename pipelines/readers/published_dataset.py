@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets.format.catalog import earlier
-from hearth.datasets.format.codecs import program_of
 from hearth.datasets.format.ids import current_id
+from hearth.datasets.format.row_conversion import program_of
 from hearth.datasets.format.splits import RULES
 from hearth.pipelines.readers import json_records
 from hearth.pipelines.readers.reader_items import Item, refused

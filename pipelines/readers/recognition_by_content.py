@@ -14,7 +14,7 @@ from hearth.pipelines.readers import (
     enclosed_json,
     found_records,
     json_records,
-    plans,
+    natural_language_plans,
     program_tables,
     program_text,
     published_dataset,
@@ -200,7 +200,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     line = uncommented(line) if suffix in _JSON else line
     if markup := _MARKUP.match(line):
         if any(map(_STEP_ELEMENT.search, first)) and is_plan(first):
-            return Recognised(path, place, plans.NAME)
+            return Recognised(path, place, natural_language_plans.NAME)
         return _refused(path, place, f"{markup.lastgroup}, in which no plans are read: save it as plain text or CSV")
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
@@ -216,7 +216,7 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
     if suffix in _YAML:
         return _refused(path, place, "a YAML file, which holds no programs")
     if first and is_plan(first):
-        return Recognised(path, place, plans.NAME)
+        return Recognised(path, place, natural_language_plans.NAME)
     if any(map(_ENCLOSED.match, first)) and enclosed_json.holds_programs(path, place):
         return Recognised(path, place, enclosed_json.NAME)
     if suffix not in _TEXT | _JSON | _TABLES and not any(plan_line(line).bracketed for line in first):

@@ -9,7 +9,7 @@ from typing import Any
 
 import orjson
 
-from hearth.datasets.format.codecs import change_row, node_row
+from hearth.datasets.format.row_conversion import change_row, node_row
 from hearth.pipelines.readers.graph_pairs import EDGE, JsonObject, pair_of, read_pair
 from hearth.pipelines.readers.program_text import header
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, Item, record, refused
@@ -17,7 +17,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EdgeColumns, read_node
 from hearth.schemas.graph_change import Change
-from hearth.schemas.graph_faults import REMEDY, graph_fault
+from hearth.schemas.graph_json_faults import REMEDY, graph_fault
 from hearth.schemas.numbers import stored
 from hearth.schemas.row_types import ChangeRow, ConditionRow, GraphRow
 from hearth.schemas.stage_rows import IngestedRow, WrittenGroundingRow

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from hearth.datasets.format.codecs import graph_of, graph_row
+from hearth.datasets.format.row_conversion import graph_of, graph_row
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers.json_documents import document
 from hearth.pipelines.readers.reader_items import Item, home_of, record, refused

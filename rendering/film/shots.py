@@ -1,40 +1,31 @@
 """The shots of a film: which camera shows which seconds, so that every act is seen and no shot is too short."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import NamedTuple
 
 import numpy as np
 
 from hearth.rendering.cameras.camera import Camera
-from hearth.rendering.cameras.camera_candidates import around, free, preference
-from hearth.rendering.cameras.recognition import in_the_way, shows
-from hearth.rendering.cameras.visibility import objects_of
+from hearth.rendering.cameras.camera_candidates import around, free
 from hearth.rendering.cameras.visibility_estimates import (
     Obstacles,
     Target,
-    Worth,
-    ahead,
     person,
-    thing,
-    too_near,
-    values,
+)
+from hearth.rendering.film.film_moments import (  # noqa: F401 - all of them were here in 0.2
+    IN_THE_WAY,
+    JUDGED,
+    MOST,
+    RATE,
+    FilmMoments,
+    Moment,
+    room_at,
 )
 from hearth.rendering.film.shot_sequence import Acts, States, Worths, best_cut
-from hearth.rendering.film.snapshots import Trajectory, named_nodes
-from hearth.rendering.people.motion import Frame, frames
-from hearth.rendering.rays.fixed_cameras import StillCameras
-from hearth.schemas.graph import Box, EnvironmentGraph, Spot
-from hearth.schemas.program import Step
-from hearth.schemas.vocabulary import ROOM_CATEGORY
-
-RATE = 2.0
-"""Moments a second at which cameras are compared."""
-
-JUDGED = (160, 120)
-"""Size of the pictures by which cameras are judged, pixels."""
+from hearth.rendering.film.snapshots import Trajectory
+from hearth.schemas.graph import EnvironmentGraph
 
 SHORTEST = 6
 """Moments of the shortest shot: three seconds."""
@@ -54,24 +45,11 @@ ELSEWHERE = -0.4
 CUT = 0.5
 """Cost of a cut."""
 
-IN_THE_WAY = 1.5
-"""Loss of value of a camera at a moment at which a person is close in front of it."""
-
 SEEN, HALF = 8.0, 2.0
 """Value of seeing an act, and the factor for acts of a person that is visible in less than half of its acts."""
 
-MOST = 3
-"""Agents whose acts are counted apart."""
-
 ROUNDS, LOOKED_AT = 16, 40
 """Cuts that are tried, and pictures that are looked at to find a camera for an act that none shows."""
-
-
-class Moment(NamedTuple):
-    """A moment of the film: its frame, and the room of each actor."""
-
-    frame: Frame
-    rooms: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +71,7 @@ class Planner:
         home: the home's graph.
         views: fixed cameras by room.
         size: of the picture.
-        agent: the agent to follow; None follows whoever acts.
+        agent: the agent to follow; None follows the agents that act.
     """
 
     def __init__(
@@ -104,30 +82,16 @@ class Planner:
         size: tuple[int, int],
         agent: int | None = None,
     ) -> None:
-        self.trajectory, self.views, self.size, self.agent = trajectory, views, size, agent
-        self.rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY and node.box}
-        self.keyframes = {keyframe.tick: keyframe for keyframe in trajectory.keyframes}
-        self.obstacles: dict[int, Obstacles] = {}
-        self.losses: dict[int, dict[Camera, float]] = {}
-        self.pictures = StillCameras()
-        self.moments = list(self._moments())
-        self.ticks = [moment.frame.tick for moment in self.moments]
-        self.agents = sorted({agent for number in range(len(self.moments)) for agent in self.acting(number)})[:MOST]
+        self.film = FilmMoments(trajectory, home, agent)
+        self.views, self.size = views, size
+        self.moments, self.ticks, self.agents = self.film.moments, self.film.ticks, self.film.agents
         self.cameras: list[Camera] = []
         self.tried: list[frozenset[int]] = []
-
-    def _moments(self) -> Iterator[Moment]:
-        rooms: dict[int, int] = {}
-        for frame in frames(self.trajectory, RATE, self.trajectory.variation.speed):
-            for number, actor in enumerate(frame.actors):
-                found = room_at(self.rooms, actor.spot)
-                rooms[number] = found or rooms.get(number, 0) or actor.room
-            yield Moment(frame, tuple(rooms[number] for number in range(len(frame.actors))))
 
     def shots(self) -> Shots:
         """Return the camera of each moment."""
         for tick in sorted(set(self.ticks)):
-            for agent in self.acting(self._span(tick)[-1]):
+            for agent in self.film.acting(self._span(tick)[-1]):
                 self.add(self._candidates(self._span(tick), agent), self._span(tick))
         for room in sorted({room for moment in self.moments for room in moment.rooms}):
             self.add(self.views.get(room, ()), (), self._unobstructed(room))
@@ -155,7 +119,7 @@ class Planner:
             some = [k for k, row in enumerate(rows) if number in self.tried[row]]
             cameras = [self.cameras[rows[k]] for k in some]
             if cameras:
-                total[some, number], shown[some, number] = self._values(cameras, number)
+                total[some, number], shown[some, number] = self.film.values_at(cameras, number)
         return total, shown
 
     def _unobstructed(self, room: int) -> list[frozenset[int]]:
@@ -164,39 +128,16 @@ class Planner:
         found: list[set[int]] = [set() for _ in views]
         for tick in sorted({moment.frame.tick for moment in self.moments}):
             within = [n for n, known in enumerate(self.moments) if known.frame.tick == tick and room in known.rooms]
-            good = free(views, self._obstacles(self.moments[within[0]].frame))[0] if within else ()
+            good = free(views, self.film.obstacles_at(self.moments[within[0]].frame))[0] if within else ()
             for camera, moments in zip(views, found, strict=True):
                 moments.update(within if camera in good else ())
         return [frozenset(moments) for moments in found]
 
-    def acting(self, moment: int) -> list[int]:
-        """Return the agents to be seen at a moment."""
-        frame = self.moments[moment].frame
-        if self.agent is not None:
-            return [self.agent]
-        return sorted({step.agent for step in frame.steps if step.agent < len(frame.actors)}) or [0]
-
-    def _steps(self, frame: Frame, agent: int) -> list[Step]:
-        return [step for step in frame.steps if step.agent == agent]
-
-    def _obstacles(self, frame: Frame) -> Obstacles:
-        """Occluders at a moment; slow ones are computed once a tick."""
-        if frame.tick not in self.obstacles:
-            keyframe = self.keyframes[frame.tick]
-            held = frozenset(node for things in keyframe.places.holds.values() for node in things)
-            self.obstacles[frame.tick] = Obstacles.of(keyframe.scene, held, ())
-        return self.obstacles[frame.tick]._replace(people=frame.actors)
-
-    def _targets(self, frame: Frame, agent: int) -> tuple[Target, list[Target]]:
-        named = named_nodes(self._steps(frame, agent), self.rooms)
-        objects = [thing(frame.scene, node) for node in named if node != frame.actors[agent].node.id]
-        return person(frame.actors[agent]), [target for target in objects if target is not None]
-
     def _candidates(self, span: Sequence[int], agent: int) -> list[Camera]:
         """Return the best cameras for an act: at its end, on the way to it, and together with the next act."""
         last = self.moments[span[-1]]
-        actor, room = last.frame.actors[agent], self.rooms.get(last.rooms[agent])
-        who, objects = self._targets(last.frame, agent)
+        actor, room = last.frame.actors[agent], self.film.rooms.get(last.rooms[agent])
+        who, objects = self.film.targets(last.frame, agent)
         name = f"near.{last.frame.tick}.{agent}"
         way = [self.moments[n].frame.actors[agent] for n in span if self.moments[n].rooms == last.rooms]
         whole = _together([person(each) for each in way[-AROUND:]])
@@ -206,7 +147,7 @@ class Planner:
         follows = self._next(span[-1], agent)
         if follows is not None:
             after = self.moments[follows].frame
-            whom, more = self._targets(after, agent)
+            whom, more = self.film.targets(after, agent)
             both = around(actor, _together([whom, who]), [*objects, *more], room, self.size, f"{name}.both")
             kept += self._best(both, (span[-1], follows), agent)
         return kept
@@ -215,63 +156,27 @@ class Planner:
         """Return the last moment of the next tick, if the agent acts then in the same room."""
         here = self.moments[number]
         later = [n for n, moment in enumerate(self.moments) if moment.frame.tick == here.frame.tick + 1]
-        if not later or agent not in self.acting(later[-1]) or self.moments[later[-1]].rooms != here.rooms:
+        if not later or agent not in self.film.acting(later[-1]) or self.moments[later[-1]].rooms != here.rooms:
             return None
         return later[-1]
 
     def _best(self, cameras: Sequence[Camera], moments: Sequence[int], agent: int) -> list[Camera]:
         """Those of some cameras that show an agent best at some moments, with nothing in their way."""
-        moved = [self.trajectory.variation.moved(camera) for camera in cameras]
-        found, loss = free(moved, self._obstacles(self.moments[moments[0]].frame))
-        worth = np.sum([self._exact(found, number, agent) - loss for number in dict.fromkeys(moments)], axis=0)
+        moved = [self.film.trajectory.variation.moved(camera) for camera in cameras]
+        found, loss = free(moved, self.film.obstacles_at(self.moments[moments[0]].frame))
+        worth = np.sum([self.film.exact(found, number, agent) - loss for number in dict.fromkeys(moments)], axis=0)
         return _distinct([found[number] for number in np.argsort(-worth, kind="stable").tolist()], KEPT)
-
-    def _exact(self, cameras: Sequence[Camera], number: int, agent: int) -> Worths:
-        """(cameras,) the values of showing an agent at a moment."""
-        frame = self.moments[number].frame
-        if not cameras:
-            return np.zeros(0)
-        found = values(cameras, *self._targets(frame, agent), Obstacles.exact(frame.scene))
-        return found.total * preference(cameras, frame.actors[agent])
 
     def closer(self, number: int, agent: int) -> list[Camera]:
         """Cameras for an act at a moment, the likeliest first, with closer views."""
         moment = self.moments[number]
-        actor, room = moment.frame.actors[agent], self.rooms.get(moment.rooms[agent])
+        actor, room = moment.frame.actors[agent], self.film.rooms.get(moment.rooms[agent])
         name = f"near.{moment.frame.tick}.{agent}.{number}"
-        found = around(actor, *self._targets(moment.frame, agent), room, self.size, name, closer=True, dense=True)
-        every = [self.trajectory.variation.moved(camera) for camera in found]
+        found = around(actor, *self.film.targets(moment.frame, agent), room, self.size, name, closer=True, dense=True)
+        every = [self.film.trajectory.variation.moved(camera) for camera in found]
         moved, loss = free(every, Obstacles.exact(moment.frame.scene))
-        worth = self._exact(moved, number, agent) - loss
+        worth = self.film.exact(moved, number, agent) - loss
         return _distinct([moved[k] for k in np.argsort(-worth, kind="stable").tolist()], LOOKED_AT)
-
-    def _values(self, cameras: Sequence[Camera], number: int) -> tuple[Worths, States]:
-        """(cameras,) the values at a moment, over who acts, and whose acts cameras seem to show."""
-        frame = self.moments[number].frame
-        total, shown = np.zeros(len(cameras)), np.zeros(len(cameras), np.int64)
-        for agent in self.acting(number):
-            found: Worth = values(cameras, *self._targets(frame, agent), self._obstacles(frame))
-            total += found.total * preference(cameras, frame.actors[agent])
-            if agent in self.agents:
-                shown |= found.enough.astype(np.int64) << self.agents.index(agent)
-        for actor in frame.actors:
-            total -= IN_THE_WAY * too_near(cameras, person(actor))
-        return total - self._loss(cameras, frame), shown
-
-    def _loss(self, cameras: Sequence[Camera], frame: Frame) -> Worths:
-        """(cameras,) what near things take of their values; looked at once a tick."""
-        known = self.losses.setdefault(frame.tick, {})
-        new = [camera for camera in cameras if camera not in known]
-        known.update(zip(new, ahead(new, self._obstacles(frame)).loss.tolist(), strict=True))
-        return np.array([known[camera] for camera in cameras])
-
-    def shows(self, camera: Camera, number: int, agent: int) -> bool:
-        """Return whether a camera's picture at a moment shows the act of an agent, by its pixels."""
-        frame = self.moments[number].frame
-        step = next((step for step in frame.steps if step.agent == agent), None)
-        shot = self.pictures.shoot(frame.scene, replace(camera, width=JUDGED[0], height=JUDGED[1]))
-        objects = objects_of(step, self.trajectory, self.keyframes[frame.tick]) if step else ()
-        return not in_the_way(shot) and shows(shot, frame.actors[agent].node.id, objects)
 
 
 def _distinct(cameras: Sequence[Camera], most: int) -> list[Camera]:
@@ -321,7 +226,7 @@ class Verified:
         return [
             (int(self.ticks[end]), planner.agents.index(agent))
             for end in ends.tolist()
-            for agent in planner.acting(end)
+            for agent in planner.film.acting(end)
             if agent in planner.agents
         ]
 
@@ -358,7 +263,7 @@ class Verified:
         key = row, number, bit
         if key not in self.known:
             planner = self.planner
-            self.known[key] = planner.shows(planner.cameras[row], number, planner.agents[bit])
+            self.known[key] = planner.film.shows(planner.cameras[row], number, planner.agents[bit])
             if not self.known[key]:
                 self.shown[row, number] &= ~(1 << bit)
         return self.known[key]
@@ -371,7 +276,9 @@ class Verified:
             span = np.flatnonzero(self.ticks == tick).tolist()
             agent = planner.agents[bit]
             for number in dict.fromkeys((span[-1], span[len(span) // 2], span[0])):
-                closer = (camera for camera in planner.closer(number, agent) if planner.shows(camera, number, agent))
+                closer = (
+                    camera for camera in planner.closer(number, agent) if planner.film.shows(camera, number, agent)
+                )
                 found = list(islice(closer, KEPT))
                 good += [(len(planner.cameras) + k, number, bit) for k in range(len(found))]
                 planner.add(found, span)
@@ -392,12 +299,3 @@ def _together(found: Sequence[Target]) -> Target:
         np.max([target.high for target in found], axis=0),
     )
     return replace(found[-1], points=points, low=low, high=high)
-
-
-def room_at(rooms: Mapping[int, Box], spot: Spot) -> int:
-    """Return the room whose box contains a spot; 0 in doorways."""
-    return next((room for room, box in rooms.items() if _holds(box, spot)), 0)
-
-
-def _holds(box: Box, spot: Spot) -> bool:
-    return all(abs(spot[k] - box.center[2 * k]) <= box.size[2 * k] / 2 for k in (0, 1))

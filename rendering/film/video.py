@@ -13,8 +13,9 @@ from hearth.rendering.annotations import camera_of
 from hearth.rendering.arrays import Image
 from hearth.rendering.cameras.camera import Camera, follow, look_at, top_view
 from hearth.rendering.cameras.viewpoints import home_box, kept_inside, room_views
+from hearth.rendering.film.film_moments import room_at
 from hearth.rendering.film.frame_files import FrameFiles, FrameTime
-from hearth.rendering.film.shots import Planner, Shots, room_at
+from hearth.rendering.film.shots import Planner, Shots
 from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory
 from hearth.rendering.film.video_file import Writer
 from hearth.rendering.modalities import check_modalities, pictures_of

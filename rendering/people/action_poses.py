@@ -7,10 +7,10 @@ from math import atan2, cos, degrees, radians, sin
 from hearth.homes.object_shapes import form
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import choice_of, recipe_of
-from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.people.gestures import gesture_of
+from hearth.rendering.people.person_appearance import Body
 from hearth.rendering.people.random_people import person
 from hearth.rendering.scene.free_poses import Pose
 from hearth.rendering.scene.object_boxes import Places

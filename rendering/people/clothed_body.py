@@ -10,10 +10,10 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import ATTRIBUTES, Mesh
 from hearth.rendering.models.paint import Paint, linear
 from hearth.rendering.models.textures import SLOTS
-from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.body_shape import BodyData, Shape, body_data, shaped
 from hearth.rendering.people.bones import matrices
+from hearth.rendering.people.person_appearance import Body
 
 SIZE = 1.7
 """Height in metres for which offsets of clothes are stored."""

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from hearth.rendering.models.mesh import Mesh
-from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import STILL, BodyPose
 from hearth.rendering.people.clothed_body import dressed_mesh
+from hearth.rendering.people.person_appearance import Body
 from hearth.rendering.people.simple_figure import simple_mesh
 from hearth.rendering.people.skeleton import Joints, joints
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from hearth.rendering.people.body import BODIES, Body
 from hearth.rendering.people.body_shape import Shape, is_present
+from hearth.rendering.people.person_appearance import BODIES, Body
 from hearth.schemas.rng import derive
 from hearth.schemas.yaml_limits import packaged
 

@@ -5,8 +5,8 @@ import numpy as np
 from hearth.rendering.models.mesh import Mesh, join, transform
 from hearth.rendering.models.paint import Paint
 from hearth.rendering.models.shapes import ball, cushion, rod, upright_to
-from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.person_appearance import Body
 from hearth.rendering.people.rotations import Vector
 from hearth.rendering.people.skeleton import Joints
 from hearth.schemas.graph import Point

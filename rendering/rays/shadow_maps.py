@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.rays import shadow_loops as loops
+from hearth.rendering.rays.convex_triangle_groups import unshaded_groups
 from hearth.rendering.rays.ray_casting import Caster
 from hearth.rendering.rays.reused_arrays import scratch
 from hearth.rendering.rays.threads import each
-from hearth.rendering.rays.unshadowed_groups import unshaded_groups
 
 WORTH = 600_000
 """Number of rays to a light from which on its map is made: about the cost of making it."""
@@ -73,7 +73,7 @@ class ShadowMaps:
     _groups: Ints | None = None
 
     def groups(self) -> Ints:
-        """(T,) of the triangles that do not shade each other, see `unshadowed_groups`; made at their first use."""
+        """(T,) of the triangles that do not shade each other, see `convex_triangle_groups`; made at their first use."""
         if self._groups is None:
             self._groups = unshaded_groups(self.corners, self.owner)
         return self._groups

@@ -17,9 +17,9 @@ from hearth.kb.knowledge_records import Condition, Consequence
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import common
 from hearth.simulation.actions.common import Action, Masks, refuse
+from hearth.simulation.actions.formula_evaluation import Reading
 from hearth.simulation.actions.locomotion import need_legs
 from hearth.simulation.actions.prepared_effects import bound_to, prepared
-from hearth.simulation.actions.readings import Reading
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules

@@ -13,8 +13,8 @@ from hearth.kb.formula import TRUE, And, Effect, Formula, Term, free
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
+from hearth.simulation.actions.formula_evaluation import Bound, Reading, candidates, is_of_kind, kind_of
 from hearth.simulation.actions.literal_effects import Change, excluded, made
-from hearth.simulation.actions.readings import Bound, Reading, candidates, is_of_kind, kind_of
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices

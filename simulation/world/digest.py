@@ -11,8 +11,8 @@ from weakref import WeakKeyDictionary
 
 from hearth.schemas.vocabulary import FURTHER_STATES, STATES
 from hearth.simulation.world import rows
+from hearth.simulation.world.action_set_3_states import counts_of, is_wide
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.further import counts_of, is_wide
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import CLOSE
 from hearth.simulation.world.world import World

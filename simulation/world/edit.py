@@ -13,10 +13,10 @@ from hearth.schemas.graph_change import Change
 from hearth.schemas.vocabulary import EVERY_STATE_ID, FIRST_ADDED_ID, OPPOSITE, STATE_ID
 from hearth.simulation.world import moved_edges as kinds
 from hearth.simulation.world import overlay, placement_fit, rows
+from hearth.simulation.world.action_set_3_states import counts_of, is_wide, rows_at_start, wide_start, without_node
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.derived_homes import Movable, added_nodes, extended, without
-from hearth.simulation.world.further import counts_of, is_wide, rows_at_start, wide_start, without_node
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import Moved
 from hearth.simulation.world.world import World

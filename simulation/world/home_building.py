@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EdgeColumns, Node
-from hearth.schemas.graph_faults import REMEDY
+from hearth.schemas.graph_json_faults import REMEDY
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATION_ID, ROOM_CATEGORY, STATE_ID, STATES
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of

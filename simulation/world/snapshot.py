@@ -13,8 +13,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release, to_release
+from hearth.simulation.world.action_set_3_states import counts_of, is_wide, with_counts
 from hearth.simulation.world.bits import indices, mask_of
-from hearth.simulation.world.further import counts_of, is_wide, with_counts
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import CLOSE, INSIDE, ON
 from hearth.simulation.world.pose import Pose

@@ -11,9 +11,9 @@ from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.graph_change import Change
 from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.world import rows
+from hearth.simulation.world.action_set_3_states import canonical_states, rows_with_further
 from hearth.simulation.world.agent import Agent, replaced
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.further import canonical_states, rows_with_further
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import NOTHING
 from hearth.simulation.world.nodes import with_states

@@ -25,7 +25,7 @@ from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
 ALLOWED = ("Walktowards", "Open", "Close", "Grab", "PutBack", "PutIn", "Sit", "StandUp", "SwitchOn")
-"""What agents may do."""
+"""The actions that agents may do."""
 
 CLASSES = ("plate", "fork", "apple", "cupcake", "book")
 
@@ -146,7 +146,7 @@ def play(
 
 
 def allowed(env: Env, number: int, mask: int) -> Legal:
-    """What an agent may do now with what it sees."""
+    """Return the actions that an agent may do now, by its view."""
     situation = Situation(env.world, number, env.rules)
     found = {}
     for name in ALLOWED:

@@ -9,7 +9,7 @@ from hearth.agents.completion_forecast import MOST, Forecast, Stop
 from hearth.agents.expected_time_helper import ExpectedTime
 from hearth.agents.goal_space import GoalSpace, Scene
 from hearth.agents.human_like import HumanLike
-from hearth.agents.object_groups import HELPER, Situation
+from hearth.agents.interchangeable_objects import HELPER, Situation
 from hearth.agents.walk_distances import Distances
 from hearth.challenges.episode_loop import Player, play
 from hearth.simulation.observation.views import pose

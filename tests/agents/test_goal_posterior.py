@@ -1,4 +1,4 @@
-"""Which goal somebody pursues, as one who watches thinks: the posterior, and what goals want."""
+"""The posterior over an agent's goals, given its observed actions, and the things that goals want."""
 
 from dataclasses import replace
 

@@ -33,7 +33,7 @@ def test_the_value_of_an_edge_is_equation_7_1():
 
 
 def weighed(world, goals, weights=USUAL_WEIGHTS):
-    """What NOPA thinks of the first tick, with every goal as a particle."""
+    """Return NOPA's values in the first tick, with every goal as a particle."""
     env = Env(partial=False)
     env.restore(world)
     view = env.observe(1)

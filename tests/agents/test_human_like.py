@@ -78,7 +78,7 @@ def test_seeds_differ_and_repeat(kitchen):
 
 
 def test_two_agents_of_one_seed_have_their_own_generators(kitchen):
-    """Who acts first does not change what the other does at random."""
+    """The order of two agents does not change the other agent's random choices."""
     goal = wanted(kitchen, "ON", "dining_table", plate=2)
     env = Env()
     env.restore(kitchen)
@@ -94,7 +94,7 @@ def test_two_agents_of_one_seed_have_their_own_generators(kitchen):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_it_closes_what_it_opened_and_opens_nothing_for_ever(kitchen, seed):
-    """What stays open holds something that was wanted, but for the one from which the last thing was taken."""
+    """A container that stays open had a wanted thing in it, or is the one from which the last thing was taken."""
     played = play(kitchen, wanted(kitchen, "ON", "dining_table", plate=2, fork=2), [HumanLike(), None], seed)
     opened = [tick.instructions[0].objects[0].node for tick in played.ticks if done(tick, "OPEN")]
     assert len(opened) > 3

@@ -63,7 +63,7 @@ def test_what_was_brought_unseen_is_evidence(world):
     helper = Watchful(lambda home: goals_of(world))
 
     def shown(place, partner):
-        """What it sees of one room, with the plate somewhere and its partner in a room."""
+        """Return the helper's view of one room, with the plate somewhere and its partner in a room."""
         env = Env(partial=True)
         room = home.classes[lowest(home.inside[home.index[place]] & home.rooms)]
         moved = edit(world, place={plate: ("ON", place)}, check=False)

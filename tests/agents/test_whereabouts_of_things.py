@@ -1,4 +1,4 @@
-"""What an agent believes of where things are, when they are gone from where it saw them."""
+"""An agent's beliefs about things that are gone from the place where it saw them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hearth.simulation.world.world import World
 
 
 def seen_by_who_stands_in_the_kitchen(world, place, states=()):
-    """What it sees of the apple at a place, and then of the apple in another room."""
+    """Return the views of an agent in the kitchen: the apple at a place, and then the apple in another room."""
     apple, bed = target(world, "apple"), target(world, "bed")
     views = []
     for there in (place, ("ON", bed)):

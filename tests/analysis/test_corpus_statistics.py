@@ -1,4 +1,4 @@
-"""What a corpus looks like: counted by hand on small ones, and drawn the same every time."""
+"""Statistics of a corpus: counted by hand on small ones, and drawn the same every time."""
 
 from __future__ import annotations
 

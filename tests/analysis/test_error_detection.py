@@ -1,4 +1,4 @@
-"""How well the labelled faults of our corpus are found."""
+"""The detection of the labelled faults of our corpus."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import os
 
 import pytest
 
-from hearth.analysis.coverage import Script
+from hearth.analysis.programs_in_homes import Script
 from hearth.analysis.sketch_agreement import compare, kappa
 from hearth.analysis.sketch_evaluation import annotated
 from hearth.schemas.diagnostics import HearthError

@@ -1,4 +1,4 @@
-"""Whether a repair helped is decided by what failed, never by the sentence that says so."""
+"""The failure decides whether a repair helped, never the sentence that reports it."""
 
 from hearth.repair.repair_loop import Attempt, successes
 from hearth.schemas.failures import Code, Failure

@@ -18,7 +18,7 @@ class Plan(NamedTuple):
     fuzzy: int = 0
     titles: tuple[str, ...] | None = None
     broken: str = ""
-    """Why the outcome is not right yet."""
+    """The reason why the outcome differs from the expected one today; "" where it does not."""
 
 
 def lines(*every: str) -> str:

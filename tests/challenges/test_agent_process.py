@@ -1,4 +1,4 @@
-"""What an agent of others starts ends with it; of our environment it gets what is allowed."""
+"""Processes that an agent starts end with it; an agent gets only the allowed variables of our environment."""
 
 from __future__ import annotations
 

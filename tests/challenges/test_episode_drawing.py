@@ -15,7 +15,7 @@ from hearth.simulation.world.home import Home
 
 
 def _walkable(home: Home, start: tuple[float, float], end: tuple[float, float]) -> bool:
-    """Whether each decimetre of a straight line is near a cell on which one can stand."""
+    """Return whether each decimeter of a straight line is near a cell on which an agent can stand."""
     ways = ground_of(home).ground.ways
     number = max(1, int(dist(start, end) / 0.1))
     points = ((start[0] + (end[0] - start[0]) * n / number, start[1] + (end[1] - start[1]) * n / number)

@@ -1,4 +1,4 @@
-"""What helpers believe in episodes, how it is scored and drawn, and people who are unlike the one it was tuned with."""
+"""Helpers' beliefs in episodes, their scores and drawings, and people unlike the one that helpers were tuned with."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from hearth.agents.goal_space import GoalSpace
 from hearth.agents.human_population import PEOPLE
 from hearth.agents.network_proposals import NetworkProposals
-from hearth.agents.state_changes import StateChanges
+from hearth.agents.predicate_count_changes import StateChanges
 from hearth.analysis.goal_belief_drawing import drawn
 from hearth.analysis.online_inference import calibration, inference
 from hearth.challenges.challenge_definition import challenge

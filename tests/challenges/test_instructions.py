@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from hearth.challenges.challenge_definition import challenge
-from hearth.challenges.instruction_nouns import nouns, wordings
+from hearth.challenges.instruction_object_names import nouns, wordings
 from hearth.challenges.instruction_reader import read_instruction
 from hearth.challenges.instruction_writer import instruction
 from hearth.challenges.published_tasks import tasks

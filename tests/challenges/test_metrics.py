@@ -8,8 +8,8 @@ from random import Random
 
 import pytest
 
+from hearth.challenges.behavior_counts import Columns
 from hearth.challenges.challenge_definition import challenge
-from hearth.challenges.failure_analysis import Columns
 from hearth.challenges.metrics import by_task, mean, outcome, paired, speedups, summary
 
 WAH = challenge("wah")

@@ -12,7 +12,7 @@ from hearth.challenges.episode_loop import Player, play
 from hearth.challenges.wire_protocol import WireAgent
 from hearth.envs.agent_answers import by_words
 from hearth.envs.json_observations import observation
-from hearth.envs.text_protocol import TextAgent
+from hearth.envs.text_agent import TextAgent
 from hearth.kb.loading.load import default
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import HearthError

@@ -1,4 +1,4 @@
-"""Whether tasks can be done: by who sees everything, alone."""
+"""Tasks can be done by one agent that sees everything."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What long commands show: a bar where somebody looks, nothing where nobody does."""
+"""Long commands show a bar on a terminal, and nothing elsewhere."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ print("clean")
 
 
 def shown(script):
-    """What a script writes on a terminal's error stream, and on its output."""
+    """Return the text that a script writes on a terminal's error stream, and the text on its output."""
     ours, theirs = pty.openpty()
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}
     command = [sys.executable, "-c", script]

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pytest
 
 from hearth.datasets.format.case_rows import difference_of, difference_on_replay, environment_of, home_of, run_row
-from hearth.datasets.format.codecs import (
+from hearth.datasets.format.row_conversion import (
     condition_rows,
     conditions_of,
     environment_change,

@@ -1,4 +1,4 @@
-"""What the catalog says about itself: comments on all it has, and how it finds the tables."""
+"""The catalog describes itself: comments on all its tables and columns, and the way in which it finds the tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who wrote a dataset: the same in card, Croissant, report, README; and the thesis, as the library's record has it."""
+"""A dataset's authors are the same in card, Croissant, report and README; the thesis is cited as the library has it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def written(made, tmp_path_factory):
 
 
 def said(folder, tmp_path):
-    """What card, Croissant and report say."""
+    """Return the texts of card, Croissant and report."""
     write_report(hearth.load(folder), tmp_path / "report")
     described = orjson.loads((folder / "croissant.json").read_bytes())
     report = re.sub(r"&#39;", "'", (tmp_path / "report/index.html").read_text())

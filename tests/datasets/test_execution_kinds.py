@@ -1,4 +1,4 @@
-"""Which executions are of originals: the views `originals` and `execution_kinds`, beside what the stages wrote."""
+"""The views `originals` and `execution_kinds` agree with the output of the stages."""
 
 from __future__ import annotations
 

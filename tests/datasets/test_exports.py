@@ -19,8 +19,8 @@ from hostile_datasets import rename
 
 import hearth
 from hearth.analysis.release_replay import replay
-from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
+from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.export.rdf import iri, text
 from hearth.datasets.export.release_layout import ROOT
 from hearth.kb.language.step_phrases import parses

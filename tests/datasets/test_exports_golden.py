@@ -1,4 +1,4 @@
-"""What a small dataset becomes in each form and on its report's pages stays until somebody means a change.
+"""The exports and report pages of a small dataset stay as they are until somebody means a change.
 
 Rows as JSON lines name the version of Hearth and all actions, so they are left to `test_exports.py`;
 `coco` needs pictures.

@@ -13,7 +13,7 @@ import hearth
 from hearth.datasets.format.card import write_card
 from hearth.datasets.format.image_tables import FOLDER, write_images
 from hearth.datasets.verify import verify
-from hearth.pipelines.engine.split_tables import write_split_rows
+from hearth.pipelines.engine.tables_by_part import write_split_rows
 from hearth.schemas.tables import TABLES
 from hearth.storage.files import file_digest
 

@@ -24,8 +24,8 @@ from typer.testing import CliRunner
 import hearth
 from hearth import cli
 from hearth.datasets.diff import compare
-from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
+from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.report.report_writer import write_report
 from hearth.datasets.verify import verify
@@ -194,7 +194,7 @@ def test_a_difference_knows_the_embedded_corpus_by_both_names(ours, tmp_path):
 
 @pytest.mark.parametrize("version", ["0.1"], indirect=True)
 def test_it_is_compared_with_one_of_now(folder, tmp_path):
-    """What is known or repaired may grow; what was read, and where it runs, is identified as it was."""
+    """Knowledge and repairs may grow; the records and the homes in which they run keep their ids."""
     inputs = GOLDEN / "pipelines/input"
     build(
         sources=(str(inputs / "programs/evening.txt"), str(inputs / "crowd")),

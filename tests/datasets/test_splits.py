@@ -26,7 +26,7 @@ def program(name, steps="a b c d", text="", part="train", root=None):
 
 
 def named(programs, places):
-    """What a column says of each program, places as ids."""
+    """Return the values of a column by program, with places as ids."""
     found = zip(programs.ids, places.tolist(), programs.known.tolist(), strict=True)
     return {name: programs.ids[place] for name, place, known in found if known}
 

@@ -364,7 +364,7 @@ def test_timing_of_no_build(copy):
 
 
 def test_statistics_that_hide_rows(copy):
-    """What a file's footer says decides what is read of it; a row that is not read is not verified."""
+    """A file's footer decides which rows are read; a row that is not read is not verified."""
     path = part(copy, "executions")
     names = pq.read_table(path, columns=["execution_id"])["execution_id"].to_pylist()
     data = path.read_bytes()

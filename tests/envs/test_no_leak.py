@@ -1,4 +1,4 @@
-"""What an agent does not see changes no byte of what it is given, in any form."""
+"""A node that an agent does not see changes no byte of the agent's observation, in any form."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hearth.envs.agent_answers import by_text
 from hearth.envs.answer_forms import read_answer
 from hearth.envs.compact_text import compact, wanted_nodes
 from hearth.envs.json_observations import observation
-from hearth.envs.text_protocol import description, menu, plain
+from hearth.envs.text_agent import description, menu, plain
 from hearth.envs.text_protocols import protocol
 from hearth.homes import library
 from hearth.kb.loading.load import default
@@ -113,7 +113,7 @@ def asked(text, seen, may, read=by_text):
 @given(seed=st.integers(0, 10_000), mix=st.integers(0, 10_000))
 @settings(max_examples=10)
 def test_answers_ask_nothing_about_what_is_unseen(seed, mix):
-    """What is refused, and in which words, is the same; unseen nodes are like those that there are not."""
+    """The refusals and their words are the same; unseen nodes are refused as nodes that do not exist."""
     (seen, may), (again, may_again) = pair(seed, 10, 0, mix)
     chooser = random.Random(mix)
     there = seen.world.home

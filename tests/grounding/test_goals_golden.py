@@ -1,4 +1,4 @@
-"""What is drawn for goals and for several characters stays as it is until somebody means to change it."""
+"""Environments drawn for goals and for several characters stay as they are until somebody means to change them."""
 
 import pytest
 from golden_files import compare, short

@@ -1,4 +1,4 @@
-"""What programs need, and what is drawn for them, stay as they are until somebody means to change them."""
+"""Needs of programs, and the environments drawn for them, stay as they are until somebody means to change them."""
 
 import csv
 from pathlib import Path

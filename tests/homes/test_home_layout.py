@@ -1,4 +1,4 @@
-"""What a plan becomes in space: nothing stands in anything else, nothing floats, everywhere can be walked to."""
+"""The layout of a plan: nothing stands in anything else, nothing floats, everywhere can be walked to."""
 
 import random
 from itertools import combinations

@@ -1,4 +1,4 @@
-"""Where things are in homes: as in real ones, in ours and in generated ones; and how that is measured."""
+"""Places of things in homes: as in real ones, in ours and in generated ones; and how that is measured."""
 
 import json
 

@@ -27,7 +27,7 @@ PROGRAMS = [*(Program(steps=(step,)) for step in STEPS), Program(steps=None), Pr
 
 @pytest.fixture(scope="module")
 def calls():
-    """What can be called, with arguments that are right."""
+    """Return the callables of the package, with arguments that are right."""
     known, home = hearth.knowledge(), hearth.home("maple")
     graph, world, program = hearth.load_graph("maple", known), hearth.World.start(home), hearth.parse_program(TEXT)
     bound, goal = hearth.bind(program, world).apply(program), hearth.Goal.of(hearth.Literal.of("CLEAN", "cup"))

@@ -1,4 +1,4 @@
-"""What `make bench` says of ratios that fall, and what it writes."""
+"""The report of `make bench` on ratios that fall, and the files that it writes."""
 
 from __future__ import annotations
 

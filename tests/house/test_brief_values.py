@@ -1,4 +1,4 @@
-"""What a notebook prints of a value of ours is short, whatever the value holds."""
+"""A notebook's print of a value of ours is short, whatever the value holds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several actions have in common is a group of the knowledge: no code keeps a list of their names."""
+"""Common traits of several actions are a group of the knowledge: no code keeps a list of their names."""
 
 from __future__ import annotations
 

@@ -11,11 +11,11 @@ GENERIC = {
     "Callable", "Collection", "Counter", "Iterable", "Iterator", "Literal", "Mapping", "NDArray", "Sequence", "Set",
     "defaultdict", "dict", "frozenset", "list", "set", "tuple", "type",
 }  # fmt: skip
-"""What a type is made of; options of commands, which are Annotated, are no names of types."""
+"""The parts of types; options of commands, which are Annotated, are no names of types."""
 
 
 def is_type(value):
-    """Whether an expression is a type: one with parameters, a choice of types, or a plain one."""
+    """Return whether an expression is a type: one with parameters, a choice of types, or a plain one."""
     if isinstance(value, ast.BinOp):
         return isinstance(value.op, ast.BitOr) and is_type(value.left)
     if isinstance(value, ast.Subscript):

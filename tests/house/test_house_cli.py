@@ -87,7 +87,7 @@ def test_every_parameter_has_its_entry_and_every_entry_its_parameter():
         functions.update({(one.__module__.rpartition(".")[2], one.__name__): one for one in each})
     used = set()
     for (module, function), command in functions.items():
-        for parameter in signature(command).parameters.values():
+        for parameter in signature(options.described(command)).parameters.values():
             if parameter.annotation is not typer.Context and parameter.kind is not parameter.VAR_KEYWORD:
                 places = (module, f"{function}.{parameter.name}"), (module, parameter.name), ("shared", parameter.name)
                 found = [(of, key) for of, key in places if key in options._table().get(of, {})]

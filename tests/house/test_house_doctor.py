@@ -20,7 +20,7 @@ def call(*arguments):
 
 @pytest.fixture
 def findings():
-    """What is found, by name, without casting rays or opening videos."""
+    """Return the findings by name, without casting rays or opening videos."""
 
     def look():
         return {each.what: each for each in (check() for check in doctor.CHECKS) if each}

@@ -1,4 +1,4 @@
-"""What may be reached in one way only is reached so: DuckDB."""
+"""Libraries and data that have one way in are used by that way only: DuckDB."""
 
 import ast
 import re
@@ -73,7 +73,7 @@ RAW = {
     "datasets/report/assets/index.html": (1, "the drawing of a plan, whose names its own writer escapes"),
     "analysis/prediction_examples.html": (1, "an attribute that is always the same"),
 }
-"""How many variables of a template are not escaped, with the reason."""
+"""The number of a template's variables that are not escaped, with the reason."""
 
 
 def test_no_template_has_raw_text():

@@ -16,7 +16,7 @@ SUBJECTS = frozenset({"goals", "parallel"})
 
 
 def mirrored(folders: list[str]) -> bool:
-    """Whether these are one folder, an action's and its repairs', or any of both and a command of that name."""
+    """Return whether these are one folder, an action's and its repairs', or any of both and a command of that name."""
     others = set(folders) - {"commands"}
     return len(others) < 2 or others == MIRRORS
 

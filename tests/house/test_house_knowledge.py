@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 LOADING = "hearth.kb.loading.load"
 
 ENTRIES = ("commands", "cli.py", "__init__.py", "docs", "benchmarks", "tests")
-"""Where programs begin: they may take our own knowledge."""
+"""Places where programs begin: they may take our own knowledge."""
 
 READS = {
     "kb/tools/compare.py": "another's knowledge, to be compared",
@@ -49,7 +49,7 @@ NAMES = [path.relative_to(ROOT).as_posix() for path in FILES]
 
 
 def loaded(tree):
-    """What a file takes from the module that reads knowledge; the module itself gives all."""
+    """Return the names that a file takes from the module that reads knowledge; the module itself gives all."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module == LOADING:
             yield from (alias.name for alias in node.names)

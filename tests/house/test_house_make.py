@@ -148,7 +148,7 @@ def test_tables_are_made_that_a_target_names_and_no_others(built, target, tables
 
 @pytest.fixture(scope="module")
 def prerequisites(template):
-    """What each stage's manifest depends on, itself or through earlier stages, as make understands it."""
+    """Return the prerequisites of each stage's manifest, its own or through earlier stages, as make has them."""
     done = subprocess.run(["make", "-pn"], cwd=template, capture_output=True, text=True, check=False, timeout=60)
     rules = dict(line.split(":", 1) for line in done.stdout.splitlines() if line.startswith("data_out/"))
     found, before = {}, set()

@@ -17,10 +17,10 @@ OURS = {
     "storage/stores.py": 1,  # the user's number
     "storage/databases.py": 1,  # numbers of a process and its databases
 }
-"""How many joins of a path and a made-up name a file has, where what is put in are numbers and digests of ours."""
+"""The number of joins of a path and a made-up name in each file whose made-up names are numbers and digests of ours."""
 
 STRICT = ("datasets/export/", "datasets/report/", "homes/home_export.py")
-"""What writes files for others: here no variable is joined to a path either."""
+"""Files that write files for others: here no variable is joined to a path either."""
 
 
 def joins(source: str, *, strict: bool) -> Iterator[int]:

@@ -1,4 +1,4 @@
-"""What `pip install .` brings without extras: loading, checking, querying, scoring and building, without pictures."""
+"""An install without extras loads, checks, queries, scores and builds, without pictures."""
 
 from __future__ import annotations
 

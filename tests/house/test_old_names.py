@@ -1,4 +1,4 @@
-"""What 0.2 let others import can still be imported: each module by its old name, each with the public names it had.
+"""Modules of 0.2 can still be imported: each module by its old name, each with the public names it had.
 
 `tests/golden/names-0.2.json` has them, as commit 48db19ba defines them; it is never refreshed.
 """

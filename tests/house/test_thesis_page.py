@@ -14,7 +14,7 @@ from hearth import cli
 ROOT = Path(__file__).resolve().parents[2]
 FIGURES = {"2": 4, "3": 6, "4": 9, "5": 7, "6": 9, "7": 6, "A": 5, "B": 8, "C": 8}
 TABLES = {"2": 2, "3": 1, "4": 6, "5": 5, "A": 4, "B": 1, "C": 3}
-"""How many the thesis has, by chapter."""
+"""The number of tables in the thesis, by chapter."""
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def test_a_number_of_ours_has_a_command_and_a_day(items):
 
 
 def fault(command: str) -> str:
-    """What is wrong with a command; "" if it could be run. Options and the number of arguments are parsed."""
+    """Return the fault of a command; "" if it could be run. Options and the number of arguments are parsed."""
     first, *words = shlex.split(command)
     if first == "python":
         return "" if (ROOT / words[0]).is_file() else f"no file {words[0]}"

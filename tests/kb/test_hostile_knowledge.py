@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import hearth.kb
-from hearth.datasets.export.planning_domain import planning_domain
+from hearth.datasets.export.pddl_domain import planning_domain
 from hearth.kb.loading.load import FILES, load
 from hearth.kb.tools.compare import compare
 from hearth.schemas.diagnostics import HearthError

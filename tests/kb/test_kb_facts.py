@@ -1,4 +1,4 @@
-"""What is known: the grammar, the objects, their states and places, as the thesis and the release have them."""
+"""Facts of the knowledge: the grammar, the objects, their states and places, as thesis and release have them."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ import pytest
 
 import hearth.kb
 from hearth.kb.loading.load import FILES, load
-from hearth.kb.tools.release_facts import read_release
+from hearth.kb.tools.published_knowledge import read_release
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

@@ -11,7 +11,7 @@ from oracles.formulas import changes, first_failure
 
 from hearth.kb.tools.compare import compare, rejection
 from hearth.kb.tools.graph_and_tables import tables
-from hearth.kb.tools.release_facts import read_release
+from hearth.kb.tools.published_knowledge import read_release
 from hearth.schemas.graph import edge_set, from_release
 
 STEP = re.compile(r"\[(\w+)\].*")

@@ -1,4 +1,4 @@
-"""What sentences are taken for: word by word, nearly, one of several, or nothing."""
+"""The reading of sentences: word by word, nearly, one of several, or nothing."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What a line means after the lines before it: counts, refused lines, nouns said again, what stays, carrying."""
+"""Lines are read by the lines before them: counts, refused lines, nouns said again, things that stay, carrying."""
 
 import pytest
 

@@ -130,7 +130,7 @@ def test_settings_that_no_model_has(name, value):
     [("arity", []), ("takes", [[[99]]]), ("classes", ["cup", "cup"]), ("spelt", {"mug": "bowl"}), ("words", [1])],
 )
 def test_a_vocabulary_whose_parts_do_not_fit(name, value):
-    """What would fail when the model is asked fails when it is read."""
+    """A vocabulary that would fail when the model is asked fails when the checkpoint is read."""
     known = {"words": ["a"], "actions": ["Grab"], "arity": [1], "classes": ["cup"], "takes": [[[1]]], "spelt": {}}
     assert StepVocabulary.read(known).document()
     with pytest.raises(ValueError, match=f"{name} does not fit"):

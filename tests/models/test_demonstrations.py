@@ -29,7 +29,7 @@ from hearth.models.demonstrations.mask_classes import MaskClasses
 from hearth.models.demonstrations.overhead_features import above
 from hearth.models.fit_model import fit
 from hearth.models.interface import Request, Training
-from hearth.models.sketches.sketch_tables import table
+from hearth.models.sketches.sketch_result_tables import table
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_batches import encoded, step_batch
 from hearth.models.text_examples import corpus
@@ -223,7 +223,7 @@ def test_what_is_stored_is_read(eight, numbers):
 @pytest.fixture(scope="module")
 def pictured(parted, numbers, tmp_path_factory):
     """The parted dataset with pictures of each original's first execution."""
-    from hearth.datasets.format.codecs import program_of
+    from hearth.datasets.format.row_conversion import program_of
     from hearth.datasets.format.stored_cases import stored_cases
 
     folder = shutil.copytree(parted.folder, tmp_path_factory.mktemp("pictured") / "publish")

@@ -14,16 +14,16 @@ import hearth
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
 from hearth.models.execution_trials import Trial
-from hearth.models.films import film_examples, film_self_critical, film_writer
-from hearth.models.films.class_table import ClassTable
+from hearth.models.films import film_self_critical, film_training_examples, film_writer
 from hearth.models.films.clip_batches import clip_batch, rows_of
 from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_scores
-from hearth.models.films.film_examples import FilmExample, film_probabilities
+from hearth.models.films.film_result_tables import by_writer
 from hearth.models.films.film_self_critical import FilmCritical, sim_reward
-from hearth.models.films.film_tables import by_writer
+from hearth.models.films.film_training_examples import FilmExample, film_probabilities
 from hearth.models.films.film_writer import FilmWriter, TrainedFilmWriter
 from hearth.models.films.mask_clip_model import Scored, SeenModel, TrainedSeenModel
+from hearth.models.films.object_class_properties import ClassTable
 from hearth.models.films.step_order import StepOrder
 from hearth.models.interface import Request, Training
 from hearth.models.model_registry import restore
@@ -59,7 +59,7 @@ def reader():
 
 
 def seen(steps, table, sure=0.9, clips=3):
-    """What a classifier says of a film of some steps, each in some clips."""
+    """Return a classifier's probabilities for a film of some steps, each in some clips."""
     rows = [table.numbers(Instruction(step.action, tuple(ref.name for ref in step.objects))) for step in steps]
     actions = np.full((len(rows) * clips, len(table.actions)), (1 - sure) / len(table.actions), np.float32)
     objects = np.full((len(rows) * clips, 2, len(table) + 1), (1 - sure) / len(table), np.float32)
@@ -288,8 +288,8 @@ def test_both_phases_are_trained_and_recorded(filmed, reader, tmp_path):
 
 def test_films_are_read_once_by_equal_classifiers(reader, monkeypatch):
     asked = []
-    monkeypatch.setattr(film_examples, "facts_of", lambda dataset: {"digest": "of this test"})
-    monkeypatch.setattr(film_examples, "of_film", lambda trained, masks: asked.append(trained))
+    monkeypatch.setattr(film_training_examples, "facts_of", lambda dataset: {"digest": "of this test"})
+    monkeypatch.setattr(film_training_examples, "of_film", lambda trained, masks: asked.append(trained))
     clips = Clips(("film",), [np.zeros((9, 2, 2), np.uint16)], (), 9)
     same = SeenModel.restored(reader.checkpoint())
     for each in (reader, same):

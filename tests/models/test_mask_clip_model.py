@@ -15,7 +15,6 @@ from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
 from hearth.models.films import mask_clip_model
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.film_input import read_masks
 from hearth.models.films.film_prediction import cut, show_film
@@ -24,6 +23,7 @@ from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel, ten
 from hearth.models.films.mask_clip_network import loss_of
 from hearth.models.films.mask_clips import CONTEXT, joined, offsets, seen_clips
 from hearth.models.films.mask_features import CROP, seen_film
+from hearth.models.films.object_class_properties import ClassTable
 from hearth.models.films.step_order import START, StepOrder, programs_of
 from hearth.models.interface import Training
 from hearth.schemas.diagnostics import HearthError
@@ -242,7 +242,7 @@ def test_a_network_with_context_is_restored(clips, model, tmp_path):
 
 
 def test_a_stopped_training_goes_on_with_its_own_dataset_alone(clips, monkeypatch):
-    """What was begun is known by the dataset's files and by the weights that predict masks."""
+    """A stopped training is known by the dataset's files and by the weights that predict masks."""
     tasks = []
     monkeypatch.setattr(Clips, "of", lambda dataset, part, films=0: clips)
     monkeypatch.setattr(mask_clip_model, "predicted", lambda *_: clips)

@@ -56,7 +56,7 @@ def test_what_train_and_test_share_is_counted_and_recorded(dataset, eight):
 
 
 def test_executions_of_new_titles_are_those_outside_the_training_part(parted, tmp_path):
-    """What a model that was trained on a dataset has not seen of another; here the other is the same one."""
+    """Executions of another dataset that a model has not been trained on; here the other dataset is the same one."""
     new = of_new_titles(parted, parted, "activities")
     trained = {name for each in examples(parted, "activities", "train") for name in each.executions}
     assert not new & trained

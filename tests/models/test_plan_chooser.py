@@ -18,11 +18,11 @@ from hearth.models.sketches import plan_chooser
 from hearth.models.sketches.candidate_choices import Candidate, Choice, joined, packed
 from hearth.models.sketches.candidate_ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.chooser_examples import step_choices
-from hearth.models.sketches.grounded_programs import grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.next_steps import FEWEST, TOOLS, Habits
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
 from hearth.models.sketches.plan_chooser import NO_HABITS, SIZES, Chooser, TrainedChooser
+from hearth.models.sketches.sketch_examples import grounded
 from hearth.models.sketches.sketch_progress import Progress, plain
 from hearth.models.sketches.step_features import Offer
 from hearth.models.text_examples import corpus

@@ -14,9 +14,9 @@ from hearth.models.prediction_files import write
 from hearth.models.text_examples import examples
 from hearth.rendering.film import snapshots
 from hearth.scoring.dataset_scores import score_given
-from hearth.scoring.evaluate import Scored
 from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.metrics.lcs import LcsScore
+from hearth.scoring.prediction_scores import Scored
 from hearth.scoring.predictions import Pair
 
 
@@ -56,7 +56,7 @@ def test_both_programs_stand_side_by_side(parted, given):
 
 
 def test_pictures_are_of_the_home_as_built_and_what_its_environment_moves(parted, given, monkeypatch):
-    """What an environment moves is found by comparing its graph with the home's, which must be the home's own."""
+    """Things that an environment moves are found by comparing its graph with the home's own."""
     pytest.importorskip("open3d")
     asked = []
     whole = snapshots.trajectory_of

@@ -1,4 +1,4 @@
-"""What `model show` shows: stages, two programs side by side, and what is bad input."""
+"""The output of `model show`: stages, two programs side by side, and bad input."""
 
 from __future__ import annotations
 

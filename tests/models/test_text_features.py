@@ -1,4 +1,4 @@
-"""What a text says about the things of a home, and that a chooser which reads it writes another program for another."""
+"""A text's mentions of a home's things, and a chooser that writes another program for another text."""
 
 from __future__ import annotations
 

@@ -14,8 +14,8 @@ from hearth.models.checkpoint import load, save
 from hearth.models.fit_model import fit
 from hearth.models.model_registry import recorded
 from hearth.models.prediction_files import predict_part
-from hearth.models.sketches import sketch_tables
-from hearth.models.text import text_tables
+from hearth.models.sketches import sketch_result_tables
+from hearth.models.text import text_result_tables
 from hearth.models.text_examples import facts_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -53,7 +53,7 @@ def test_a_model_that_was_trained_on_what_is_asked_is_refused(crossed, nearest, 
     with pytest.raises(HearthError, match=r"trained on \d+ of these programs, by the split `activities`"):
         predict_part(str(nearest), crossed.folder, out, OTHER, "test")
     with pytest.raises(HearthError, match="of these programs"):
-        text_tables.table("4.5", crossed, OTHER, [nearest])
+        text_result_tables.table("4.5", crossed, OTHER, [nearest])
     assert not out.exists()
     for split, part in (("activities", "test"), (OTHER, "train")):  # its own split, and what is said to be training
         assert predict_part(str(nearest), crossed.folder, out, split, part)
@@ -62,7 +62,7 @@ def test_a_model_that_was_trained_on_what_is_asked_is_refused(crossed, nearest, 
 def test_a_model_of_sketches_that_was_trained_on_the_tests_is_refused(crossed, tmp_path):
     fit("unaries", crossed.folder, tmp_path, "activities", ["programs=8", "hidden=16"], how=HOW)
     with pytest.raises(HearthError, match="of these programs"):
-        sketch_tables.table("5.2", crossed, OTHER, [tmp_path], most=2)
+        sketch_result_tables.table("5.2", crossed, OTHER, [tmp_path], most=2)
 
 
 def test_of_another_dataset_nothing_is_known(crossed, nearest, tmp_path):

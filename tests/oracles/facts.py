@@ -13,7 +13,7 @@ from oracles.formulas import Changes, Memory
 T = TypeVar("T")
 
 Chooser = Callable[[Sequence[int]], int]
-"""Which of several places is remembered; given ascending ids, never none."""
+"""A choice of the place that is remembered, of several; given ascending ids, never none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ class Facts:
         return self.backward.get((relation, target), frozenset())
 
     def has_state(self, node: int, state: str) -> bool:
-        """Whether the node is in the state."""
+        """Return whether the node is in the state."""
         return state in self.states[node]
 
     def properties(self, node: int) -> frozenset[str]:
@@ -78,7 +78,7 @@ class Facts:
         return self.by_id[node].class_name
 
     def is_room(self, node: int) -> bool:
-        """Whether the node is a room."""
+        """Return whether the node is a room."""
         return self.by_id[node].category == ROOM_CATEGORY
 
     def room(self, node: int) -> int | None:
@@ -93,11 +93,11 @@ class Facts:
         return None
 
     def origin(self, node: int) -> Memory | None:
-        """Where the thing was grabbed from."""
+        """Return the place from which the thing was grabbed."""
         return self.memories.get(node)
 
     def place(self, node: int) -> Memory | None:
-        """What it is ON, else INSIDE, else CLOSE to, rooms left out."""
+        """Return the node that the thing is ON, else INSIDE, else CLOSE to, rooms left out."""
         for relation in ("ON", "INSIDE", "CLOSE"):
             places = sorted(place for place in self.targets(relation, node) if not self.is_room(place))
             if places:

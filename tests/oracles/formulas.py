@@ -1,4 +1,4 @@
-"""What the literals of preconditions and effects say of a world: the slow, plain reading of them.
+"""Literals of preconditions and effects read in a world: the slow, plain reading of them.
 
 Any world that can answer the few questions of `View` can be asked. The engine's own functions are fast and written
 by hand; tests hold them against this reading.
@@ -20,7 +20,7 @@ Binding = Mapping[str, int]
 """Variable -> node id: `a` the acting character, `o` and `s` the first and second object."""
 
 Memory = tuple[str, int]
-"""Where a thing was grabbed from: relation and node."""
+"""The place from which a thing was grabbed: relation and node."""
 
 Fact = tuple[str, int, int | str]
 """`(relation, source, target)` or `("state", node, name)`."""
@@ -39,7 +39,7 @@ class View(Protocol):
         """The nodes that stand in the relation to `target`."""
 
     def has_state(self, node: int, state: str) -> bool:
-        """Whether the node is in the state."""
+        """Return whether the node is in the state."""
 
     def properties(self, node: int) -> frozenset[str]:
         """The node's properties."""
@@ -48,21 +48,21 @@ class View(Protocol):
         """The node's class."""
 
     def is_room(self, node: int) -> bool:
-        """Whether the node is a room."""
+        """Return whether the node is a room."""
 
     def room(self, node: int) -> int | None:
         """The room itself, or the room reached along INSIDE, directly or through containers; None without one."""
 
     def origin(self, node: int) -> Memory | None:
-        """Where the thing was grabbed from, if that is remembered."""
+        """Return the place from which the thing was grabbed, if that is remembered."""
 
     def place(self, node: int) -> Memory | None:
-        """Where the thing would be remembered to come from if it were grabbed now."""
+        """Return the place that would be remembered as the thing's origin if it were grabbed now."""
 
 
 @dataclass(frozen=True, slots=True)
 class Changes:
-    """What an action changes: first `removed` stops holding, then `added` holds.
+    """The changes of an action: first `removed` stops holding, then `added` holds.
 
     CLOSE is among them both ways. `remembered` says where things were grabbed from now, None for what is forgotten.
     """
@@ -92,7 +92,7 @@ def first_failure(
 def changes(
     knowledge: Knowledge, view: View, action: Action, binding: Binding, options: frozenset[str] = frozenset()
 ) -> Changes:
-    """What the action changes in this world, by these options, whether or not its preconditions hold."""
+    """Return the changes that the action makes in this world, by these options; its preconditions need not hold."""
     reading = _Reading(knowledge, view, action, options)
     draft = _Draft(reading)
     for effect in action.effects:
@@ -103,7 +103,7 @@ def changes(
 
 
 def holds(knowledge: Knowledge, view: View, formula: Formula, binding: Binding, action: Action | None = None) -> bool:
-    """Whether the formula holds of the world; `affords` needs the action it is about."""
+    """Return whether the formula holds of the world; `affords` needs the action it is about."""
     return _Reading(knowledge, view, action).holds(formula, dict(binding))
 
 
@@ -189,7 +189,7 @@ class _Reading:
             yield from self._extend(rest, waiting, deleted, {**bound, variable: node})
 
     def holds(self, formula: Formula, bound: Mapping[str, int]) -> bool:
-        """Whether a formula holds under a binding of its variables."""
+        """Return whether a formula holds under a binding of its variables."""
         if isinstance(formula, Literal):
             return self._atom(formula, bound) != formula.negated
         if isinstance(formula, Not):

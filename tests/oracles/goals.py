@@ -1,4 +1,4 @@
-"""Whether a goal is reached over a run, read slowly off a graph for each time: the twin of `simulation.goal_trace`.
+"""The test that a goal is reached over a run, read slowly off graphs: the twin of `simulation.goal_trace`.
 
 A time is the number of ticks that are done. A part is asked from the time at which the one before it was reached.
 """

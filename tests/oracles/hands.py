@@ -1,4 +1,4 @@
-"""What the character of the plain engine takes, puts somewhere, pours and wears."""
+"""Actions of hands in the plain engine: taking, putting somewhere, pouring and wearing."""
 
 from __future__ import annotations
 

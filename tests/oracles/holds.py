@@ -1,4 +1,4 @@
-"""Whether a literal holds, read slowly off the edges of a graph: the twin of `hearth.simulation.literal_truth`.
+"""The truth of a literal, read slowly off the edges of a graph: the twin of `hearth.simulation.literal_truth`.
 
 Every predicate is asked of one node, or of one and another; what a term stands for is tried node by node.
 """
@@ -37,14 +37,14 @@ class Plain:
         return cls(Facts.of(now), Facts.of(start), knowledge)
 
     def holds(self, literal: Literal[Key] | Literal[Name], binding: Mapping[object, int]) -> bool:
-        """Whether the literal holds of some nodes that its terms stand for."""
+        """Return whether the literal holds of some nodes that its terms stand for."""
         first, *rest = (self.meant(term, binding) for term in literal.terms)
         if rest:
             return any(self.related(literal.name, x, y) for x in first for y in rest[0]) != literal.negated
         return any(self.is_so(literal.name, x) for x in first) != literal.negated
 
     def count(self, literal: Literal[Name]) -> int:
-        """How often the literal holds: of subjects that are characters each target counts, else each subject once."""
+        """Count how often the literal holds: each target of subjects that are characters, else each subject once."""
         name, terms, negated = literal
         first, *rest = (self.meant(term, {}) for term in terms)
         if not rest:
@@ -77,7 +77,7 @@ class Plain:
         return {node for node in self.now.nodes() if self.now.class_name(node) == "character"}
 
     def is_so(self, name: str, x: int) -> bool:
-        """Whether a predicate of one term holds."""
+        """Return whether a predicate of one term holds."""
         now, above = self.now, self.now.sources("ON", x)
         if name in ("free", "occupied"):
             kind = now.class_name(x)
@@ -93,12 +93,12 @@ class Plain:
         return now.has_state(x, STATES.get(name, name))
 
     def counted(self, x: int, above: Iterable[int]) -> list[int]:
-        """What takes room on a seat; on what one can lie on, bedding does not."""
+        """Return the nodes that take room on a seat; on a bed or sofa to lie on, bedding does not."""
         made = "LIEABLE" in self.now.properties(x)
         return [other for other in above if not made or self.now.class_name(other) not in BEDDING]
 
     def related(self, name: str, x: int, y: int) -> bool:
-        """Whether a predicate of two terms holds."""
+        """Return whether a predicate of two terms holds."""
         now = self.now
         if name in EDGES or name in RELATIONS:
             return y in now.targets(EDGES.get(name, name), x)
@@ -123,7 +123,7 @@ class Plain:
         return {x, *near} - (self.characters() - {x}) - self.bodies()
 
     def around(self, y: int) -> set[int]:
-        """What a walk to a thing brings one close to, at the start."""
+        """Return the nodes that a character is close to after a walk to a thing, at the start."""
         if y in self.characters():
             return {y} - self.bodies()
         start = self.start

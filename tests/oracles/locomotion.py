@@ -1,4 +1,4 @@
-"""Where the character of the plain engine goes, turns, sits and lies."""
+"""Movement in the plain engine: walking, turning, sitting and lying."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def lie(w: World, o: int, _: int | None, options: Options) -> None:
 
 
 def taken(w: World, o: int, options: Options) -> list[int]:
-    """What takes room; a made bed's bedding is turned back."""
+    """Return the nodes that take room; a made bed's bedding is turned back."""
     made = options.made_bed and w.has(o, "LIEABLE")
     return [x for x in w.back["ON"][o] if not made or w.name[x] not in BEDDING]
 

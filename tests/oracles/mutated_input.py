@@ -180,7 +180,7 @@ class ReaderCounts:
 
     @property
     def adds_up(self) -> bool:
-        """Whether every record has an output."""
+        """Return whether every record has an output."""
         return self.silent == 0 and self.records == self.accepted + self.rejected
 
 

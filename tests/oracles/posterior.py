@@ -1,4 +1,4 @@
-"""Which goal somebody pursues, weighed goal by goal and thing by thing: the twin of `hearth.agents.goal_posterior`."""
+"""The posterior over an agent's goals, weighed goal by goal: the twin of `hearth.agents.goal_posterior`."""
 
 import math
 
@@ -56,7 +56,7 @@ class Plain:
         return min(trip(number), cheapest[-1])
 
     def too_few(self, goal, literal, places):
-        """Whether a goal wants more of some things than there are."""
+        """Return whether a goal wants more of some things than there are."""
         return dict(goal)[literal] > sum(self.counts(literal, thing, None) for thing in self.all)
 
     def able(self, literal, costs):

@@ -1,4 +1,4 @@
-"""What the character of the plain engine does with things where they are: their states, and what changes nothing."""
+"""Actions on things in their places in the plain engine: changes of states, and actions that change nothing."""
 
 from __future__ import annotations
 

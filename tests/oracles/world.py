@@ -140,8 +140,8 @@ class World:
 
 
 class Options:
-    """Whether doors stop walks, what is off can't be watched, the bedding on a bed takes no room, hands reach into no
-    other room, walks are those of `evolving_graph`, what is held is not grabbed again, and a seat is left.
+    """Rules of the plain engine: doors stop walks, things that are off are not watched, bedding takes no room, hands
+    reach into no other room, walks are those of `evolving_graph`, held things are not grabbed again, a seat is left.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What sources give when they are read, and small sources: a program, batches of answers, a zip of a folder."""
+"""Records of sources as readers give them, and small sources: a program, batches of answers, a zip of a folder."""
 
 from __future__ import annotations
 

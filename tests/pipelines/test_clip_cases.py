@@ -1,4 +1,4 @@
-"""Which executions are filmed for clips: parts of programs and homes."""
+"""The executions that are filmed for clips: parts of programs and homes."""
 
 from __future__ import annotations
 

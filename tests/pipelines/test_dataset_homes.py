@@ -11,9 +11,9 @@ from builds import GOLDEN_SOURCES, INPUT
 
 import hearth
 from hearth.datasets.dataset_homes import digest, own_homes
-from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
-from hearth.datasets.export.problems import tasks
+from hearth.datasets.export.pddl_problems import tasks
+from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.report.report_writer import write_report
 from hearth.datasets.verify import verify
 from hearth.homes.library import load_graph

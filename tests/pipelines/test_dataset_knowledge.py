@@ -12,10 +12,10 @@ import pytest
 import hearth
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.diff import compare
-from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
-from hearth.datasets.export.planning import helpful
-from hearth.datasets.export.problems import tasks
+from hearth.datasets.export.pddl_problems import tasks
+from hearth.datasets.export.planner_agreement import helpful
+from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.format.case_rows import rerun
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.report.report_writer import write_report

@@ -1,4 +1,4 @@
-"""Which executions are pictured from above."""
+"""The executions that are pictured from above."""
 
 from __future__ import annotations
 

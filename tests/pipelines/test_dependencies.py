@@ -1,4 +1,4 @@
-"""What decides a stage's output is found from the imports of its module."""
+"""The files that decide a stage's output are found from the imports of its module."""
 
 import ast
 

@@ -31,7 +31,7 @@ def as_json(graph, **more):
 
 
 def plainly(data):
-    """What it means to read them whole."""
+    """Return the two graphs as a plain reader gives them, which reads them whole."""
     pair = orjson.loads(data)
     parts = [
         Parts(set(map(EDGE, graph["edges"])), states_of(map(read_node, graph["nodes"])))

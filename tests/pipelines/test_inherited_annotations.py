@@ -1,9 +1,9 @@
-"""What augmented programs inherit of the annotated sketches of their parents."""
+"""Annotated sketches that augmented programs inherit from their parents."""
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.datasets.format.codecs import step_rows
+from hearth.datasets.format.row_conversion import step_rows
 from hearth.pipelines.engine.annotated_sketches import inherited_annotations, places
 from hearth.schemas.syntax import parse_program
 

@@ -82,7 +82,7 @@ def test_workers_end_with_a_build_that_is_killed(tmp_path):
 
 
 def soon(holds):
-    """Whether something comes true within a minute."""
+    """Return whether something comes true within a minute."""
     return any(holds() or time.sleep(0.05) for _ in range(1200))
 
 

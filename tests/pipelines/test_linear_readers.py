@@ -11,7 +11,7 @@ import pytest
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers import delimited
-from hearth.pipelines.readers.placed_texts import pieces_of, text_at
+from hearth.pipelines.readers.located_texts import pieces_of, text_at
 from hearth.pipelines.readers.record_ends import RecordEnds
 from hearth.schemas.diagnostics import HearthError
 
@@ -121,7 +121,7 @@ HOSTILE = {
 
 
 def calls(path):
-    """How many functions are called while the file is read."""
+    """Count the functions that are called while the file is read."""
     count = 0
 
     def counted(_frame, event, _value):

@@ -21,7 +21,7 @@ OF_FORMS = re.compile(
     r"|(?:\[?step \d+\]?:? )?done\b|(?:\[step \d+\]) done)",
     re.IGNORECASE,
 )
-"""What forms read over: thoughts and what they answer, comments, layout of tables, the ends of plans."""
+"""Lines that forms read over: thoughts and what they answer, comments, layout of tables, the ends of plans."""
 
 ANSWERS = re.compile(r"\s*(?:>|act\b)", re.IGNORECASE)
 """A text with such lines is a log: what its other lines say is the game's answer."""

@@ -13,7 +13,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.row_conversion import program_of
 from hearth.pipelines.engine.stages import STAGES
 from hearth.schemas.syntax import print_lines
 

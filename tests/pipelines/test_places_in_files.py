@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
-from hearth.pipelines.readers.placed_texts import Text, text_at
+from hearth.pipelines.readers.located_texts import Text, text_at
 from hearth.storage.rejects import Reject
 
 BAD = ("Fly to moon", "[Fly] <bed> (1)", "[Walk] <piano-forte-x> (1)", "[Walk <bed> (1)", 'Say "qua" to é zzyx\tnow')
@@ -50,7 +50,7 @@ def faults_of(path):
 
 
 def shown_at(text, fault):
-    """Whether the words that a fault shows stand at its place, as JSON and CSV may write them."""
+    """Return whether the words that a fault shows stand at its place, as JSON and CSV may write them."""
     line = text.split("\n")[fault.line - 1][fault.column - 1 :]
     first = fault.found.replace("\t", " ").removesuffix(" now")  # a tab, which is shown as a blank
     ways = {first, json.dumps(first)[1:-1], json.dumps(first, ensure_ascii=False)[1:-1], first.replace('"', '""')}

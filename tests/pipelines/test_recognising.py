@@ -1,4 +1,4 @@
-"""Which reader a source gets, and what is said of sources that none reads."""
+"""The reader that each source gets, and the message for sources that no reader takes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is written rather than crowd-sourced: its origin, its ids, and its parts in splits, as readers give them."""
+"""The corpus that was written, not crowd-sourced: its origin, ids, and parts in splits, as readers give them."""
 
 from __future__ import annotations
 

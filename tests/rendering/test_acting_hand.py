@@ -1,4 +1,4 @@
-"""Which hand acts: the nearer one, unless one is asked for, or a hand is full."""
+"""The hand that acts is the nearer one, unless a program asks for one, or a hand is full."""
 
 import pytest
 

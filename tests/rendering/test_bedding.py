@@ -52,7 +52,7 @@ def bedding_of(keyframe, place):
 
 
 def holds(node, point, spare=0.0):
-    """Whether a point of the world is over the box of a node, and not above it."""
+    """Return whether a point of the world is over the box of a node, and not above it."""
     (x, y, z), (w, h, d) = node.box
     return abs(point[0] - x) < w / 2 + spare and abs(point[2] - z) < d / 2 + spare and point[1] < y + h / 2 + spare
 
@@ -118,7 +118,7 @@ def test_no_two_things_of_a_full_bed_are_in_the_same_place(name, bed):
 
 @pytest.fixture(scope="module", params=[("maple", "bed"), ("birch", "bed"), ("maple", "couch")])
 def film(request):
-    """What is filmed of lying down and getting up, ten times a second; the bed's id; its trajectory."""
+    """Return the film of lying down and getting up, ten times a second; the bed's id; its trajectory."""
     trajectory, place = filmed(*request.param)
     return [frame for frame in frames(trajectory, 10.0) if frame.tick >= 2], place, trajectory
 

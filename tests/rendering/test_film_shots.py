@@ -124,7 +124,7 @@ def test_cuts_rely_on_pictures_where_estimates_are_mistaken(filmed):
     rows = cut.rows()
     for tick in range(1, len(trajectory.keyframes)):
         span = np.flatnonzero(cut.ticks == tick).tolist()
-        assert any(planner.shows(planner.cameras[rows[number]], number, 0) for number in span), tick
+        assert any(planner.film.shows(planner.cameras[rows[number]], number, 0) for number in span), tick
 
 
 def test_what_is_in_a_closed_container_is_seen_by_that(filmed):

@@ -1,4 +1,4 @@
-"""What is worn on the head is drawn there, and turns and nods with it."""
+"""Headwear is drawn on the head, and turns and nods with it."""
 
 import numpy as np
 import pytest

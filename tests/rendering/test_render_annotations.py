@@ -12,9 +12,9 @@ from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film import png
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model
-from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
+from hearth.rendering.people.person_appearance import BODIES
 from hearth.rendering.rays.camera_shot import shoot
 from hearth.rendering.rays.optical_flow import flow, flow_of
 from hearth.rendering.scene.instances import Thing
@@ -123,7 +123,7 @@ def test_a_picture_is_described_in_plain_values():
 
 
 def test_joints_behind_the_camera_are_nowhere_in_the_picture():
-    """Who stands astride of the camera has joints on both sides of it."""
+    """A person that stands astride of the camera has joints on both sides of it."""
     person = Thing(9, "character", Figure(BODIES["ben"], BodyPose()), (0.0, -0.9, 0.013), 90.0)
     shot = shoot(Scene((BACK, person)), CAMERA)
     (found,), (row,) = skeletons(shot), poses(shot)

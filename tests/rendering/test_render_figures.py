@@ -6,12 +6,12 @@ import sys
 import numpy as np
 import pytest
 
-from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose, Foot, Hand
 from hearth.rendering.people.body_shape import Shape, body_data, proportions, target_weights
 from hearth.rendering.people.clothed_body import dressed, parts_worn, tucked_in
 from hearth.rendering.people.figure import Figure, figure_mesh
 from hearth.rendering.people.grips import GRIPS
+from hearth.rendering.people.person_appearance import BODIES
 from hearth.rendering.people.proportions import standard
 from hearth.rendering.people.random_people import person
 from hearth.rendering.people.skeleton import joints, two_bones

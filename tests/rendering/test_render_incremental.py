@@ -12,9 +12,9 @@ from hearth.rendering.cameras.camera import look_at, top_view
 from hearth.rendering.modalities import render
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model
-from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
+from hearth.rendering.people.person_appearance import BODIES
 from hearth.rendering.rays.incremental_pictures import incremental_frame, pictures_of
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene_preparation import scene_of

@@ -272,7 +272,7 @@ def standing(number, name, at, size, *states, properties=()):
 
 
 def crosses(way, thing):
-    """Whether a way leads through a thing's box."""
+    """Return whether a way leads through a thing's box."""
     (x, _, z), (w, _, d) = thing.box
     points = [np.add(a, (np.array(b) - a) * s) for a, b in pairwise(way) for s in np.linspace(0, 1, 200)]
     return any(abs(p[0] - x) < w / 2 - 0.02 and abs(p[1] - z) < d / 2 - 0.02 for p in points)

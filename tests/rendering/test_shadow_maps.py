@@ -10,7 +10,7 @@ from hearth.rendering.modalities import render
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.rays import shadow_loops, shadow_maps
-from hearth.rendering.rays.unshadowed_groups import unshaded_groups
+from hearth.rendering.rays.convex_triangle_groups import unshaded_groups
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.rendering.scene.lights import Light, daylight
 from hearth.rendering.scene.scene import Scene

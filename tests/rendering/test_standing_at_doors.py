@@ -1,4 +1,4 @@
-"""Where people stand before what opens: out of the way of doors that swing, and close to what is inside open ones."""
+"""Positions of people before things that open: out of the way of doors, and close to the contents of open things."""
 
 import numpy as np
 import pytest

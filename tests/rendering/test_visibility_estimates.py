@@ -1,4 +1,4 @@
-"""What cameras are worth: more where one sees the hands at work, less where something near fills the picture."""
+"""The values of cameras: more where one sees the hands at work, less where something near fills the picture."""
 
 from dataclasses import replace
 from math import cos, radians, sin

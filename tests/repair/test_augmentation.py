@@ -1,4 +1,4 @@
-"""What must hold of every pair of a program and a perturbed environment."""
+"""Laws of every pair of a program and a perturbed environment."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from hearth.simulation.world.home import Home
 
 CORPUS = Path(__file__).resolve().parents[2] / "data_raw/crowd/programs.csv"
 OF_ENVIRONMENTS = {Code.CONDITION_UNMET, Code.UNPERTURBED, Code.DUPLICATE}
-"""Why a pair gives no program although nothing failed to be repaired."""
+"""Reasons for which a pair gives no program although every failure was repaired."""
 
 
 @cache
@@ -159,7 +159,7 @@ def test_nearly_all_pairs_of_the_corpus_are_repaired():
 
 
 def things_on(seat: int, execution: Execution, tick: int, but: set[int]) -> list[str]:
-    """What takes room, can be carried and is on a seat before a tick, those nodes left out."""
+    """Return the classes of things on a seat before a tick that take room and can be carried, some nodes left out."""
     home, world = execution.final.home, execution.worlds[tick]
     carried = rows.taking_room(world, home.index[seat]) & home.able("Grab") & ~home.characters
     return [home.classes[i] for i in indices(carried) if home.ids[i] not in but]

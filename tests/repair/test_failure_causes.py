@@ -1,4 +1,4 @@
-"""What a failure comes of: the perturbation that settles what fails, and none where that is unclear."""
+"""The cause of a failure: the perturbation that settles it, and none where that is unclear."""
 
 from __future__ import annotations
 

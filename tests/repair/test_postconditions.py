@@ -1,4 +1,4 @@
-"""What programs achieve, worked out by hand."""
+"""Achievements of programs, worked out by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How programs are perturbed, repaired and sketched stays as it is until somebody means to change it."""
+"""Perturbations, repairs and sketches of programs stay as they are until somebody means to change them."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ def test_children_inherit_their_parents_steps_and_nothing_that_was_inserted():
 
 @pytest.mark.slow
 def test_people_agree_more_than_with_the_baselines(real_data):
-    from hearth.analysis.coverage import scripts
+    from hearth.analysis.programs_in_homes import scripts
     from hearth.analysis.sketch_evaluation import annotated, evaluate_sketches
     from hearth.storage.rejects import Reject
 

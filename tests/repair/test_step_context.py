@@ -25,7 +25,7 @@ PUTS = ("PutBack", "PutIn", "PutObjBack", "Drop", "Release", "PutOn")
 
 
 def demands(program, posture):
-    """What the steps before each step of a program say about it, by an oracle that reads the text."""
+    """Return the demands of the earlier steps on each step of a program, by an oracle that reads the text."""
     found, holding, states = [], set(), set()
     for step in program.steps:
         wanted = {Literal.of("HOLDS", CHARACTER, key) for key in holding}

@@ -1,4 +1,4 @@
-"""What changed between two graphs, made again, gives the later graph; one after the other and all together."""
+"""A change between two graphs, made again, gives the later graph; one after the other and all together."""
 
 from dataclasses import replace
 from itertools import pairwise

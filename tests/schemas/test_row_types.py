@@ -29,7 +29,7 @@ def values(kind, number=7):
 
 
 def fits(value, hint):
-    """Whether a value is of a declared type: every key of a row, every element of a list."""
+    """Return whether a value is of a declared type: every key of a row, every element of a list."""
     origin = typing.get_origin(hint)
     if origin is typing.Annotated:
         return fits(value, hint.__origin__)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.datasets.format.codecs import node_of, node_row
+from hearth.datasets.format.row_conversion import node_of, node_row
 from hearth.kb.loading.load import default
 from hearth.schemas import vocabulary
 from hearth.schemas.diagnostics import Diagnostic, HearthError

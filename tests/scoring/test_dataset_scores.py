@@ -197,7 +197,7 @@ def test_the_nearest_sketch_and_of_equals_the_nearest_start():
 
 
 IDLE = ("empty program", "random legal steps", "sketch alone", "nearest sketch")
-"""What plans nothing: no step, legal ones, those given, and a copy of the nearest program of another activity."""
+"""Baselines that plan nothing: no step, legal ones, those given, and the nearest program of another activity."""
 
 
 @pytest.mark.parametrize("tested", [0, 1])

@@ -2,10 +2,11 @@ import pytest
 
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
-from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, reference_of, signatures, summarise
+from hearth.scoring.evaluate import Options, by_field, evaluate, reference_of, signatures, summarise
 from hearth.scoring.line_reader import LineReader
 from hearth.scoring.line_sequences import read
 from hearth.scoring.metrics.executability import ErrorClass
+from hearth.scoring.prediction_scores import METRICS
 from hearth.scoring.predictions import Pair
 from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.world.world import World

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.syntax import parse_program
-from hearth.scoring.evaluate import METRICS, evaluate, summarise
+from hearth.scoring.evaluate import evaluate, summarise
 from hearth.scoring.line_sequences import read
 from hearth.scoring.metrics.goal_progress import Achieved, GoalScore, of_given
 from hearth.scoring.metrics.goals import goal_of
+from hearth.scoring.prediction_scores import METRICS
 from hearth.scoring.predictions import Pair
 from hearth.simulation.engine import run
 from hearth.simulation.goal_text import read_goal

@@ -222,7 +222,7 @@ def test_rooms_doors_and_unknown_nodes_are_left_out(world):
 
 
 def test_scope_says_whose_objects_are_looked_at(world):
-    """What only the prediction names is the same in both worlds: `either` finds it unchanged, `own` one tuple more."""
+    """Objects that only the prediction names are the same in both worlds: `either` finds them, `own` a tuple more."""
     mine, my_names = ran(world, "[Walk] <fridge> (1.11)")
     theirs, their_names = ran(world, "[Walk] <fridge> (1.11)")
     own = score(mine, theirs, my_names | {22}, their_names, match="none", scope="own")

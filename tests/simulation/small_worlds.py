@@ -97,7 +97,7 @@ def random_step(rng: random.Random, graph: EnvironmentGraph, agent: int = 0, act
 
 
 def arity(action: str) -> int:
-    """How many objects an action takes."""
+    """Return the number of objects that an action takes."""
     return default().actions[action].arity
 
 

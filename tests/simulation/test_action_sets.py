@@ -36,7 +36,7 @@ STORED = {
 
 
 def programs_digest(rules_name: str, count: int = 2_500) -> tuple[str, int]:
-    """What random programs do and say; and how many steps of them were done."""
+    """Return a digest of the effects and messages of random programs, and the number of their steps that were done."""
     found, done = sha256(), 0
     for seed in range(count):
         rng = random.Random(f"{rules_name} {seed}")

@@ -1,4 +1,4 @@
-"""What an argument may be, of many nodes at once, is what a requirement accepts of each."""
+"""The possible arguments, found for many nodes at once, are those that a requirement accepts one by one."""
 
 from hypothesis import given
 from hypothesis import strategies as st

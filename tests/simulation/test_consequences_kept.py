@@ -12,9 +12,9 @@ from hearth.schemas.graph import Edge
 from hearth.simulation.engine import act
 from hearth.simulation.processes import advanced, widened
 from hearth.simulation.rules import CONSEQUENCES
+from hearth.simulation.world.action_set_3_states import counts_of
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.edit import edit
-from hearth.simulation.world.further import counts_of
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.snapshot import export, restore
 from hearth.simulation.world.world import World

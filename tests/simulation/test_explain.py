@@ -1,4 +1,4 @@
-"""What a check held by is true in the graph of that world."""
+"""The facts by which a check held are true in the graph of that world."""
 
 from __future__ import annotations
 

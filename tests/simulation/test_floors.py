@@ -1,4 +1,4 @@
-"""Where one can stand and walk in homes: ours, drawn ones and the release's laid out; where characters start."""
+"""Floors of homes, ours, drawn ones and the release's: where agents can stand and walk, and where they start."""
 
 import math
 import random

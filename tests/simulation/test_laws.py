@@ -1,4 +1,4 @@
-"""What always holds, in any home and after any program."""
+"""Laws that hold in any home and after any program."""
 
 from __future__ import annotations
 

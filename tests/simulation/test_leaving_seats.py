@@ -1,4 +1,4 @@
-"""Who gets up leaves the seat: beside the one in use, which is free then, and which nobody takes while it is in use."""
+"""A character that gets up leaves the seat: it is free then, and nobody else takes it while it is in use."""
 
 import random
 

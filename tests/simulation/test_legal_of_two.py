@@ -1,4 +1,4 @@
-"""What several characters may do with one thing: masks that random worlds hardly ever reach."""
+"""Actions of several characters with one thing: masks that random worlds hardly ever reach."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from oracles.world import Options
 from oracles.world import World as PlainWorld
 from small_worlds import node
 
-from hearth.datasets.export.problems import Task, problem
+from hearth.datasets.export.pddl_problems import Task, problem
 from hearth.homes import library
 from hearth.kb.formula import parse_formula
 from hearth.kb.loading.load import default

@@ -146,7 +146,7 @@ def test_a_step_with_a_wrong_modifier_is_refused_when_it_is_done(beside, maple):
 
 
 def test_a_stride_takes_no_place_and_no_way_to_look(maple):
-    """Where one stands and looks under way is where the stride ends: `at` would be a jump."""
+    """The character stands and looks where the stride ends: `at` would be a jump."""
     world = placed(World.start(maple))
     fridge = ObjectRef("fridge", 1, id_of(maple, "fridge"))
     for name, value in (("at", "3,2"), ("facing", "90"), ("hand", "left")):

@@ -1,4 +1,4 @@
-"""What the rules of a replay allow or remember otherwise: doors, what is off, where a thing was."""
+"""The rules of a replay allow and remember other things: doors, things that are off, the place where a thing was."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What steps do, say and show stays as it is until somebody means to change it."""
+"""Effects and messages of steps stay as they are until somebody means to change them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a step may have touched holds all that it did touch, found edge by edge."""
+"""The nodes that a step may have touched include all that it did touch, found edge by edge."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _by_edges(before: World, after: World, name: str) -> set[int]:
 
 
 def _remains(before: World, after: World) -> bool:
-    """Whether all is equal but what characters are close to and face."""
+    """Return whether all is equal but what characters are close to and face."""
     people = {before.home.ids[agent.index] for agent in before.agents}
     one, other = (
         {tuple(e) for e in world.edges() if e.relation not in BY_PLACE or not {e.source, e.target} & people}

@@ -51,7 +51,7 @@ def test_a_text_that_all_rows_have_is_read_row_by_row(tmp_path, monkeypatch):
 
 
 def test_parts_of_columns_are_not_asked_for_before_they_are_read():
-    """Where their statistics of sizes are damaged, the library ends the process."""
+    """The library would end the process where the statistics of their sizes are damaged."""
     group = SimpleNamespace(total_byte_size=1 << 20)  # it has no `column`
     assert parquet_rows._at_once(SimpleNamespace(num_row_groups=1, row_group=lambda _: group)) == 64
 

@@ -173,7 +173,7 @@ def test_a_worker_elsewhere_fetches_what_it_needs(made, memory):
 
 
 CHANGING = ("put_file", "pipe_file", "cp_file", "rm_file")
-"""What a build calls to change a store."""
+"""Calls by which a build changes a store."""
 
 
 @pytest.fixture

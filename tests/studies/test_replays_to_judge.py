@@ -1,4 +1,4 @@
-"""What is judged may be shown in 3D instead of as a film: the study's file says which, and `prepare` makes it."""
+"""Executions to judge may be shown in 3D instead of as a film: the study's file says which, and `prepare` makes it."""
 
 import json
 from dataclasses import asdict

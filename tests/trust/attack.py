@@ -1,4 +1,4 @@
-"""What an attack is, and where it takes place."""
+"""An attack, and the place where it is made."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 
 class Ground(NamedTuple):
-    """Where an attack takes place: a folder of its own, the folder that must stay as it is, and a dataset."""
+    """The place of an attack: a folder of its own, the folder that must stay as it is, and a dataset."""
 
     folder: Path
     guard: Path

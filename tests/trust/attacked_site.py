@@ -92,7 +92,7 @@ def attack_on_site(name: str, call: Callable[[], Any]) -> Attack:
 
 
 def _untouched() -> None:
-    """What the owner has is as it was."""
+    """Check that the owner's data are as they were."""
     here = site()
     assert here.owner.get("/mine").status_code == 200
     assert MINE in here.owner.get("/annotate/tasks").text

@@ -47,7 +47,7 @@ SECRET = "the-secret-of-the-guard"
 SLOWEST = 20.0
 """Seconds of the processor that an attack may take."""
 WAITED = 6
-"""How many times as long it may take by the clock: other processes are busy, too."""
+"""The largest ratio of time by the clock to the allowed processor time: other processes are busy, too."""
 
 
 NAMES = ("../../../../guard/x", "{guard}/x", "..", ".", "..\\..\\guard\\x", "a/../../../../guard/x", "x\0y", "n" * 400)
@@ -313,7 +313,7 @@ def state(folder: Path) -> dict[str, bytes]:
 
 
 def outcome(attack: Attack, dataset: Path, before: dict[str, bytes]) -> str:
-    """What an attack achieved; "" for nothing."""
+    """Return the achievement of an attack; "" for nothing."""
     with tempfile.TemporaryDirectory() as made:
         ground = Ground(Path(made) / "own/ground", Path(made) / "guard", dataset)
         ground.folder.mkdir(parents=True)

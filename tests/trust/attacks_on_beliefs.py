@@ -35,7 +35,7 @@ def watched() -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def believed(path: Path) -> Any:
-    """What the helper believed, as it is printed and drawn."""
+    """Return the helper's beliefs, as they are printed and drawn."""
     from hearth.analysis.episode_drawing import episode_of, narrated, ticks_of
     from hearth.analysis.goal_belief_drawing import drawn
     from hearth.analysis.online_inference import calibration
@@ -72,7 +72,7 @@ def belief_results() -> Iterator[Attack]:
 
 
 def _whole(ground: Ground, first: dict[str, Any], second: dict[str, Any]) -> None:
-    """What is changed in the attacks is read where it is not."""
+    """Check that the results are read and drawn as long as nothing is changed."""
     try:
         assert "polyline" in _followed(ground, first, second)[0]
     except HearthError as error:

@@ -131,7 +131,7 @@ def _verified(path: Path) -> Any:
 
 
 def consumed(path: Path) -> Any:
-    """What commands make of results without doing them again: figures, and rows of tables."""
+    """Return the output of commands that read results without repeating them: figures, and rows of tables."""
     import pyarrow as pa
 
     from hearth.challenges.challenge_tables import TABLES, _episode, _once, _trajectory
@@ -211,7 +211,7 @@ LINES = (
     b'{"type": "end"}', b"x" * 300_000, b'{"tick": 0, "act": "[Walk] <sofa> (1), [Grab] <cup> (1)"}',
     b'{"tick": 0, "act": "[Walk]\\n[Walk]"}', b"\x00" * 100, b'{"tick": 1e18, "act": null}', b"GET / HTTP/1.1",
 )  # fmt: skip
-"""What clients send instead of an answer."""
+"""Lines that clients send instead of an answer."""
 
 
 def clients() -> Iterator[Attack]:

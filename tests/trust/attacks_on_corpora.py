@@ -69,7 +69,7 @@ def _files(kind: str, reader: Callable[[Path], Any], *, limited: bool = True) ->
 
 
 def _true(kind: str, reader: Callable[[Path], Any], text: str) -> Attack:
-    """What is changed in the attacks is read where it is not."""
+    """Return an attack that changes nothing: the text must be read."""
 
     def read(ground: Ground) -> None:
         try:
@@ -85,7 +85,7 @@ def _programs() -> tuple[list[Any], list[Any]]:
     """The programs that are annotated, and a home."""
     from tempfile import TemporaryDirectory
 
-    from hearth.analysis.coverage import Script, scripts
+    from hearth.analysis.programs_in_homes import Script, scripts
     from hearth.homes import library
     from hearth.simulation.world.home import Home
 
@@ -97,7 +97,7 @@ def _programs() -> tuple[list[Any], list[Any]]:
 
 
 def judged(path: Path) -> Any:
-    """What is said of annotations: of programs whose sketches are inferred to be all else, and beside each other."""
+    """Return the output about annotations: of programs whose sketches are inferred to be all else, and side by side."""
     from hearth.analysis.sketch_agreement import compare
     from hearth.analysis.sketch_evaluation import SketchEvaluation, annotated
 
@@ -199,7 +199,7 @@ def rated(path: Path) -> Any:
 
 
 def keyed(path: Path) -> Any:
-    """How well faults are found, by a key."""
+    """Return the scores of found faults, by a key."""
     from hearth.analysis.error_detection import Found, read_key, score
 
     return score(Found({"a": {"EMPTY"}}, 1), read_key(path))
@@ -221,7 +221,7 @@ def numbered(path: Path) -> Any:
 
 def released(path: Path) -> Any:
     """The facts of a knowledge file of the release."""
-    from hearth.kb.tools.release_facts import read_release
+    from hearth.kb.tools.published_knowledge import read_release
 
     path.replace(path.with_name("object_states.json"))
     return read_release(path.parent)

@@ -75,7 +75,7 @@ def opened(folder: Path) -> Any:
 
 
 def manifested(folder: Path) -> Any:
-    """What is wrong with a manifest, without the queries and replays by which `verify` checks the tables."""
+    """Return the faults of a manifest, without the queries and replays by which `verify` checks the tables."""
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.verify import _counts, _files, _overlays
     from hearth.datasets.verify_folder import manifest_faults, unknown
@@ -106,7 +106,7 @@ def _said(change: Callable[[dict[str, Any]], Any], ground: Ground) -> Any:
 
 
 def datasets() -> Iterator[Attack]:
-    """What is beside the tables, each time with something else wrong in it."""
+    """Yield attacks by the files next to the tables, each with another fault in them."""
     for place in (*((name,) for name in FIELDS), *WITHIN):
         for bad in BAD:
             name = f"manifest: {'.'.join(map(str, place))[-30:]} = {bad!r:.16}"

@@ -55,7 +55,7 @@ def _lines(home: Any, episode: Any) -> str:
 
 
 def _places(document: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
-    """Where values stand in an episode: each field, and the first of each list and of each mapping."""
+    """Yield the places of values in an episode: each field, and the first of each list and of each mapping."""
     waiting: list[tuple[tuple[Any, ...], Any]] = [((), document)]
     while waiting:
         place, value = waiting.pop()

@@ -212,7 +212,7 @@ COLUMNS: dict[str, dict[str, tuple[Any, ...]]] = {
               "kind": TEXTS, "execution_id": TEXTS, "number": NUMBERS},
     "demonstration_frames": {"file": NAMES, "execution_id": TEXTS, "tick": NUMBERS, "index": NUMBERS},
 }  # fmt: skip
-"""What stands in rows that name films, by table and column."""
+"""Values of rows that name films, by table and column."""
 
 
 def _tables() -> Iterator[Attack]:

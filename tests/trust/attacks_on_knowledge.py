@@ -59,9 +59,9 @@ def layer(name: str) -> bytes:
 
 
 def used(known: Knowledge, folder: Path) -> Any:
-    """What commands make of knowledge."""
+    """Return the output of commands that use some knowledge."""
     from hearth.commands.inputs import read_programs
-    from hearth.datasets.export.planning_domain import planning_domain
+    from hearth.datasets.export.pddl_domain import planning_domain
     from hearth.kb.consistency import lint
     from hearth.kb.language.step_phrases import parses, say
     from hearth.kb.tools.pddl import domain

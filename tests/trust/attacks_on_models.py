@@ -29,7 +29,7 @@ FEW: tuple[Any, ...] = (None, [], {}, "x", -1, 10**9, 0.5, [[[]]])
 """For places within the content of the other kinds."""
 
 DEPTH = 4
-"""How far down in the content something is changed."""
+"""The depth in the content to which something is changed."""
 
 Change = Callable[[dict[str, Any]], Any]
 
@@ -83,7 +83,7 @@ def _document_of(base: str) -> dict[str, Any]:
 
 
 def _places(document: dict[str, Any], part: str, depth: int) -> Iterator[tuple[Any, ...]]:
-    """Where values stand in a part: each of a mapping, the first of a list."""
+    """Yield the places of values in a part: each of a mapping, the first of a list."""
     waiting: list[tuple[tuple[Any, ...], Any]] = [((part,), document[part])]
     while waiting:
         place, value = waiting.pop()
@@ -157,7 +157,7 @@ WEIGHT_CHANGES: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
     "none": lambda weights: {},
     "one more": lambda weights: {**weights, "../../guard/x": np.zeros(3, np.float32)},
 }
-"""What is done to the weights of each kind."""
+"""Changes to the weights of each kind."""
 
 
 class _Calls:

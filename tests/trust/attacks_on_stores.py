@@ -34,7 +34,7 @@ BAD: tuple[Any, ...] = (
     None, "", -1, 1e300, 2**62, "9" * 5_000, "../../guard/x", b"\xff\xfe", "[" * 90_000, "null", "[[]]", '{"x": 1}',
     "<script>alert(1)</script>", "\u202e\x1b[2J",
 )  # fmt: skip
-"""What somebody could write into a cell: SQLite keeps any kind of value in any column."""
+"""Values that somebody could write into a cell: SQLite keeps any kind of value in any column."""
 
 DRAFT = '{"rooms": {"bedroom": 1}, "props": {"bed": 1}, "steps": [{"action": "Lie", "things": [["bed", 1]]}]}'
 
@@ -138,7 +138,7 @@ def reported(folder: Path, data: bytes) -> Any:
 
 
 def _whole(ground: Ground) -> None:
-    """What is changed in the attacks is read where it is not."""
+    """Check that the store is read as long as nothing is changed."""
     shown, rows = used(_copy(ground))
     assert shown.startswith("<!doctype html>") and len(rows) > 3, shown[:200]
 
@@ -205,7 +205,7 @@ SCHEMAS = (
     "DROP TABLE study_events; CREATE VIEW study_events AS WITH RECURSIVE n(number) AS (SELECT 0 UNION ALL SELECT "
     "number + 1 FROM n) SELECT 'judging' AS study, 'x' AS session, number, 'did' AS kind, 0 AS at, '{}' AS data FROM n",
 )  # fmt: skip
-"""What the file of a store may hold instead of our tables; the last view has no end."""
+"""Statements for a store's file that holds other things than our tables; the last view has no end."""
 
 
 def _copy(ground: Ground) -> Path:

@@ -26,7 +26,7 @@ PROGRAM = (
     "[Read] <novel> (1)\n"
 )
 Place = tuple[Any, ...]
-"""Where a value stands in a row: names of columns and fields, and numbers within lists."""
+"""The place of a value in a row: names of columns and fields, and numbers within lists."""
 
 
 @cache
@@ -219,7 +219,7 @@ def tables() -> Iterator[Attack]:
 
 
 def _whole(ground: Ground) -> None:
-    """What is changed in the attacks is read where it is not."""
+    """Check that the dataset verifies as long as nothing is changed."""
     from hearth.datasets.verify import verify
 
     assert not verify(signed(small(ground.folder / "dataset"))).faults, "it is not as it was"
@@ -249,7 +249,7 @@ FILMS: tuple[Any, ...] = (
     "films/true.webm", "../guard/secret.webm", "{guard}/secret.webm", "/dev/zero", "films/pipe.webm", "films/loop.webm",
     "films/out.webm", "films", "", "x\0.webm", "n" * 400 + ".webm", "programs/x.parquet", "manifest.json", None,
 )  # fmt: skip
-"""What stands in rows that name films."""
+"""Values of rows that name films."""
 
 
 def served_films(ground: Ground, file: Any, program: str = "") -> Any:

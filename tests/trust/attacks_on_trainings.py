@@ -16,7 +16,7 @@ from hearth.models.checkpoint import NAME
 
 
 def trainings() -> Iterator[Attack]:
-    """What checkpoints say of their training, which is drawn; and states of trainings that were stopped."""
+    """Yield attacks by trainings that checkpoints describe, which are drawn, and by states of stopped trainings."""
     base = "helping-subgoals"
     document = _document_of(base)
     for place in (*_places(document, "trained", 4), ("model",)):

@@ -30,7 +30,7 @@ def video() -> bytes:
 
 
 def watched(path: Path) -> Any:
-    """What `model show` reads of a video."""
+    """Return the content of a video as `model show` reads it."""
     return film_input.read_pictures(film_files.film_file(path)).shape
 
 

@@ -42,7 +42,7 @@ def stored() -> bytes:
 
 
 def read(data: bytes, folder: Path) -> int:
-    """How many fields of a file are taken; each of them must be that which is computed."""
+    """Return the number of a file's fields that are read; each of them must equal the computed one."""
     ways, every = walked()
     stored_distance_fields.file_of(ways, folder).write_bytes(data)
     found, taken = stored_distance_fields.StoredWays(ways, folder), 0

@@ -12,7 +12,7 @@ from typing import Any
 from fuzz_file_targets import One, Room, _by_file
 
 FAST = ("entries", "tensors", "release", "code", "pddl", "jsonl", "figures", "mine", "score")
-"""What is asked of tables with another value: what takes less than a second."""
+"""Readers that get tables with another value: those that take less than a second."""
 
 
 def _layer(name: str) -> Room:
@@ -113,8 +113,8 @@ def _goals(scratch: Path) -> One:
 
 
 def _sayings(scratch: Path) -> One:
-    """What a language model, or an agent that may talk, answers."""
-    from hearth.envs.text_protocol import understood
+    """Return answers of a language model, or of an agent that may talk."""
+    from hearth.envs.text_agent import understood
     from hearth.homes import library
     from hearth.kb.loading.load import default
     from hearth.simulation.actions.legal import legal

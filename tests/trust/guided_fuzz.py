@@ -97,7 +97,7 @@ def targets() -> list[str]:
 
 
 def examples(name: str) -> list[bytes]:
-    """What the mutations of a target begin with."""
+    """Return the examples from which the mutations of a target begin."""
     if name in COMMANDS:
         return [COMMANDS[name].example]
     if name in ROOMS:
@@ -228,7 +228,7 @@ def _formula(text: str) -> object:
 
 
 class Found(NamedTuple):
-    """How a target fared."""
+    """The results of fuzzing a target."""
 
     name: str
     runs: int

@@ -31,7 +31,7 @@ STEPS = tuple(
         ("Grab", "milk"), ("PutBack", "plate", "table"), ("Sleep",),
     )
 )  # fmt: skip
-"""What untrained models have seen: steps of none, one and two objects."""
+"""The training steps of untrained models: steps of none, one and two objects."""
 
 PAIRS = ((Request("x", "Watch TV", "Turn on the television and sit down on the sofa."), STEPS),)
 
@@ -203,7 +203,7 @@ def _graphs() -> Checkpoint:
 
 
 def _of_clips() -> Any:
-    """What clips show in the films of the untrained."""
+    """Return the clips in the films of the untrained models."""
     from hearth.models.films.clip_data import Clip, Clips, Instruction
 
     done = [Instruction(step.action, tuple(ref.name for ref in step.objects)) for step in STEPS]
@@ -211,8 +211,8 @@ def _of_clips() -> Any:
 
 
 def _seen(**changed: Any) -> Any:
-    from hearth.models.films.class_table import ClassTable
     from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel
+    from hearth.models.films.object_class_properties import ClassTable
     from hearth.models.films.step_order import StepOrder
 
     done, _ = _of_clips()

@@ -77,7 +77,7 @@ class Player:
 
 
 def alone(task):
-    """What an agent that acts like a human does in a task alone, as texts that a page sends."""
+    """Yield the actions of a human-like agent in a task alone, as texts that a page sends."""
     record = played(Job(task, 0, Lineup(), False, None, default))
     game = Game(trial(task, default()), default())
     playing: Playing = game.playing

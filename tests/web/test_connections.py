@@ -27,7 +27,7 @@ def connected(address: str) -> socket.socket:
 
 
 def ended(connection: socket.socket, before: float, drip: bytes = b"", reads: bool = True) -> bool:
-    """Whether the server ends a connection before a time, though bytes go on to drip in."""
+    """Return whether the server ends a connection before a time, though bytes go on to drip in."""
     connection.settimeout(0.5)
     while time.monotonic() < before:
         try:
@@ -131,7 +131,7 @@ def test_a_text_that_is_no_utf8_and_a_lack_of_files_are_a_line_each():
 
 
 def answers(address: str) -> bool:
-    """Whether a server answers soon."""
+    """Return whether a server answers soon."""
     for _ in range(20):
         with contextlib.suppress(httpx.HTTPError):
             return httpx.get(f"{address}/static/style.css", timeout=5).status_code == 200

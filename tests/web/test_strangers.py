@@ -1,4 +1,4 @@
-"""What a stranger with free sessions can't do: take others' places, judge own text, undo others' work."""
+"""Limits of a stranger with free sessions: no places of others, no judging of own text, no undoing of others' work."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ def study(tmp_path, knowledge):
 
 
 def joins(server, address, many):
-    """How many of some new sessions of an address get a place."""
+    """Return the number of an address's new sessions that get a place."""
     found = 0
     for _ in range(many):
         client = server.client(client=(address, 5))
@@ -246,7 +246,7 @@ def program_of(server, person):
 
 
 def answer_on(connection, line: bytes, wait: float = 4.0) -> bytes:
-    """What comes back on a port of a game."""
+    """Return the answer on a port of a game."""
     connection.settimeout(wait)
     try:
         connection.sendall(line)

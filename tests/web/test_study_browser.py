@@ -28,7 +28,7 @@ def page(browser):
 
 
 def seen(page):
-    """What must hold of every page, in light and dark: nothing wider than a telephone, nothing hard to read."""
+    """Check every page, in light and dark: nothing is wider than a telephone, nothing is hard to read."""
     page.set_viewport_size({"width": 360, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     page.set_viewport_size({"width": 1400, "height": 1000})

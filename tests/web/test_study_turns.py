@@ -20,7 +20,7 @@ def events(server):
 
 
 def line(person, post, **data):
-    """What the page says to which a browser is led; it says nothing once it is asked for anew."""
+    """Return the message of the page to which a browser is led; the page has none once it is asked for anew."""
     answer = person.post(f"/study/{post}", data=data, headers=BROWSER)
     assert answer.status_code == 303, answer.text
     page = person.get(answer.headers["location"], headers=BROWSER)
@@ -81,7 +81,7 @@ def over(person):
 
 
 def test_the_next_post_may_follow_a_game_at_once(playing):  # noqa: F811
-    """Whether a game is over is looked up by the post itself; nobody has to ask for the page in between."""
+    """The post itself looks up that a game is over; nobody has to ask for the page in between."""
     people = [playing.person() for _ in range(2)]
     for person in people:
         at_trial(person)

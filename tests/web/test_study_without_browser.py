@@ -1,4 +1,4 @@
-"""What docs/studies.md says to programs that take part in a study: its blocks are run as they stand."""
+"""Programs can take part in a study as docs/studies.md says: its blocks are run as they stand."""
 
 from __future__ import annotations
 

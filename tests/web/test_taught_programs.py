@@ -1,4 +1,4 @@
-"""What the pages teach can be done: the tutorial's program, and those that the test of reviewers calls right."""
+"""Programs that the pages teach can run: the tutorial's program, and those that the test of reviewers calls right."""
 
 from __future__ import annotations
 

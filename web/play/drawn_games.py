@@ -11,8 +11,8 @@ from hearth.challenges.start_worlds import site_of
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.sensor import CameraSensor
+from hearth.rendering.scene.gltf_and_obj import glb, node_names
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.interchange import glb, node_names
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.diagnostics import HearthError
