@@ -30,6 +30,7 @@ from hearth.pipelines.readers import (
     release,
     scene_graphs,
     sketches,
+    text_chats,
     yaml_documents,
 )
 from hearth.pipelines.readers.field_columns import Asked, FieldColumns, read_columns, shown
@@ -58,6 +59,7 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     program_tables.NAME: program_tables.scan,
     yaml_documents.NAME: yaml_documents.scan,
     enclosed_json.NAME: enclosed_json.scan,
+    text_chats.NAME: text_chats.scan,
     published_dataset.NAME: published_dataset.scan,
     sketches.NAME: sketches.scan,
     scene_graphs.NAME: scene_graphs.scan,

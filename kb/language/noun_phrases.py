@@ -30,6 +30,10 @@ _OWNER = re.compile(
 _POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
 _SOURCE = re.compile(r"\s+(?:out of|out from|off of|off|from|from inside|from under|from behind)\s+")
 """Before the place from which a thing is taken; a step has no such place, as its world says where the thing is."""
+_VESSEL = re.compile(r"(?:the|a|an|its|their) (?:bag|bottle|box|can|carton|jar|jug|pack|packet|pitcher|tin|tub|tube)")
+"""What a thing is sold or kept in, which is the thing itself: the milk from the carton is a carton of milk."""
+
+_NEXT_PLACE = re.compile(r" (?:in|into|on|onto|to|over|with|using)(?= )")
 _PARTS = re.compile(r"(?:the )?(?:doors?|lid) of (?:the |a )?(.+)|(.+?) (?:doors?|lid)")
 _OPENED = "CAN_OPEN"
 _LONGEST = 3
@@ -50,6 +54,22 @@ def thing_of(known: Knowledge, words: str) -> str | None:
         name = _named(known, words[: place.start()])
         if name is not None and thing_of(known, words[place.end() :]) is not None:
             return name
+    return None
+
+
+def is_taken_from(known: Knowledge, words: str) -> bool:
+    """Return whether a noun phrase says from where its thing is taken, `water from the tap`."""
+    return _SOURCE.search(words) is not None and _named(known, words) is None
+
+
+def without_source(known: Knowledge, words: str) -> tuple[str, str, str] | None:
+    """Return words without the known place from which a thing is taken, that place, and the words behind it."""
+    for place in reversed(list(_SOURCE.finditer(words))):
+        end = _NEXT_PLACE.search(words, place.end())
+        at = end.start() if end else len(words)
+        source = words[place.end() : at]
+        if thing_of(known, source) is not None or _VESSEL.fullmatch(source):
+            return words[: place.start()], words[place.start() : at].strip(), words[at:]
     return None
 
 

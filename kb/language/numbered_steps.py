@@ -1,13 +1,11 @@
 """Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
 import re
-from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import foreign_language
 from hearth.kb.language.plan_lines import (
     BRACKETED,
     LOOSE,
@@ -22,16 +20,14 @@ from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
-from hearth.kb.language.refusals import Refusal
 from hearth.kb.language.said_before import SaidBefore
 from hearth.kb.language.self_corrections import corrects_itself
 from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, nearest_steps, plain_step
 from hearth.kb.language.single_clauses import Asked, unclear
 from hearth.kb.language.staying import stays
-from hearth.kb.language.step_phrases import say
-from hearth.kb.language.step_understanding import Candidate, Understood
-from hearth.kb.language.unmarked_lines import is_like_step, is_order
-from hearth.schemas.diagnostics import Diagnostic, excerpt
+from hearth.kb.language.step_faults import LineFaults, of_language
+from hearth.kb.language.unmarked_lines import is_like_step, is_order, sentences
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps as parse_ticks
@@ -84,22 +80,9 @@ def _parsed(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy) 
     if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
         parser.faults.append(fault)
-    parser.faults = _of_language(list(dict.fromkeys(parser.faults)), len(parser.steps))
+    parser.faults = of_language(list(dict.fromkeys(parser.faults)), len(parser.steps))
     program = Program(top.title, top.description, tuple(parser.steps), tuple(parser.lines))
     return ParsedSteps(program, tuple(parser.faults), (*parser.warnings, *parser.explained()))
-
-
-TRANSLATE = "translate it into English"
-"""The remedy of every line of a plan in another language, which is one fault for people."""
-
-
-def _of_language(faults: list[Diagnostic], understood: int) -> list[Diagnostic]:
-    """Return the faults; those of lines name the language where most are not understood, as they are not English."""
-    lines = [fault for fault in faults if fault.code == Code.NOT_UNDERSTOOD]
-    if len(lines) <= understood or not (language := foreign_language([fault.found for fault in lines])):
-        return faults
-    message = f"the plan is in {language}; only English is read"
-    return [replace(fault, message=message, suggestion=TRANSLATE) if fault in lines else fault for fault in faults]
 
 
 _ORDINAL = re.compile(
@@ -120,6 +103,7 @@ def _asks(sentence: str) -> bool:
 class _StepParser:
     def __init__(self, known: Knowledge, place: str, fuzzy: Fuzzy) -> None:
         self.known, self.place, self.fuzzy = known, place, fuzzy
+        self._writer = LineFaults(known, place)
         self.steps: list[Step] = []
         self.lines: list[int] = []
         self.faults: list[Diagnostic] = []
@@ -135,7 +119,7 @@ class _StepParser:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
         sure = _sure_step(self.known, line.text) if kind is Kind.STEP else None
         if line.why:
-            (self.warnings if line.why.is_warning else self.refused).append(self._refused(line.why, raw, number))
+            (self.warnings if line.why.is_warning else self.refused).append(self._writer.refused(line.why, raw, number))
         if line.why and not line.why.is_warning:
             self._is_open = self._is_heading = False
         elif kind is Kind.HEAD:
@@ -208,7 +192,7 @@ class _StepParser:
 
     def _stayed(self) -> list[Diagnostic]:
         message = "nothing to do: the thing stays as the last step has left it"
-        return [self._diagnostic(Code.NO_STEP, message, raw, words, number) for words, raw, number in self._idle]
+        return [self._writer.at(Code.NO_STEP, message, raw, words, number) for words, raw, number in self._idle]
 
     def _noted(self) -> list[Diagnostic]:
         if not self._notes:
@@ -218,7 +202,7 @@ class _StepParser:
         message = (
             f"{count} lines explain steps and are none" if count > 1 else "a line that explains a step and is none"
         )
-        return [self._diagnostic(Code.NO_STEP, message, raw, words, number, "number it if it is a step")]
+        return [self._writer.at(Code.NO_STEP, message, raw, words, number, "number it if it is a step")]
 
     def _detail(self, words: str, raw: str, number: int) -> bool:
         """Add the steps of a line that may explain; return whether it reads exactly as steps."""
@@ -242,14 +226,14 @@ class _StepParser:
             self._take_back(number)
             self._before.add_unread(words, number)
             reason, remedy = "the line takes back its own words", "write the step that is meant, alone"
-            return [self._diagnostic(Code.AMBIGUOUS, reason, raw, words, number, remedy)]
+            return [self._writer.at(Code.AMBIGUOUS, reason, raw, words, number, remedy)]
         said = self._before.last_first(words)
         if stays(self.known, words, said):
             self._idle.append((words, raw, number))
             return []
         asked = asked_steps(self.known, words.removesuffix(":"), said, Fuzzy.OFF)
         if not asked and self.fuzzy is not Fuzzy.OFF:
-            shorter = unexplained(words)
+            shorter = _unexplained(words)
             asked = self._asked(shorter, said) if shorter not in ("", words) else ()
             if not asked and not words.endswith(":"):
                 asked = asked_steps(self.known, words, said, self.fuzzy)
@@ -281,7 +265,7 @@ class _StepParser:
     def _take_asked(self, asked: Asked, raw: str, words: str, number: int) -> None:
         self._add(asked, words, number)
         if asked.fuzzy:
-            self.warnings.append(self._fuzzy(asked, raw, words, number))
+            self.warnings.append(self._writer.fuzzy(asked, raw, words, number))
 
     def _asked(self, shorter: str, said: tuple[Mentioned, ...], fuzzy: Fuzzy = Fuzzy.OFF) -> tuple[Asked, ...]:
         """Return the steps of a line before its explanation, which is left out."""
@@ -296,9 +280,9 @@ class _StepParser:
         reason = unclear(self.known, words, said)
         if not whole.meant or reason or words.endswith(":"):
             self._before.add_unread(words, number)
-            return [self._fault(whole, raw, words, number, reason)]
+            return [self._writer.not_understood(whole, raw, words, number, said, reason)]
         self._add(Asked(whole.meant), words, number)
-        self.warnings.append(self._fuzzy(Asked(whole.meant), raw, words, number))
+        self.warnings.append(self._writer.fuzzy(Asked(whole.meant), raw, words, number))
         return []
 
     def _written(self, text: str, raw: str, number: int) -> list[Diagnostic]:
@@ -318,16 +302,7 @@ class _StepParser:
                 self._before.add_unread(text, number)
         if text not in raw:  # in another form, whose faults all stand at its first word
             faults = faults[:1]
-        return [self._placed(fault, text, raw, number) for fault in faults]
-
-    def _placed(self, fault: Diagnostic, text: str, raw: str, number: int) -> Diagnostic:
-        """Place a fault of the syntax of programs; that of a line in another form stands at the line's first word."""
-        at = raw.find(text)
-        if at < 0:
-            at, found = len(raw) - len(raw.lstrip()), raw.strip()[:200]
-            fault = replace(fault, column=1, length=len(found), found=found)
-        source, before = excerpt(raw, fault.column + at)
-        return replace(fault, file=self.place, line=number, column=fault.column + at, source=source, before=before)
+        return [self._writer.of_syntax(fault, text, raw, number) for fault in faults]
 
     def _add(self, asked: Asked, words: str, number: int) -> None:
         action, names = asked.meant.action.name, asked.meant.names
@@ -344,28 +319,13 @@ class _StepParser:
         self.lines.append(number)
         self._before.add(mentioned)
 
-    def _fuzzy(self, asked: Asked, line: str, words: str, number: int) -> Diagnostic:
-        message = f"taken for `{phrase(asked.meant)}`, similarity {asked.meant.score:.2f}"
-        if asked.left_out:
-            message = f"taken for `{phrase(asked.meant)}`; left out: {asked.left_out}"
-        return self._diagnostic(Code.FUZZY_MATCH, message, line, words, number)
 
-    def _refused(self, why: Refusal, raw: str, number: int) -> Diagnostic:
-        code = Code.AMBIGUOUS if why.is_warning else Code.SYNTAX
-        return self._diagnostic(code, why.message, raw, raw.strip(), number, why.remedy)
-
-    def _fault(self, whole: Understood, line: str, words: str, number: int, reason: str) -> Diagnostic:
-        if reason and not whole.unknown:
-            return self._diagnostic(Code.AMBIGUOUS, reason, line, words, number, "name the thing in full")
-        code = Code.AMBIGUOUS if whole.ambiguous else Code.NOT_UNDERSTOOD
-        message = "words that may mean several things" if whole.ambiguous else "could not read this line as a step"
-        return self._diagnostic(code, message, line, words, number, _remedy(whole))
-
-    def _diagnostic(self, code: Code, message: str, line: str, words: str, number: int, remedy: str = "") -> Diagnostic:
-        at = line.find(words)
-        column = max(at if at >= 0 else line.find(words.split(maxsplit=1)[0]), 0) + 1
-        source, before = excerpt(line, column)
-        return Diagnostic(code, message, self.place, number, column, len(words), words[:200], remedy, source, before)
+def _unexplained(words: str) -> str:
+    """Return a step's words without the explanation behind them; with a sentence behind them that asks for a step."""
+    shorter = unexplained(words)
+    behind = words[len(shorter) :]
+    asks = behind.startswith(". ") and any(is_order(each.rstrip(".!")) for each in sentences(behind[2:]))
+    return words if asks else shorter
 
 
 @lru_cache(maxsize=65_536)
@@ -390,19 +350,3 @@ def _mentioned(step: Step) -> Mentioned:
 def _step(action: str, names: tuple[str, ...], instance: int, second: int) -> Step:
     """Return a step whose things are counted."""
     return Step(action, tuple(map(ObjectRef, names, (instance, second))))
-
-
-def _remedy(whole: Understood) -> str:
-    """Return a remedy for a line that is not understood: the steps that may be meant, or where the known words are."""
-    if whole.candidates:
-        return f"did you mean {' or '.join(f'`{phrase(each)}`' for each in whole.candidates)}?"
-    if whole.unknown and whole.is_action:
-        return f"`{whole.unknown}` is not an action that Hearth knows; `hearth kb export table` lists them"
-    if whole.unknown:
-        return f"`{whole.unknown}` is not an object that Hearth knows; `hearth kb find` lists them"
-    return "write one step a line, as in `Walk to kitchen`"
-
-
-def phrase(candidate: Candidate) -> str:
-    """Return a candidate as a phrase."""
-    return say(candidate.action, candidate.names)

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.missing_objects import may_lack_seat
 from hearth.kb.language.pronouns import EARLIER, REMEMBERED, UNREAD, Mentioned, has_pronoun
 from hearth.kb.language.refused_words import unread
 
@@ -73,9 +74,9 @@ class SaidBefore:
     def last_first(self, line: str) -> tuple[Mentioned, ...]:
         """Return the mentions, the last first: those of which a pronoun may speak, and one of each thing before.
 
-        Lines that were not understood are among them only if the given line has a pronoun.
+        Lines that were not understood are among them only if the given line has a pronoun, or may lack a seat.
         """
-        is_about_unread = has_pronoun(line)
+        is_about_unread = has_pronoun(line) or may_lack_seat(line)
         recent: list[Mentioned] = []
         lines = reversed(self._lines)
         acts, last = 0, ("", 0)

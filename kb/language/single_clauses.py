@@ -11,6 +11,7 @@ from hearth.kb.language.carrying import carried, is_carrying
 from hearth.kb.language.counted_things import is_some, numbers, plurals, without_all
 from hearth.kb.language.head_nouns import may_repeat, said_before
 from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.missing_objects import gone_to
 from hearth.kb.language.noun_phrases import thing_of, things_in
 from hearth.kb.language.pronouns import (
     PRONOUN,
@@ -55,6 +56,7 @@ class Asked(NamedTuple):
         left_out: words of the sentence that are left out of the step.
         second: the number of its second thing.
         along: the class of the thing that is carried along.
+        added: what the step has and the sentence does not say.
     """
 
     meant: Candidate
@@ -62,11 +64,12 @@ class Asked(NamedTuple):
     left_out: str = ""
     second: int = 1
     along: str = ""
+    added: str = ""
 
     @property
     def fuzzy(self) -> bool:
-        """Return whether words were corrected or left out."""
-        return self.meant.score < 1 or bool(self.left_out)
+        """Return whether words were corrected, left out or added."""
+        return self.meant.score < 1 or bool(self.left_out or self.added)
 
     @property
     def mentioned(self) -> Mentioned:
@@ -159,6 +162,8 @@ def _clause_itself(known: Knowledge, words: str, said: Sequence[Mentioned], fuzz
     words = verb_phrase(words)
     if fuzzy is Fuzzy.OFF:
         return ()
+    if (clause := gone_to(known, words, said)) and (meant := understand_exactly(known, clause).meant):
+        return (Asked(meant, added="the place to which the step before goes"),)
     if read := _shortened(known, words.lower(), said, ""):
         return read
     if changes_act(words.lower()):

@@ -10,7 +10,7 @@ from hearth.kb.knowledge_records import Action
 from hearth.kb.language.hints import hints
 from hearth.kb.language.idioms import is_exchange, is_idiom
 from hearth.kb.language.lexicon import verb_lemmas
-from hearth.kb.language.noun_phrases import thing_of
+from hearth.kb.language.noun_phrases import is_taken_from, thing_of
 from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentence_openings import verb_phrase
@@ -30,6 +30,7 @@ _HEADS = 8
 _NAMES = 4
 _SHOWN = 3
 _GRAB = "Grab"
+_TAKES = "takes"
 _POINTED = re.compile(r"point(?:s|ing|ed)? (?!at |to ).+ (?:at|to|towards?) .+")
 """A thing is pointed at another; only the other is an object of the step."""
 
@@ -151,8 +152,12 @@ def _is_same_verb(said: str, verb: str) -> bool:
 
 
 def _with_things(knowledge: Knowledge, parse: Parse) -> Parse | None:
+    """Return a parse with classes for its things; where a thing is taken from means nothing to other acts."""
     action, names = parse
-    things = [thing_of(knowledge, name.replace("_", " ")) for name in names]
+    said = [name.replace("_", " ") for name in names]
+    if action.name not in knowledge.group(_TAKES) and any(is_taken_from(knowledge, each) for each in said):
+        return None
+    things = [thing_of(knowledge, each) for each in said]
     return (action, tuple(thing for thing in things if thing)) if all(things) else None
 
 

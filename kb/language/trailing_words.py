@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.adjectives import without_adjective
 from hearth.kb.language.lexicon import is_verb, verb_lemmas
-from hearth.kb.language.noun_phrases import thing_of
+from hearth.kb.language.noun_phrases import thing_of, without_source
 
 ADVERBS = (
     "a bit", "a little", "a little bit", "again", "all the way", "aloud", "at once", "briefly", "calmly", "carefully",
@@ -151,6 +151,8 @@ def shortened(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
             yield text[: match.start()], text[match.start() :].strip()
     for match in reversed(list(_ALL.finditer(text))):
         yield text[: match.start()] + text[match.end() :], "all"
+    if found := without_source(known, text):
+        yield found[0] + found[2], found[1]
     yield from _without_place(known, text)
     yield from without_adjective(known, text)
 

@@ -21,9 +21,41 @@ _CORRECTS = re.compile(
 """The beginning of a request that is about the answer before it."""
 
 
+_AGREES = (
+    r"(?:ok|okay|yes|yeah|yep|great|good|nice|perfect|cool|super|awesome|excellent|wonderful|thanks?|thank you|thx"
+    r"|cheers|bye|goodbye|got it|sure|fine|right|alright)"
+)
+_ACCEPTS = re.compile(
+    rf"(?:(?:{_AGREES}|continue|go on|next|and then|and|then|now|what(?:['’]s| is)?|job|work|step|plan|one"
+    r"|that(?:['’]s| is)|it(?:['’]s| is)|works?|helps?|looks?|very|so|a lot|much|for|the|your|help|you|all)\b\W*)+",
+    re.IGNORECASE,
+)
+"""A request that takes the answer before it as it is, or asks how that goes on."""
+
+_AFTER_THANKS = re.compile(rf"(?:{_AGREES}\b\W+)+(?:and\s+)?(?:now|next|then)\b\W*", re.IGNORECASE)
+"""The words before a new task, which take the last answer as it is."""
+
+
+def corrects(asked: str) -> bool:
+    """Return whether a request is about the answer before it."""
+    asked = asked.strip()
+    task = _AFTER_THANKS.match(asked)
+    return _CORRECTS.match(asked, task.end() if task and task.end() < len(asked) else 0) is not None
+
+
+def rejects(asked: str) -> bool:
+    """Return whether a request asks for another answer to the question before it."""
+    return corrects(asked) and not accepts(asked)
+
+
+def accepts(asked: str) -> bool:
+    """Return whether a request takes the answer before it as it is."""
+    return _ACCEPTS.fullmatch(asked.strip()) is not None
+
+
 def titled(asked: Sequence[str]) -> dict[str, str]:
     """Return the title of a chat and its description, by the requests in it: a correction is a part of the latter."""
-    about = next((n for n in reversed(range(len(asked))) if not n or not _CORRECTS.match(asked[n].strip())), 0)
+    about = next((n for n in reversed(range(len(asked))) if not n or not corrects(asked[n])), 0)
     first, _, rest = (asked[about] if asked else "").strip().partition("\n")
     said = [each.strip() for each in (rest, *asked[about + 1 :]) if each.strip()]
     return {

@@ -4,7 +4,7 @@ from typing import Any
 
 from hearth.kb.language.forms.orders import orders_in
 from hearth.kb.language.program_lines import is_plan
-from hearth.pipelines.readers.chat_titles import titled
+from hearth.pipelines.readers.chat_titles import accepts, titled
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
 
 
@@ -37,10 +37,29 @@ def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the last answer of a chat, with the request that it answers as title."""
     if ordered := _ordered(messages):
         return {"steps": ordered}
-    last = max((at for at, each in enumerate(messages) if each["role"] == "assistant"), default=None)
+    last = _last_answer(messages)
     asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
     answer = _answer(messages[last]) if last is not None else {}
     return {**titled(asked if answer else asked[-1:]), **answer}
+
+
+def _last_answer(messages: list[dict[str, Any]]) -> int | None:
+    """Return the index of the last answer of a chat; one that only answers thanks counts where nothing else is said."""
+    answers = [at for at, each in enumerate(messages) if each["role"] == "assistant"]
+    plans = [at for at in answers if not _answers_thanks(messages, at)]
+    return max(plans or answers, default=None)
+
+
+def _answers_thanks(messages: list[dict[str, Any]], at: int) -> bool:
+    """Return whether a message without a plan answers one that takes the plan before it as it is."""
+    before = [_said(each.get("content")) for each in messages[:at] if each["role"] == "user"]
+    is_answer = len(before) > 1 and accepts(before[-1]) and not _are_calls(messages[at].get("tool_calls"))
+    return is_answer and not is_plan(_said(messages[at].get("content")).split("\n"))
+
+
+def holds_orders(messages: list[dict[str, Any]]) -> bool:
+    """Return whether the steps of a chat are the orders that one gives in it."""
+    return bool(_ordered(messages))
 
 
 def _ordered(messages: list[dict[str, Any]]) -> list[str]:

@@ -21,6 +21,7 @@ from hearth.pipelines.readers import (
     release,
     scene_graphs,
     sketches,
+    text_chats,
     yaml_documents,
 )
 from hearth.pipelines.readers.json_actions import is_only_action
@@ -215,13 +216,20 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return Recognised(path, place, yaml_documents.NAME)
     if suffix in _YAML:
         return _refused(path, place, "a YAML file, which holds no programs")
-    if first and is_plan(first):
-        return Recognised(path, place, natural_language_plans.NAME)
+    if reader := _reader_of_words(path, first):
+        return Recognised(path, place, reader)
     if any(map(_ENCLOSED.match, first)) and enclosed_json.holds_programs(path, place):
         return Recognised(path, place, enclosed_json.NAME)
     if suffix not in _TEXT | _JSON | _TABLES and not any(plan_line(line).bracketed for line in first):
         return _refused(path, place, "a text without a step")
     return Recognised(path, place, program_text.NAME)
+
+
+def _reader_of_words(path: Place, first: list[str]) -> str:
+    """Return the reader of a text whose steps are words; empty where they are not."""
+    if text_chats.is_chat(path, first):
+        return text_chats.NAME
+    return natural_language_plans.NAME if first and is_plan(first) else ""
 
 
 def _suffix(path: Place) -> str:

@@ -40,3 +40,29 @@ def test_places_and_all_are_counted(knowledge, sentence, step, out):
 def test_the_place_from_which_a_thing_is_taken_belongs_to_the_phrase(knowledge):
     lines, found = read(knowledge, "Take the milk out of the fridge", "Grab a mug from the kitchen cabinet")
     assert lines == ["[Grab] <milk> (1)", "[Grab] <mug> (1)"] and not found.warnings
+
+
+@pytest.mark.parametrize(
+    ("sentence", "step", "out"),
+    [
+        ("Fill the kettle with water from the sink", "[Pour] <water> (1) <kettle> (1)", "from the sink"),
+        ("Fill the glass with water from the tap", "[Pour] <water> (1) <glass> (1)", "from the tap"),
+        ("Pour milk from the fridge into the glass", "[Pour] <milk> (1) <glass> (1)", "from the fridge"),
+        ("Pour the milk from the carton into the glass", "[Pour] <milk> (1) <glass> (1)", "from the carton"),
+        ("Put the milk from the fridge on the table", "[PutBack] <milk> (1) <table> (1)", "from the fridge"),
+        ("Read the book from the bookshelf", "[Read] <book> (1)", "from the bookshelf"),
+        ("Wash the cup in the sink with soap", "[Wash] <cup> (1)", "in the sink with soap"),
+    ],
+)
+def test_where_a_thing_is_from_is_counted_where_nothing_is_taken(knowledge, sentence, step, out):
+    lines, found = read(knowledge, sentence)
+    assert lines == [step] and out in found.warnings[0].message
+    assert not read(knowledge, sentence, fuzzy=Fuzzy.OFF)[0]
+
+
+@pytest.mark.parametrize(
+    "sentence", ["Fill the glass with milk from the moon", "Pour milk from the glass from the cup"]
+)
+def test_an_unknown_source_is_not_left_out(knowledge, sentence):
+    lines, found = read(knowledge, sentence)
+    assert not lines and len(found.faults) == 1
