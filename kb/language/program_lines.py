@@ -340,7 +340,7 @@ def _parts(line: PlanLine) -> Iterator[PlanLine]:
     if not line.bracketed and (step := operator_step(line.text)):
         yield line._replace(text=step)
         return
-    if (owner := _OWNER.match(line.text)) and is_like_step(owned := line.text[owner.end() :]) and " " in owned:
+    if (owner := _OWNER.match(line.text)) and _is_of_steps(owned := line.text[owner.end() :]):
         line = line._replace(text=owned)
     if not _SEVERAL.search(line.text) and " then " not in line.text:
         yield line
@@ -351,6 +351,10 @@ def _parts(line: PlanLine) -> Iterator[PlanLine]:
         for part in parts:
             if part.strip():
                 yield line._replace(text=operator_step(part.strip()) or part.strip())
+
+
+def _is_of_steps(text: str) -> bool:
+    return " " in text and (is_like_step(text) or bool(operator_step(CHAIN.split(text, maxsplit=1)[0])))
 
 
 def _numbered(text: str, number: int) -> Iterator[str]:

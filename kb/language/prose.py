@@ -8,7 +8,7 @@ from hearth.kb.language.unmarked_lines import is_like_step, sentences
 
 _GREETING = re.compile(r"(?:hi|hello|hey|dear|good (?:morning|evening|day))\b[^.!?:]{0,40}[,!]", re.IGNORECASE)
 _FAREWELL = re.compile(
-    r"(?:(?:cheers|regards|(?:many )?thanks|thank you|love|yours|sincerely|(?:best|kind|warm) (?:regards|wishes)"
+    r"(?:(?:cheers|regards|(?:many )?thanks|thank you|love|yours|sincerely|best|(?:best|kind|warm) (?:regards|wishes)"
     r"|bye|see you)\b[^.!?:]{0,30})[,!.]?",
     re.IGNORECASE,
 )

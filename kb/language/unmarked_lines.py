@@ -176,7 +176,7 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
         below: the lines below it, which are steps.
         is_apart: whether a blank line stands below it.
     """
-    if not below or chained(text) or len(text) > 80:
+    if not below or chained(text) or len(text) > 80 or _are_sentences_of_steps(text):
         return False
     if len(below) == 1 and is_like_step(text):
         return len(sentences(below[0])) > 1 or bool(chained(below[0]))
@@ -190,6 +190,11 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
     if ends >= _WHOLE * len(below):
         return not is_sentence(text)
     return len(below) > 1 and text[:1].isupper() and all(line[:1].islower() for line in below)
+
+
+def _are_sentences_of_steps(text: str) -> bool:
+    parts = sentences(text)
+    return len(parts) > 1 and all(map(is_like_step, parts))
 
 
 def _are_steps(parts: Sequence[str]) -> bool:

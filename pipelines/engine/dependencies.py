@@ -73,11 +73,14 @@ def _read(file: str) -> tuple[frozenset[str], frozenset[str]]:
     return frozenset(imports(text)), frozenset(_data(text))
 
 
+_REMARK = re.compile(r"#[^\n]*")
+
+
 def imports(text: str) -> Iterator[str]:
     """Yield the modules that a source imports, and the names imported from them, which may be modules too."""
     for source, names, module in _IMPORT.findall(_TYPES_ONLY.sub("", text) if "if TYPE_CHECKING" in text else text):
         yield source or module
-        yield from (f"{source}.{name}" for name in _NAME.findall(names))
+        yield from (f"{source}.{name}" for name in _NAME.findall(_REMARK.sub("", names)))
 
 
 def _data(text: str) -> Iterator[str]:

@@ -66,19 +66,27 @@ def _quoted(text: str, listed: str) -> list[str]:
 
 def numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[str, Places]:
     """Return steps in words as a text with a title, and the places of its lines."""
-    top = f"Task: {words['title'] or 'Untitled'}\n{words['description'] or ''}".split("\n")
+    listed = [step for step in listed if step.strip()]
+    title = words["title"] or _heading(listed)
+    listed = listed if words["title"] or not title else listed[1:]
+    top = f"Task: {title or 'Untitled'}\n{words['description'] or ''}".split("\n")
     found: list[str] = []
     places: list[list[int]] = []
     for step in listed:
-        if step.strip():
-            said = " ".join((plan_line(step).text or step).split())
-            lead = f"Step {len(found) + 1}: "
-            found.append(lead + said)
-            places += places_of(pieces_of(step, [said])[0], len(lead))[:1]
+        said = " ".join((plan_line(step).text or step).split())
+        lead = f"Step {len(found) + 1}: "
+        found.append(lead + said)
+        places += places_of(pieces_of(step, [said])[0], len(lead))[:1]
     first = places[:1] or [[0, 1, 1]]
     return "\n".join([*top, *found]), [*first * len(top), *places] if any(
         isinstance(step, Text) for step in listed
     ) else None
+
+
+def _heading(listed: Sequence[str]) -> str:
+    """Return the heading above steps, `# Sweep the floor`; empty where the first text is none."""
+    first = plan_line(listed[0]) if len(listed) > 1 else None
+    return first.text if first and first.heading and first.number is None else ""
 
 
 def places_of(text: str, skip: int) -> list[list[int]]:

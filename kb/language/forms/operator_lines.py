@@ -9,7 +9,7 @@ from hearth.kb.language.operators import operator_step
 from hearth.kb.language.plan_lines import PlanLine, plan_line
 from hearth.kb.language.unmarked_lines import is_like_step
 
-_ITEM = re.compile(r"\s*(?:[-*+•]|\d{1,3}[.):])\s+")
+_ITEM = re.compile(r"\s*(?:[-*+•]|(?:step\s*)?\d{1,3}\s*[.):])\s+", re.IGNORECASE)
 _LAYOUT = re.compile(r"[\w ]{0,40}[=:]?\s?[\[({]|[\])};,]{1,9}|[A-Z]{3,8}|</?\w+[^<>]*>|`{3}.*|#.*|")
 _PROGRAM = re.compile(r"\s*(?:<\w+>\s*)?\[[A-Za-z ]+\]\s*(?:<|$)")
 """A step in the syntax of programs, which is read as such."""
@@ -36,10 +36,14 @@ def _fits(lines: Sequence[str]) -> bool:
 def _lines(lines: Sequence[str]) -> list[Placed]:
     found: list[Placed] = []
     begun = False
+    tags = {tag[1] for raw in lines if (tag := _TAG.match(raw)) and _steps(raw)}
     for row, raw in enumerate(lines):
         steps, read = _steps(raw), plan_line(raw)
+        tag = _TAG.match(raw)
         if steps:
             found += [step(row, each) for each in steps]
+        elif (tag and tag[1] in tags) or (read.numbered and read.text and not read.heading):
+            found.append(step(row, read.text or raw))
         elif read.heading or not read.text or not begun:
             found.append(Placed(row, read._replace(number=None, numbered=False)))
         elif _LAYOUT.fullmatch(raw.strip()) and not _ELEMENT.match(raw):
@@ -51,6 +55,9 @@ def _lines(lines: Sequence[str]) -> list[Placed]:
         begun = begun or bool(steps)
     return found
 
+
+_TAG = re.compile(r"\s*<(\w+)\s[^<>]*/>\s*$")
+"""An element without contents, whose attributes are an action and its things where it is a step."""
 
 _ELEMENT = re.compile(r"\s*<\w+[^<>]*/>|\s*[A-Z]{3,}\s+\S")
 
