@@ -31,6 +31,7 @@ from hearth.schemas.program import Program
 from hearth.schemas.row_types import DifferenceRow, Row
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import CASE
+from hearth.storage.batch_sizes import ENVIRONMENTS_MEASURED
 from hearth.storage.rejects import Reject
 
 ANY_HOME = "any home"
@@ -179,8 +180,6 @@ def _in_every_home(
 class _Stored:
     """Measures the bytes of environments in Parquet, written to memory in row groups as in the tables."""
 
-    _FULL = 500
-
     def __init__(self) -> None:
         self._schema = pa.schema([CASE.field("environment")])
         self._rows: list[Row] = []
@@ -190,7 +189,7 @@ class _Stored:
     def add(self, environments: list[DifferenceRow]) -> None:
         """Add environments."""
         self._rows.extend({"environment": environment} for environment in environments)
-        if len(self._rows) >= self._FULL:
+        if len(self._rows) >= ENVIRONMENTS_MEASURED:
             self._flush()
 
     def _flush(self) -> None:

@@ -27,7 +27,8 @@ from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, records_of
 from hearth.pipelines.engine.tiers import TIERS
-from hearth.storage.partitions import READ_BATCH, read_rows, write_table
+from hearth.storage.batch_sizes import ROWS_READ
+from hearth.storage.partitions import read_rows, write_table
 
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = (ROOT / "data_raw/crowd/descriptions.csv", ROOT / "data_raw/crowd/programs.csv")
@@ -141,12 +142,12 @@ def _addressed(output: Any) -> tuple[str, Any]:
 
 
 def _stored(found: list[Any], schema: pa.Schema, path: Path) -> Iterator[Callable[[], object]]:
-    shares = [found[at : at + READ_BATCH] for at in range(0, len(found), READ_BATCH)]
+    shares = [found[at : at + ROWS_READ] for at in range(0, len(found), ROWS_READ)]
     batches = [pa.RecordBatch.from_pylist(share, schema) for share in shares]
     table = pa.Table.from_batches(batches)
     yield from (lambda share=share: pa.RecordBatch.from_pylist(share, schema) for share in shares)
     yield lambda: write_table(path, table)
-    yield lambda: list(pq.ParquetFile(path).iter_batches(batch_size=READ_BATCH))
+    yield lambda: list(pq.ParquetFile(path).iter_batches(batch_size=ROWS_READ))
     yield from (batch.to_pylist for batch in batches)
 
 

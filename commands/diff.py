@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
+from hearth.commands.time_limits import WITHIN
 
 if TYPE_CHECKING:
     from hearth.datasets.diff import TableDifference
 
 
 def diff(
-    first: Path, second: Path, rows: int = 5, strict: bool = False, as_json: bool = False, within: float = 3600
+    first: Path, second: Path, rows: int = 5, strict: bool = False, as_json: bool = False, within: float = WITHIN
 ) -> None:
     """Print the differences between two datasets, by table and by row.
 

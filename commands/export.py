@@ -5,6 +5,7 @@ from pathlib import Path
 import typer
 
 from hearth.commands import output
+from hearth.commands.time_limits import WITHIN
 
 
 def export(
@@ -15,7 +16,7 @@ def export(
     limit: int | None = None,
     failures: bool = False,
     as_json: bool = False,
-    within: float = 3600,
+    within: float = WITHIN,
 ) -> None:
     """Write a published dataset in another form.
 

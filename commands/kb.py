@@ -9,6 +9,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
+from hearth.commands.time_limits import WITHIN
 from hearth.schemas.diagnostics import HearthError
 
 if TYPE_CHECKING:
@@ -177,7 +178,7 @@ def mine(
     confidence: float = 0.3,
     kb: Path | None = None,
     as_json: bool = False,
-    within: float = 3600,
+    within: float = WITHIN,
 ) -> None:
     """Propose new facts from a dataset's programs, as lines to review and add.
 

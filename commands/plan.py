@@ -16,9 +16,9 @@ def plan(dataset: Path, problems: int = 200, workers: int = 0, as_json: bool = F
     Example:
       hearth plan data_out --problems 20
     """
+    from hearth.analysis.planner_agreement import agreement
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
-    from hearth.datasets.export.planner_agreement import agreement
 
     with bar("problems") as seen:
         found = agreement(Dataset.open(dataset), problems, workers, seen)

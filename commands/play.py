@@ -11,6 +11,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.inputs import read_goals, read_home, read_knowledge
+from hearth.commands.time_limits import ANSWER_WITHIN
 from hearth.schemas.terminal import shown_line
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def play(
     full: bool = False,
     messages: bool = False,
     ticks: int = 250,
-    within: float = 30.0,
+    within: float = ANSWER_WITHIN,
     form: str = "graph",
     graph: Path | None = None,
     homes: Path | None = None,

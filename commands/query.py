@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from hearth.commands import output
+from hearth.commands.time_limits import QUERY_WITHIN
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.terminal import shown_json
 
@@ -26,7 +27,7 @@ def query(
     parquet: Path | None = None,
     out: Path | None = None,
     as_json: bool = False,
-    within: float = 60,
+    within: float = QUERY_WITHIN,
 ) -> None:
     """Query a published dataset in SQL.
 

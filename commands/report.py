@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from hearth.commands import output
+from hearth.commands.time_limits import WITHIN
 
 
 def report(
@@ -11,7 +12,7 @@ def report(
     replays: int = 16,
     workers: int = 0,
     as_json: bool = False,
-    within: float = 3600,
+    within: float = WITHIN,
 ) -> None:
     """Write a dataset as one folder of static HTML; open its index.html, without a network or server.
 

@@ -4,9 +4,12 @@ import sys
 from pathlib import Path
 
 from hearth.commands import output
+from hearth.commands.time_limits import WITHIN
 
 
-def verify(dataset: Path, workers: int = 0, strict: bool = False, as_json: bool = False, within: float = 3600) -> None:
+def verify(
+    dataset: Path, workers: int = 0, strict: bool = False, as_json: bool = False, within: float = WITHIN
+) -> None:
     """Check a dataset: hashes, columns, counts, references, and a replay of every execution.
 
     The status is 1 if there is a fault; each is printed with its file. The catalog is made again and compared. Files

@@ -19,11 +19,10 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import without_zones
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.batch_sizes import ROWS_OF_AN_ANSWER
 from hearth.storage.csv_files import rows_writer
 from hearth.storage.files import replacing
 from hearth.storage.names import numbered
-
-_BATCH = 2_048
 
 
 def plain(value: Any) -> Any:
@@ -75,7 +74,7 @@ def write_separated(
     Raises:
         HearthError: as of `Dataset.sql`.
     """
-    columns, batches = dataset.batches(query, _BATCH, **asked)
+    columns, batches = dataset.batches(query, ROWS_OF_AN_ANSWER, **asked)
     write, number, first = rows_writer(to, separator), 0, next(batches, None)
     write([distinct(columns)])
     for batch in () if first is None else chain([first], batches):
@@ -112,7 +111,7 @@ def document(dataset: Dataset, query: str) -> Iterator[str]:
     Raises:
         HearthError: as of `Dataset.rows`.
     """
-    columns, batches = dataset.batches(query, _BATCH)
+    columns, batches = dataset.batches(query, ROWS_OF_AN_ANSWER)
     names, begun = distinct(columns), False
     for batch in batches:
         text = orjson.dumps(_records(names, batch), option=orjson.OPT_INDENT_2).decode()
@@ -132,7 +131,7 @@ def _tsv(dataset: Dataset, query: str, path: Path) -> int:
 
 
 def _json(dataset: Dataset, query: str, path: Path) -> int:
-    columns, batches = dataset.batches(query, _BATCH)
+    columns, batches = dataset.batches(query, ROWS_OF_AN_ANSWER)
     names, number = distinct(columns), 0
     with path.open("wb") as file:
         for batch in batches:
@@ -144,7 +143,7 @@ def _json(dataset: Dataset, query: str, path: Path) -> int:
 
 
 def _parquet(dataset: Dataset, query: str, path: Path) -> int:
-    reader = without_zones(dataset.sql(query)).to_arrow_reader(_BATCH)
+    reader = without_zones(dataset.sql(query)).to_arrow_reader(ROWS_OF_AN_ANSWER)
     number = 0
     with pq.ParquetWriter(path, reader.schema) as file:
         for batch in reader:

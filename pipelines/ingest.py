@@ -18,7 +18,7 @@ from hearth.pipelines.engine.build_context import knowledge
 from hearth.pipelines.engine.salt_record import salt_changed
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.sources import labelled, salt
-from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
+from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.pipelines.readers import (
     crowd,
     enclosed_json,
@@ -42,6 +42,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import INGESTED
 from hearth.storage.archives import DamagedError
+from hearth.storage.batch_sizes import RECORDS_CONVERTED
 from hearth.storage.files import value_digest
 from hearth.storage.names import inside, numbered
 from hearth.storage.partitions import Counts
@@ -89,10 +90,14 @@ WEIGHTS = {
     release.NAME: 256,
     scene_graphs.NAME: 1024,
 }
-"""The weight of a record in filling a partition, by reader; others weigh `_USUAL`."""
+"""The weight of a record in filling a partition, by reader; others weigh `OTHER_WEIGHT`."""
 
-_USUAL = 64
-_FULL = 8_192
+OTHER_WEIGHT = 64
+"""The weight of a record of any other reader, such as a row of a CSV."""
+
+FULL_PARTITION = 8_192
+"""The weight at which a partition is full: 128 rows of a CSV, 8,192 programs as text, 2,048 plans or records of JSON,
+32 programs of a release, or 8 scene graphs."""
 
 
 def items(
@@ -184,12 +189,12 @@ def _partitions(job: Job) -> Iterator[Partition]:
     columns = read_columns(job.settings.columns)
     found_items = items(labelled(job.settings.sources), columns, job.context.columns, job.settings.time_limit)
     for found in _limited(found_items, job.settings.limit):
-        if share and (weight >= _FULL or share[0][0] != found[0]):
+        if share and (weight >= FULL_PARTITION or share[0][0] != found[0]):
             yield _partition(number, share)
             number += 1
             share, weight = [], 0
         share.append(found)
-        weight += WEIGHTS.get(found[1].reader, _USUAL)
+        weight += WEIGHTS.get(found[1].reader, OTHER_WEIGHT)
     if share:
         yield _partition(number, share)
 
@@ -320,6 +325,6 @@ STAGE = Stage(
     records=records,
     finish=write_scenes,
     facts=lambda job: {"columns": job.context.columns, "guesses": guesses(job.context.columns)},
-    batch=lambda partition: max(BATCH, (partition.size or 0) // 16),
+    batch=lambda partition: max(RECORDS_CONVERTED, (partition.size or 0) // 16),
     labels=lambda row: (row["kind"],),
 )

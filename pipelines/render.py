@@ -24,9 +24,10 @@ from hearth.schemas.optional_libraries import lacking
 from hearth.schemas.row_types import PinholeRow, TrackRow
 from hearth.schemas.stage_rows import CaseRow, ClippedRow, DemonstratedRow, FilmedRow, RenderedRow
 from hearth.schemas.tables import CLIPPED, DEMONSTRATED, FILMED, RENDERED
+from hearth.storage.batch_sizes import ROWS_READ
 from hearth.storage.files import value_digest, write_bytes
 from hearth.storage.manifest import read_manifest
-from hearth.storage.partitions import READ_BATCH, read_rows
+from hearth.storage.partitions import read_rows
 
 if TYPE_CHECKING:
     from hearth.rendering.cameras.camera import Camera
@@ -324,7 +325,7 @@ def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
         wanted = pa.array([execution for execution, file in left.items() if file == name])
         count = len(wanted)
         with pq.ParquetFile(job.settings.folder("sample") / name) as file:
-            for batch in file.iter_batches(batch_size=READ_BATCH):
+            for batch in file.iter_batches(batch_size=ROWS_READ):
                 rows = batch.filter(pc.is_in(batch["execution_id"], wanted)).to_pylist()
                 yield from rows
                 count -= len(rows)

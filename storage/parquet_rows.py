@@ -5,6 +5,7 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.batch_sizes import ROWS_OF_STRANGERS
 from hearth.storage.input_files import LARGEST_TABLE
 
 HARMLESS_ROWS = 1_000_000
@@ -13,8 +14,8 @@ HARMLESS_ROWS = 1_000_000
 MOST_PACKED = 200
 """Largest ratio of a file's contents to its size, once the contents exceed `LARGEST_TABLE` bytes."""
 
-BATCH = 1_000
-"""Rows in memory at a time, where none is large."""
+BATCH = ROWS_OF_STRANGERS
+"""Its name in 0.2."""
 
 _HELD = 64 << 20
 """Bytes that a column of such rows may take, if each row has the largest value that the column's part has room for."""
@@ -68,7 +69,7 @@ def _at_once(footer: Any) -> int:
     """Return how many rows are read at a time: a text that a part has once, all its rows may have."""
     # Of whole row groups: to ask for the parts of a column ends the process if their statistics are damaged.
     sizes = [footer.row_group(number).total_byte_size for number in range(footer.num_row_groups)]
-    return int(max(1, min(BATCH, _HELD // max(1, *sizes, 1))))
+    return int(max(1, min(ROWS_OF_STRANGERS, _HELD // max(1, *sizes, 1))))
 
 
 def _too_large(message: str, name: str) -> HearthError:

@@ -21,10 +21,12 @@ import pyarrow.parquet as pq
 
 from hearth.schemas.row_types import Row
 from hearth.schemas.tables import REJECTED
+from hearth.storage.batch_sizes import ROWS_OF_A_GROUP, ROWS_READ
 from hearth.storage.files import TEMPORARY, commit
 
-ROW_GROUP = 512
-READ_BATCH = 64
+ROW_GROUP = ROWS_OF_A_GROUP
+READ_BATCH = ROWS_READ
+"""The names of both in 0.2."""
 _META = b"hearth"
 
 
@@ -97,7 +99,7 @@ def rejects_path(folder: Path, number: int) -> Path:
 def read_rows(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
     """Yield the rows of a Parquet file, or of them these columns; a batch in memory at a time."""
     with pq.ParquetFile(path) as file:
-        for batch in file.iter_batches(batch_size=READ_BATCH, columns=columns):
+        for batch in file.iter_batches(batch_size=ROWS_READ, columns=columns):
             yield from batch.to_pylist()
 
 
@@ -162,7 +164,7 @@ class _File:
 
     def write(self, batch: pa.RecordBatch) -> None:
         self._waiting.append(batch)
-        if sum(len(waiting) for waiting in self._waiting) >= ROW_GROUP:
+        if sum(len(waiting) for waiting in self._waiting) >= ROWS_OF_A_GROUP:
             self._flush()
 
     def _flush(self) -> None:
@@ -183,7 +185,7 @@ class _File:
 
 def write_table(path: Path, table: pa.Table) -> None:
     """Write a small table whole, in the stages' way."""
-    write_batches(path, table.schema, table.to_batches(ROW_GROUP))
+    write_batches(path, table.schema, table.to_batches(ROWS_OF_A_GROUP))
 
 
 def write_batches(path: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatch]) -> None:

@@ -8,7 +8,7 @@ from hearth.schemas.failures import Code
 from hearth.web.web_errors import WebError
 
 MOST_BODY = 256 * 1024
-"""Bytes of a request's body, unless its address says otherwise."""
+"""Bytes of a request's body, such as an upload, unless its address says otherwise."""
 
 MOST_FIELDS = 2_000
 """Fields of a form."""

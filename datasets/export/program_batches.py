@@ -10,8 +10,7 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.published_program import Run
 from hearth.schemas.published_rows import ProgramRow
-
-_BATCH = 128
+from hearth.storage.batch_sizes import PROGRAMS_EXPORTED
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +67,7 @@ def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]
     """Yield the rows of a query."""
     # A separate cursor: a connection has one open result, and homes are read meanwhile.
     with reading(dataset.folder), dataset.connection.cursor() as cursor:
-        for batch in cursor.sql(query, params=asked or None).to_arrow_reader(_BATCH):
+        for batch in cursor.sql(query, params=asked or None).to_arrow_reader(PROGRAMS_EXPORTED):
             yield from batch.to_pylist()
 
 

@@ -10,7 +10,7 @@ STAMP = {"action_set": ACTION_SET, "dataset_version": VERSION}
 """Version columns of every published row."""
 
 TRAIN, VALIDATION = 7, 1
-"""Numbers of activities out of ten for training and for validation; the others are for tests (thesis 5.6: 7:3)."""
+"""Shares of train, validation and test: 7, 1 and 2 of ten activities (thesis 5.6: 7:3)."""
 
 
 OURS = r"^(?:crowd|written)(:3[DP][0-9]{4}[0-9A-Z]{5})\b"

@@ -15,6 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hearth.schemas.tables import TABLES
+from hearth.storage.batch_sizes import PICTURES_COPIED
 from hearth.storage.partitions import write_batches
 
 FOLDER: Final = "frames/images"
@@ -35,9 +36,6 @@ SCHEMA: Final = pa.schema(
 
 _ENTRY: Final = ("file", IMAGE)
 
-BATCH = 32
-"""Pictures in memory at a time."""
-
 
 def write_images(folder: Path) -> None:
     """Write a file with pictures for each file of `frames` that has rows."""
@@ -48,7 +46,7 @@ def write_images(folder: Path) -> None:
 
 def _with_images(folder: Path, path: Path) -> Iterator[pa.RecordBatch]:
     with pq.ParquetFile(path) as file:
-        for batch in file.iter_batches(batch_size=BATCH):
+        for batch in file.iter_batches(batch_size=PICTURES_COPIED):
             rows = batch.to_pylist()
             images = [{"bytes": (folder / row["file"]).read_bytes(), "path": row["file"]} for row in rows]
             with_images = [{**row, IMAGE: image} for row, image in zip(rows, images, strict=True)]
@@ -75,7 +73,7 @@ def other_images(folder: Path, files: Mapping[str, Any]) -> Iterator[tuple[Path,
 
 def _entries(path: Path) -> Iterator[dict[str, Any]]:
     with pq.ParquetFile(path) as file:
-        for batch in file.iter_batches(batch_size=BATCH, columns=[*_ENTRY]):
+        for batch in file.iter_batches(batch_size=PICTURES_COPIED, columns=[*_ENTRY]):
             yield from batch.to_pylist()
 
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
-from hearth.kb.language.forms import form_of, form_of_line
 from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Form, Placed
+from hearth.kb.language.forms.form_registry import form_of, form_of_line
 from hearth.kb.language.line_parts import listed
 from hearth.kb.language.marked_lines import marked
 from hearth.kb.language.nested_items import is_head

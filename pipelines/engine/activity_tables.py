@@ -17,6 +17,7 @@ from hearth.datasets.format.ids import activity_id
 from hearth.schemas.published_rows import ActivityRow, DescriptionRow, ProgramRow
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import TABLES
+from hearth.storage.batch_sizes import DESCRIPTIONS_SORTED
 
 COUNTED = ["activity_id", "title", "parent_id", "description_id"]
 """The columns of programs that are counted."""
@@ -26,9 +27,6 @@ _WORDS = [name for name in DescriptionRow.__annotations__ if name not in ("activ
 
 _DESCRIBING = ("program", "description")
 """The kinds of ingested rows that have a description."""
-
-_BATCH = 4_096
-"""Descriptions that are rows at a time; otherwise they are columns, of a fifth of the size."""
 
 Ingested = Callable[[list[str]], Iterable[IngestedRow]]
 """Gives some columns of the ingested rows, in their order; called twice."""
@@ -76,8 +74,8 @@ class Activities:
 
     def _described(self) -> Iterator[DescriptionRow]:
         """Yield the descriptions in the order of their ids, without the number of their programs."""
-        for start in range(0, len(self._order), _BATCH):  # a sorted copy of all would be as large again
-            yield from self._words.take(pa.array(self._order[start : start + _BATCH])).to_pylist()
+        for start in range(0, len(self._order), DESCRIPTIONS_SORTED):  # a sorted copy of all would be as large again
+            yield from self._words.take(pa.array(self._order[start : start + DESCRIPTIONS_SORTED])).to_pylist()
 
     def _gather(self, row: DescriptionRow) -> None:
         """Count a description under its activity."""
@@ -132,7 +130,7 @@ def _words(ingested: Iterable[IngestedRow], numbers: NDArray[np.int64]) -> pa.Ta
     schema = pa.schema([TABLES["descriptions"].field(name) for name in _WORDS])
     kept: list[pa.RecordBatch] = []
     rows = _numbered(ingested, numbers)
-    while share := list(islice(rows, _BATCH)):
+    while share := list(islice(rows, DESCRIPTIONS_SORTED)):
         kept.append(pa.RecordBatch.from_pylist(share, schema))
     return pa.Table.from_batches(kept, schema)
 

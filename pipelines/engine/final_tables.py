@@ -35,12 +35,14 @@ from hearth.schemas.row_types import Row
 from hearth.schemas.tables import TABLES
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
 from hearth.simulation.world.world import World
+from hearth.storage.batch_sizes import ROWS_OF_A_FINAL_TABLE
 from hearth.storage.files import replacing, sync_folder, write_json
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts, part_path, read_rows, write_batches
 from hearth.storage.repeated_ids import repeated
 
-BATCH = 4_096
+BATCH = ROWS_OF_A_FINAL_TABLE
+"""Its name in 0.2."""
 
 
 def finish(job: Job, counts: Counts) -> None:
@@ -80,7 +82,7 @@ def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row]) -> None:
     """Write a table from rows, each stamped with the versions it belongs to."""
     path.parent.mkdir(parents=True, exist_ok=True)
     stamped = ({**row, **STAMP} for row in rows)
-    shares = iter(lambda: list(islice(stamped, BATCH)), [])
+    shares = iter(lambda: list(islice(stamped, ROWS_OF_A_FINAL_TABLE)), [])
     write_batches(path, schema, (pa.RecordBatch.from_pylist(share, schema) for share in shares))
 
 

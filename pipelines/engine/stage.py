@@ -22,6 +22,7 @@ from hearth.pipelines.engine.record_deadline import Deadline, OverTime
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
+from hearth.storage.batch_sizes import RECORDS_CONVERTED
 from hearth.storage.files import value_digest
 from hearth.storage.folder_exchange import beside
 from hearth.storage.partitions import Counts, PartWriter, read_rows
@@ -34,8 +35,8 @@ NOTE = "note"
 
 Output = Row | Reject | tuple[str, Row]
 
-BATCH = 64
-"""Records whose rows are converted to Arrow together, unless a stage sets another number: graphs are large."""
+BATCH = RECORDS_CONVERTED
+"""Its name in 0.2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +104,7 @@ class Stage:
     select: Callable[[Any, Plan], bool] = lambda record, plan: True
     identify: Callable[[Any], str] = lambda record: str(record["program_id"])
     columns: tuple[str, ...] | None = None
-    batch: Callable[[Partition], int] = lambda partition: BATCH
+    batch: Callable[[Partition], int] = lambda partition: RECORDS_CONVERTED
     labels: Callable[[Any], Sequence[str]] = lambda row: ()
     finish: Callable[[Job, Counts], None] | None = None
     facts: Callable[[Job], dict[str, Any]] = lambda job: {}

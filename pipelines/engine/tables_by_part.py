@@ -14,10 +14,8 @@ import pyarrow as pa
 from hearth.datasets.format.ids import STAMP
 from hearth.datasets.format.splits import SHARES, share_of
 from hearth.schemas.row_types import Row
+from hearth.storage.batch_sizes import ROWS_OF_A_PART
 from hearth.storage.partitions import part_path, table_writer
-
-BATCH = 512
-"""Rows of a part that are in memory before they are written."""
 
 
 def write_split_rows(folder: Path, table: str, schema: pa.Schema, rows: Iterable[tuple[str | None, Row]]) -> None:
@@ -47,7 +45,7 @@ class _Share:
 
     def add(self, row: Row) -> None:
         self._waiting.append(row)
-        if len(self._waiting) >= BATCH:
+        if len(self._waiting) >= ROWS_OF_A_PART:
             self.flush()
 
     def flush(self) -> None:

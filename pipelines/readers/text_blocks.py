@@ -8,7 +8,7 @@ from hearth.schemas.program_boundaries import Splitter
 from hearth.schemas.syntax import MAX_LINE
 
 LONGEST_PROGRAM = 1_000_000
-"""Characters of a program at most; of a longer one only the beginning is kept."""
+"""Characters of a program at most, however many steps; of a longer one only the beginning is kept."""
 
 # Possessive quantifiers never backtrack, so that many blank lines take linear time.
 _LEADING = re.compile(r"(?:[^\S\n]*+\n)*+")

@@ -45,7 +45,7 @@ def test_lines_have_every_row_and_nested_values_as_json(dataset, expected, flag,
 
 @pytest.mark.parametrize("size", [1, 3, 10_000])
 def test_files_have_the_same_rows_whatever_is_read_at_once(dataset, expected, tmp_path, size, monkeypatch):
-    monkeypatch.setattr(answers, "_BATCH", size)
+    monkeypatch.setattr(answers, "ROWS_OF_AN_ANSWER", size)
     for name in ("a.csv", "a.tsv", "a.json", "a.parquet"):
         assert run(dataset, SQL, "--out", tmp_path / name).exit_code == 0
     assert [tuple(row.values()) for row in json.loads((tmp_path / "a.json").read_text())] == expected

@@ -10,11 +10,11 @@ import orjson
 import pytest
 
 import hearth
+from hearth.analysis.planner_agreement import helpful
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.diff import compare
 from hearth.datasets.export.formats import FORMATS, export
 from hearth.datasets.export.pddl_problems import tasks
-from hearth.datasets.export.planner_agreement import helpful
 from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.format.case_rows import rerun
 from hearth.datasets.format.stored_cases import stored_cases

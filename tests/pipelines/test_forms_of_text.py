@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.kb.language.forms import FORMS, form_of
+from hearth.kb.language.forms.form_registry import FORMS, form_of
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read

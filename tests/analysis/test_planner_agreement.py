@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import hearth
+from hearth.analysis.planner_agreement import STEP, agreement, chosen, dispensable, executed, helpful, solve
 from hearth.datasets.export.formats import export
 from hearth.datasets.export.pddl_domain import TO_DOOR, planning_domain
 from hearth.datasets.export.pddl_problems import Task, object_names, problem, tasks
-from hearth.datasets.export.planner_agreement import STEP, agreement, chosen, dispensable, executed, helpful, solve
 from hearth.datasets.export.program_batches import Wanted
 from hearth.kb.loading.load import default
 from hearth.schemas.graph import Edge
@@ -38,7 +38,7 @@ def test_one_problem_a_program_is_chosen_from_all_over_a_dataset(ds, monkeypatch
     spread = [name for start in range(min(STEP, len(names))) for name in names[start::STEP]]
     found = [task for name in spread for task in list(tasks(ds, Wanted((name,))))[:1]]
     for asked in (1, 3, 1_000):
-        monkeypatch.setattr("hearth.datasets.export.planner_agreement.ASKED", asked)
+        monkeypatch.setattr("hearth.analysis.planner_agreement.ASKED", asked)
         assert [task.name for task in chosen(ds, 7)] == [task.name for task in found[:7]]
 
 
