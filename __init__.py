@@ -200,7 +200,8 @@ def parse_program(text: str, knowledge: Knowledge | None = None) -> Program:
     """Read a program from text, with canonical names by the grammar (thesis 2.3.3).
 
     The text is an optional title and description, then one instruction a line: `[Action] <object> (instance)`.
-    `schemas.syntax.parse_program` and `kb.action_grammar.check` return faults instead of raising them.
+    `parse_steps` reads plans in words. `schemas.syntax.parse_program` and `kb.action_grammar.check` return faults
+    instead of raising them.
 
     Raises:
         HearthError: all faults of syntax and grammar, with line and column.
@@ -234,8 +235,5 @@ def _with_reader_of_plans(text: str, fault: Diagnostic) -> Diagnostic:
 
     if fault.code not in (Code.EMPTY, Code.SYNTAX) or not is_plan(text.split("\n")):
         return fault
-    remedy = (
-        'a plan in words is read by `parse_steps(text, 0, "", known)` of `hearth.kb.language.numbered_steps`, '
-        "where `known` is `default()` of `hearth.kb.loading.load`, or by `hearth check FILE`"
-    )
+    remedy = "a plan in words is read by `hearth.parse_steps(text)`, or by `hearth check FILE`"
     return replace(fault, suggestion=remedy)

@@ -12,6 +12,7 @@ from hearth.grounding.preconditions.precondition_inference import infer as infer
 from hearth.homes.library import load_graph as load_graph
 from hearth.homes.procedural.home_generator import generate as generate
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.plans_in_words import parse_steps as parse_steps
 from hearth.kb.language.step_understanding import understand as understand
 from hearth.kb.tools.find import Query as Query
 from hearth.kb.tools.find import find as find

@@ -6,7 +6,7 @@ from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import META, PlanLine
 from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
 from hearth.kb.language.title_marks import doubted
-from hearth.kb.language.unmarked_lines import are_steps, chained, is_like_step, is_title, sentences
+from hearth.kb.language.unmarked_lines import are_steps, chained, is_like_step, is_title, reads_as_step, sentences
 from hearth.schemas.program_boundaries import is_sentence
 
 _SIGNED = 3
@@ -82,7 +82,7 @@ def _after_label(text: str) -> str:
 
 def _is_order(text: str, placed: Placed) -> bool:
     """Return whether the one line below a title is a step, and not its description."""
-    return text != placed.line.text or (is_like_step(text) and not is_sentence(text))
+    return text != placed.line.text or (is_like_step(text) and (not is_sentence(text) or reads_as_step(text)))
 
 
 def _steps_on(placed: Placed) -> list[Placed]:

@@ -33,7 +33,7 @@ class Missing(NamedTuple):
     """A clause without one of the objects of its action.
 
     Attributes:
-        question: what it leaves open, `sit down on what?`.
+        question: the open question, in words.
         phrase: the clause with `{}` for the object, `sit down on the {}`.
         action: the action.
         names: the objects that it names, and None for the one that is missing.

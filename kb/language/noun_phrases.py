@@ -31,7 +31,7 @@ _POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
 _SOURCE = re.compile(r"\s+(?:out of|out from|off of|off|from|from inside|from under|from behind)\s+")
 """Before the place from which a thing is taken; a step has no such place, as its world says where the thing is."""
 _VESSEL = re.compile(r"(?:the|a|an|its|their) (?:bag|bottle|box|can|carton|jar|jug|pack|packet|pitcher|tin|tub|tube)")
-"""What a thing is sold or kept in, which is the thing itself: the milk from the carton is a carton of milk."""
+"""Packages, which are the thing in them: the milk from the carton is a carton of milk."""
 
 _NEXT_PLACE = re.compile(r" (?:in|into|on|onto|to|over|with|using)(?= )")
 _PARTS = re.compile(r"(?:the )?(?:doors?|lid) of (?:the |a )?(.+)|(.+?) (?:doors?|lid)")

@@ -30,6 +30,7 @@ from hearth.kb.language.unmarked_lines import is_like_step, is_order, sentences
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.short_repr import brief
 from hearth.schemas.syntax import parse_steps as parse_ticks
 
 
@@ -39,6 +40,9 @@ class ParsedSteps(NamedTuple):
     program: Program
     faults: tuple[Diagnostic, ...]
     warnings: tuple[Diagnostic, ...]
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def parse_steps(text: str, before: int, place: str, known: Knowledge, fuzzy: Fuzzy = Fuzzy.TYPOS) -> ParsedSteps:

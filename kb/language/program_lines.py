@@ -157,7 +157,16 @@ def is_plan(lines: Sequence[str]) -> bool:
     if any(map(_THOUGHT.match, lines)):
         return True
     lines, form = formed(lines)
-    return form is not None or is_list(lines) or _is_joined(lines) or is_unmarked(lines)
+    return form is not None or is_list(lines) or _is_joined(lines) or is_unmarked(lines) or _has_one_item(lines)
+
+
+def _has_one_item(lines: Sequence[str]) -> bool:
+    """Return whether a title stands above a list of one step."""
+    texts = [line for line in map(plan_line, lines) if line.text]
+    return len(texts) == _TITLED and texts[0].number is None and texts[1].number == 0 and is_order(texts[1].text)
+
+
+_TITLED = 2
 
 
 def is_unmarked(lines: Sequence[str]) -> bool:

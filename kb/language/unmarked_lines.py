@@ -7,8 +7,9 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.lexicon import is_noun, is_verb
 from hearth.kb.language.operators import operator_step
-from hearth.kb.language.plan_lines import CHAIN
+from hearth.kb.language.plan_lines import CHAIN, PlanLine
 from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
+from hearth.kb.language.step_phrases import parses
 from hearth.kb.language.title_marks import goes_there, is_gerund
 from hearth.kb.language.typos import near_words
 from hearth.schemas.program_boundaries import is_sentence
@@ -179,7 +180,7 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
     if not below or chained(text) or len(text) > 80 or _are_sentences_of_steps(text):
         return False
     if len(below) == 1 and is_like_step(text):
-        return len(sentences(below[0])) > 1 or bool(chained(below[0]))
+        return len(sentences(below[0])) > 1 or bool(chained(below[0])) or _is_above_one(text, below[0], is_apart)
     if goes_there(text, below):
         return False
     if is_gerund(text) and not all(map(is_gerund, below)):
@@ -195,6 +196,30 @@ def is_title(text: str, below: Sequence[str], is_apart: bool) -> bool:
 def _are_sentences_of_steps(text: str) -> bool:
     parts = sentences(text)
     return len(parts) > 1 and all(map(is_like_step, parts))
+
+
+_FEW = 4
+
+
+def names_task(line: PlanLine) -> bool:
+    """Return whether a plain line is a short order, as titles of tasks are: `Do the dishes`."""
+    text = line.text
+    is_short = len(text.split()) <= _FEW and not is_sentence(text)
+    return is_short and line.number is None and not line.heading and (is_like_step(text) or is_gerund(text))
+
+
+def _is_above_one(text: str, below: str, is_apart: bool) -> bool:
+    """Return whether a line that asks for something is the title of one step: it ends as none does, or means none."""
+    if is_sentence(text) or not reads_as_step(below):
+        return False
+    return not reads_as_step(text) or (is_apart and is_sentence(below))
+
+
+@recognized_cache(maxsize=4096)
+def reads_as_step(text: str) -> bool:
+    """Return whether a line reads exactly as a step about known things."""
+    known = recognition()
+    return any(all(map(known.object_class, names)) for _, names in parses(known, text))
 
 
 def _are_steps(parts: Sequence[str]) -> bool:

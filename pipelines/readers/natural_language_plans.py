@@ -9,7 +9,7 @@ from hearth.kb.language.forms.code_functions import plan_of
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
 from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
-from hearth.kb.language.unmarked_lines import are_steps, is_order
+from hearth.kb.language.unmarked_lines import are_steps, is_order, names_task
 from hearth.kb.language.wrappings import bare, raw_of
 from hearth.pipelines.readers.document_titles import without_document_titles
 from hearth.pipelines.readers.json_elements import located_entries
@@ -273,10 +273,13 @@ class _Block:
         return self._below > 0 and (self._bulleted or step.bracketed)
 
     def begins_again(self) -> bool:
-        """Return whether the text above a first step holds a title with a description, and below it another title."""
-        if self._last or len(self._texts) < 3:
+        """Return whether the text above a first step holds a title, perhaps with a description, and another title."""
+        if self._last or len(self._texts) < 2:
             return False
         at = max(n for n, raw in enumerate(self.lines) if raw.strip())
+        if len(self._texts) == 2:
+            self._below = at if not self.lines[at - 1].strip() and all(map(names_task, self._texts)) else 0
+            return self._below > 0
         first, *middle, last = self._texts
         is_apart = not self.lines[at - 1].strip()
         names = [line for line in (first, last) if not is_sentence(line.text) and not META.match(line.text)]

@@ -50,7 +50,7 @@ class _Row(NamedTuple):
 
 
 class _Turn(NamedTuple):
-    """What a speaker says, which may be on several lines that all begin with the speaker's name."""
+    """The words of a speaker, on lines that may all begin with the name of the speaker."""
 
     role: str
     rows: list[_Row]

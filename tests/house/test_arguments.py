@@ -41,6 +41,7 @@ def calls():
         "generate": (hearth.generate, 3, 0, known), "understand": (hearth.understand, known, "walk to the fridge"),
         "find": (hearth.find, known, hearth.Query()), "holds": (hearth.holds, goal.counts[0][0], world),
         "edit": (hearth.edit, world), "parse_program": (hearth.parse_program, TEXT, known), "load": (hearth.load, "x"),
+        "parse_steps": (hearth.parse_steps, "1. Walk to the fridge", known),
         "home": (hearth.home, "maple", known), "knowledge": (hearth.knowledge, None),
         "executability": (hearth.executability, bound.steps, world), "evaluate": (hearth.evaluate, [], known),
         "read_pairs": (hearth.read_pairs, Path("x")), "verify": (hearth.verify, "x"),
@@ -55,9 +56,9 @@ def calls():
 
 NAMES = [
     "run", "bind", "infer", "sample", "augment", "sketch", "load_graph", "generate", "understand", "find", "holds",
-    "edit", "parse_program", "load", "home", "knowledge", "executability", "evaluate", "read_pairs", "verify", "export",
-    "World.start", "Home.from_graph", "Dataset.open", "Progress.start", "World.has_state", "World.changes", "Env.reset",
-    "Env.restore", "Env.step", "Env.observe", "Env.legal",
+    "edit", "parse_program", "parse_steps", "load", "home", "knowledge", "executability", "evaluate", "read_pairs",
+    "verify", "export", "World.start", "Home.from_graph", "Dataset.open", "Progress.start", "World.has_state",
+    "World.changes", "Env.reset", "Env.restore", "Env.step", "Env.observe", "Env.legal",
 ]  # fmt: skip
 
 
