@@ -8,10 +8,12 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import Program
-from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
+from hearth.schemas.vocabulary import CHARACTER_CLASS, EVERY_STATE, EVERY_STATE_ID
 from hearth.simulation.engine import Execution
+from hearth.simulation.lasting_changes import lasting_rows
 from hearth.simulation.literal_truth import RELATED, holds
 from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.further import is_wide
 from hearth.simulation.world.world import World
 
 Postconditions = tuple[Literal[Key], ...]
@@ -72,16 +74,26 @@ def nodes_of(program: Program, world: World) -> dict[Key, int]:
 def facts(
     world: World,
     nodes: Mapping[Key, int],
-    states: Sequence[str] = STATES,
+    states: Sequence[str] = (),
     relations: Sequence[str] = ("ON", "INSIDE", HOLDS),
 ) -> Iterable[Literal[Key]]:
-    """All states and relations, or these, of some objects in a world."""
+    """All states and relations, or these, of some objects in a world; not states that a thing leaves by itself.
+
+    Args:
+        world: whose facts they are.
+        nodes: the node of each object.
+        states: names of the ten states of worlds of every action set; all states of the world when empty.
+        relations: names of relations.
+    """
+    rows = world.states if not is_wide(world) else lasting_rows(world)
     index = world.home.index
     keys: dict[int, list[Key]] = {}
     for key, node in nodes.items():
         keys.setdefault(index[node], []).append(key)
     named = mask_of(keys)
-    known = [(state, world.states[STATE_ID[state]]) for state in states if world.states[STATE_ID[state]] & named]
+    known = [
+        (state, row) for state in states or EVERY_STATE[: len(rows)] if (row := rows[EVERY_STATE_ID[state]]) & named
+    ]
     for i, subjects in keys.items():
         found: list[tuple[str, tuple[Key, ...]]] = [(state, ()) for state, row in known if row >> i & 1]
         for relation in relations:
