@@ -23,7 +23,8 @@ Postconditions = tuple[Literal[Key], ...]
 def achieved(execution: Execution) -> Postconditions:
     """Facts that hold at the end of a run and did not at its start, about the program's objects and the characters.
 
-    That a bottle is INSIDE the glass it was poured into counts only if it is put nowhere else. A room counts where it
+    That a bottle is INSIDE the glass it was poured into counts only if it is put nowhere else, and that it is GONE when
+    the glass was drunk not at all: carried on, the bottle is no longer INSIDE. A room counts where it
     is the point: for a character, when the last walk was to that room itself; for a thing, when it lies in a room that
     the program walked to and on or in none of its objects.
     """
@@ -38,10 +39,11 @@ def achieved(execution: Execution) -> Postconditions:
     poured = _residues(program, now, held, rooms)
     placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in rooms}
     going = home.knowledge.group("goes")
+    drunk = {Literal("GONE", (step.objects[0].key,)) for step in program.steps if step.action == "Pour"}
     walked = [step.objects[0].key for step in program.steps if step.action in going and step.objects]
 
     def is_meant(fact: Literal[Key]) -> bool:
-        if fact in poured:
+        if fact in poured or fact in drunk:
             return False
         if fact.name != "INSIDE" or fact.target not in rooms:
             return True
