@@ -47,11 +47,6 @@ def _checks(action: Action, code: Code) -> bool:
     return any(check.code is code for check in action.preconditions)
 
 
-def _asks_for_state(action: Action) -> bool:
-    """Return whether it checks a state of its object: done twice it fails, while one may wash twice."""
-    return any(str(check.formula).find("state(o, ") >= 0 for check in action.preconditions)
-
-
 def _takes(action: Action) -> bool:
     return "HOLDS_RH(a, o)" in _may_add(action)
 
@@ -117,6 +112,5 @@ def groups(actions: Iterable[Action]) -> Mapping[str, frozenset[str]]:
     found = {name: {each.name for each in known if name in each.groups} for name in DECLARED}
     for name, belongs in DERIVED.items():
         found.setdefault(name, set()).update(each.name for each in known if belongs(each))
-    undone = (each for each in known if OPPOSITE.get(state_of(each), "") in made)
-    found["operates"] = {each.name for each in undone if _asks_for_state(each)}
+    found["operates"] = {each.name for each in known if OPPOSITE.get(state_of(each), "") in made}
     return {name: frozenset(names) for name, names in found.items()}

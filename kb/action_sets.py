@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from hearth.kb.knowledge_records import Action
+from hearth.schemas.vocabulary import EVERY_STATE, STATES
 from hearth.version import ACTION_SET, NEXT_ACTION_SET
 
 USUAL = 2
@@ -11,6 +12,11 @@ USUAL = 2
 
 LATEST = 3
 """The set in which every action is executed and has consequences."""
+
+
+def states_of_set(number: int) -> tuple[str, ...]:
+    """Return the names of the states that worlds of a set have."""
+    return EVERY_STATE if number == LATEST else STATES
 
 
 def name_of_set(number: int) -> str:

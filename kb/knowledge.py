@@ -186,7 +186,10 @@ class Knowledge:
 
     @cached_property
     def _groups(self) -> Mapping[str, frozenset[str]]:
-        return groups(self.actions.values())
+        found = groups(self.actions.values())
+        if self.action_set == LATEST:  # one may wash twice, although what was washed may get dirty
+            found = {**found, "operates": self._of_usual.group("operates")}
+        return found
 
     def state_of(self, action: str) -> str:
         """Return the state that the object of an action enters, or ''."""

@@ -21,7 +21,7 @@ from hearth.datasets.format.image_tables import write_images
 from hearth.datasets.format.split_runs import Run, Runs
 from hearth.datasets.format.split_summary import summary
 from hearth.datasets.tensors import EDGE_TYPES
-from hearth.kb.action_sets import LATEST, USUAL
+from hearth.kb.action_sets import USUAL, states_of_set
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.activity_tables import COUNTED, Activities
 from hearth.pipelines.engine.annotated_sketches import ANNOTATED, Annotations, fitting, inherited_annotations
@@ -34,7 +34,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
 from hearth.schemas.tables import TABLES
-from hearth.schemas.vocabulary import EVERY_STATE, PROPERTIES, RELATIONS, STATES
+from hearth.schemas.vocabulary import PROPERTIES, RELATIONS
 from hearth.simulation.world.world import World
 from hearth.storage.files import replacing, sync_folder, write_json
 from hearth.storage.manifest import Manifest, read_manifest
@@ -270,8 +270,12 @@ def _vocabulary(knowledge: Knowledge) -> Iterator[published_rows.NameRow]:
         yield _name("action", action.id, action.name, action.arity, action.executed)
     for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
         yield _name("class", thing.id, thing.name)
-    states = EVERY_STATE if knowledge.action_set == LATEST else STATES
-    graphs = {"state": states, "property": PROPERTIES, "relation": RELATIONS, "edge_type": EDGE_TYPES}
+    graphs = {
+        "state": states_of_set(knowledge.action_set),
+        "property": PROPERTIES,
+        "relation": RELATIONS,
+        "edge_type": EDGE_TYPES,
+    }
     for kind, names in graphs.items():
         yield from (_name(kind, number, name) for number, name in enumerate(names))
     for code in sorted(Code, key=lambda code: code.number):
