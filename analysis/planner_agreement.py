@@ -21,6 +21,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.optional_libraries import library
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import run
+from hearth.simulation.rules import rules_of
 from hearth.storage.parallel import Seen, spread, unseen
 
 LIMIT = 60
@@ -162,7 +163,7 @@ def steps_of(task: Task, plan: Any) -> tuple[Step, ...]:
 
 def executed(task: Task, status: str, plan: tuple[Step, ...]) -> Outcome:
     """Run a plan in the engine."""
-    execution = run(task.world, Program(steps=plan))
+    execution = run(task.world, Program(steps=plan), rules_of(task.world.home.knowledge))
     failure = execution.failure.message() if execution.failure else ""
     return Outcome(task, status, plan, not failure, not failure and task.reached(execution.final), failure)
 

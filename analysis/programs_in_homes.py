@@ -31,6 +31,7 @@ from hearth.schemas.program import Program
 from hearth.schemas.row_types import DifferenceRow, Row
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.schemas.tables import CASE
+from hearth.simulation.rules import rules_of
 from hearth.storage.batch_sizes import ENVIRONMENTS_MEASURED
 from hearth.storage.rejects import Reject
 
@@ -161,12 +162,13 @@ def _in_every_home(
 ) -> list[tuple[str, Environment]]:
     environments: list[tuple[str, Environment]] = []
     wall, processor = perf_counter(), process_time()
-    conditions = infer(script.program, homes.knowledge)
+    rules = rules_of(homes.knowledge)
+    conditions = infer(script.program, homes.knowledge, rules)
     if isinstance(conditions, Failure):
         found.impossible.append((script, ANY_HOME, conditions))
     else:
         for name in found.homes:
-            drawn = sample(script.program, homes.home(name), seed, script.program_id, conditions, size)
+            drawn = sample(script.program, homes.home(name), seed, script.program_id, conditions, size, rules)
             if isinstance(drawn, Failure):
                 proven = unplaceable(script.program, prepared(homes.home(name))) is not None
                 (found.impossible if proven else found.failed).append((script, name, drawn))

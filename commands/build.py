@@ -37,6 +37,7 @@ def build(
     kb: Path | None = None,
     salt: str | None = None,
     homes_each: int = 0,
+    action_set: int | None = None,
     strength: str = "mild",
     variants: int = 3,
     target: int = 0,
@@ -66,6 +67,7 @@ def build(
       hearth build release.zip my_programs/ --out mine --seed 7 --workers 4
       hearth build corpus.csv --out small --tier mini
       hearth build release.zip --out hard --strength thesis
+      hearth build corpus.csv --out acts --action-set 3
       hearth build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
       hearth build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
@@ -106,7 +108,7 @@ def ingest(context: typer.Context, **_: Any) -> None:
     _run(context, "ingest")
 
 
-@_with_options("out", "fuzzy", "kb")
+@_with_options("out", "fuzzy", "kb", "action_set")
 def validate(context: typer.Context, **_: Any) -> None:
     """Check every ingested program against the action grammar.
 
@@ -125,6 +127,7 @@ def sample(
     home: list[str] | None = None,
     homes: list[str] | None = None,
     kb: Path | None = None,
+    action_set: int | None = None,
     size: int | None = None,
     limit: int | None = None,
     workers: int = 0,
@@ -140,6 +143,7 @@ def sample(
     \b
     Examples:
       hearth sample --out data_out --seed 7 --home maple
+      hearth sample --out data_out --action-set 3
       hearth sample release.zip --homes all --homes their_homes --json
       hearth sample release.zip --homes all --nodes 290
     """
@@ -152,7 +156,7 @@ def sample(
         return
     from hearth.commands import sample_in_homes
 
-    settings = _settings({"seed": seed, "home": home, "homes": folder, "kb": kb})
+    settings = _settings({"seed": seed, "home": home, "homes": folder, "kb": kb, "action_set": action_set})
     sample_in_homes.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
 
 
@@ -163,6 +167,7 @@ def augment(
     home: list[str] | None = None,
     homes: list[str] | None = None,
     kb: Path | None = None,
+    action_set: int | None = None,
     strength: str = "mild",
     variants: int = 3,
     target: int = 0,

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
+from hearth.kb.action_sets import number_of_set
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import digest, files_of, overlaid
 from hearth.schemas.diagnostics import HearthError
@@ -43,13 +44,15 @@ def copy_files(files: Iterable[Path], folder: Path) -> None:
 
 
 def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
-    """Return the knowledge that a dataset was made with: ours, extended by the dataset's overlay.
+    """Return the knowledge that a dataset was made with: ours, extended by the dataset's overlay, with the actions of
+    its set.
 
     Raises:
         HearthError: BAD_JSON, for a malformed manifest field; MISSING_FILE or DAMAGED_FILE, if the overlay's files
             differ from the manifest; every fault of these files.
     """
-    return overlaid(carried(folder, manifest.get(FIELD), FIELD, digest))
+    known = overlaid(carried(folder, manifest.get(FIELD), FIELD, digest))
+    return known.of_set(number_of_set(manifest.get("action_set")))
 
 
 def carried(folder: Path, recorded: Any, what: str, digest_of: Callable[[Path], str]) -> Path | None:

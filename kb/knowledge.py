@@ -1,11 +1,14 @@
 """The knowledge as one value: loaded once, checked, then only dictionary look-ups."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeVar
 
 from hearth.kb.action_groups import groups, relation_of, state_of, tool_of
+from hearth.kb.action_sets import LATEST, USUAL, in_set
 from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.knowledge_records import (
     Action,
@@ -22,7 +25,7 @@ from hearth.kb.spelling import key_of, near_names
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.schemas.short_repr import brief
-from hearth.schemas.vocabulary import STATES
+from hearth.schemas.vocabulary import EVERY_STATE
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -53,6 +56,7 @@ class Knowledge:
         repairs: what to do about a failure, by name; the first that fits is the one to try.
         processes: changes that come by themselves in action set 3, by name.
         hazards: dangers, harms and wastes that `hearth hazards` finds, by name.
+        action_set: the number of the action set whose checks and effects the actions have: 2, or 3 (see `of_set`).
     """
 
     actions: Mapping[str, Action]
@@ -74,8 +78,39 @@ class Knowledge:
     _placements: Mapping[str, tuple[Placement, ...]] = field(repr=False)
     _held: Mapping[str, tuple[Placement, ...]] = field(repr=False)
     _limits: Mapping[str, Mapping[str, int]] = field(repr=False)
+    action_set: int = USUAL
 
     __repr__ = brief
+
+    def of_set(self, number: int) -> Knowledge:
+        """Return the same knowledge with the actions of a set: those of set 3 have its checks and effects.
+
+        Always the same value for a number, since tables are kept by knowledge.
+
+        Raises:
+            ValueError: the set is neither 2 nor 3.
+
+        Examples:
+            >>> [known.of_set(number).action("Cut").executed for number in (2, 3)]
+            [False, True]
+        """
+        if number not in (USUAL, LATEST):
+            raise ValueError(f"no action set {number!r:.20}; there are {USUAL} and {LATEST}")
+        if number == self.action_set:
+            return self
+        return self._of_latest if number == LATEST else self._of_usual
+
+    @cached_property
+    def _of_latest(self) -> Knowledge:
+        actions = {name: in_set(action, LATEST, self.actions) for name, action in self.actions.items()}
+        names = {spelling: actions[action.name] for spelling, action in self._action_names.items()}
+        found = replace(self, actions=actions, _action_names=names, action_set=LATEST)
+        found.__dict__["_of_usual"] = self
+        return found
+
+    @cached_property
+    def _of_usual(self) -> Knowledge:
+        raise ValueError("the knowledge of set 3 is made of that of set 2, by `of_set`")
 
     @cached_property
     def class_ids(self) -> Mapping[str, int]:
@@ -135,7 +170,7 @@ class Knowledge:
 
     @cached_property
     def _achieving(self) -> Mapping[str, tuple[str, ...]]:
-        found = {state: self.achievers(state) for state in STATES}
+        found = {state: self.achievers(state) for state in EVERY_STATE}
         return {
             state: tuple(action.name for action, effect in pairs if effect.literal.name == "state")
             for state, pairs in found.items()
@@ -151,7 +186,10 @@ class Knowledge:
 
     @cached_property
     def _groups(self) -> Mapping[str, frozenset[str]]:
-        return groups(self.actions.values())
+        found = groups(self.actions.values())
+        if self.action_set == LATEST:  # one may wash twice, although what was washed may get dirty
+            found = {**found, "operates": self._of_usual.group("operates")}
+        return found
 
     def state_of(self, action: str) -> str:
         """Return the state that the object of an action enters, or ''."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache
 
-from hearth.datasets.format.case_rows import environment_of, rerun, run_row
+from hearth.datasets.format.case_rows import environment_of, further_states, rerun, run_row
 from hearth.datasets.format.row_conversion import (
     condition_rows,
     conditions_of,
@@ -33,6 +33,8 @@ from hearth.schemas.stage_rows import CaseRow, SketchRow
 from hearth.schemas.syntax import print_step
 from hearth.schemas.tables import CASE, SKETCHED
 from hearth.simulation.engine import Execution, run
+from hearth.simulation.rules import rules_of
+from hearth.simulation.world.action_set_3_states import is_wide, wide_start
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.manifest import read_manifest
@@ -53,7 +55,8 @@ class Context:
         # Homes of the catalog are built in their default state; derived homes keep their stored states.
         self.in_default_state = cache(self.homes.in_catalog)
         self.seed = settings.seed
-        self.options = Options(settings.variants, settings.tries, settings.strength)
+        rules = rules_of(self.homes.knowledge)
+        self.options = Options(settings.variants, settings.tries, settings.strength, rules)
         self.each = _each(settings, plan)
         self.sketched = ""
         self.keep: Keep = ()
@@ -196,10 +199,14 @@ def _cases(record: CaseRow, pair: Pair, context: Context) -> Iterator[Output]:
 def _environment(environment: Environment, name: str, context: Context) -> DifferenceRow:
     if context.in_default_state(name):
         return environment_of(environment, context.homes.edges(name))
-    change = environment.world.changes(World.start(context.homes.home(name)))
+    start = World.start(context.homes.home(name))
+    change = environment.world.changes(wide_start(start, 0) if is_wide(environment.world) else start)
     new = {node.id for node in environment.nodes}
-    states = dict(environment.states)
-    nodes = (replace(node, states=tuple(states.get(node.id, node.states))) for node in environment.nodes)
+    states, (further, _) = dict(environment.states), further_states(environment)
+    nodes = (
+        replace(node, states=(*states.get(node.id, node.states), *further.get(node.id, ())))
+        for node in environment.nodes
+    )
     kept = change.where(node=lambda node_id: node_id not in new)
     return environment_row(replace(kept, added_nodes=tuple(nodes)))
 
@@ -279,7 +286,7 @@ STAGE = Stage(
     tables={"": CASE, "sketches": SKETCHED},
     process=process,
     reads=("sample",),
-    settings=("seed", "strength", "variants", "target", "tries"),
+    settings=("seed", "strength", "variants", "target", "tries", "action_set"),
     open=lambda job: Context(job.settings, job.plan),
     prepare=prepare,
     records=records,

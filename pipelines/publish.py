@@ -11,8 +11,9 @@ import pyarrow.parquet as pq
 
 from hearth.datasets.format.case_rows import difference_on_replay
 from hearth.datasets.format.datasheet import STRENGTH
-from hearth.datasets.format.ids import STAMP, activity_id
+from hearth.datasets.format.ids import activity_id, stamp
 from hearth.datasets.format.splits import BY_CASE, SHARES, share_of
+from hearth.kb.action_sets import USUAL
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.final_tables import finish, strength_used
 from hearth.pipelines.engine.runner import input_partitions
@@ -40,6 +41,7 @@ class Context:
 
     def __init__(self, job: Job) -> None:
         self.homes, self._job = Homes(job.settings), job
+        self.versions = stamp(job.settings.action_set or USUAL)
         self.last = self.environment = ""
 
     @cached_property
@@ -90,20 +92,27 @@ def process(case: SplitCaseRow, context: Context) -> Iterable[tuple[str, Row]] |
 def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
     """Yield the rows of a case; the run of an original in a perturbed environment is published if it fails there."""
     perturbed, part = case["parent_id"] is None and bool(case["perturbations"]), case["split"]
+    versions = context.versions
     if not perturbed and case["program_id"] != context.last:
         context.last = case["program_id"]
-        yield share_of("programs", part), {**program_row(case), **STAMP}
+        yield share_of("programs", part), {**program_row(case), **versions}
     # The outcome of repairing: for an original, nothing.
     came: Any = {"program_id": None, "execution_id": None, "parent_id": case["program_id"]} if perturbed else {}
     if case["environment_id"] != context.environment:
         context.environment = case["environment_id"]
-        yield share_of("environments", part), {**columns_of(EnvironmentRow, {**case, **case["environment"]}), **STAMP}
+        yield (
+            share_of("environments", part),
+            {**columns_of(EnvironmentRow, {**case, **case["environment"]}), **versions},
+        )
         for one in case["perturbations"]:
-            yield share_of("perturbations", part), {**columns_of(PerturbedRow, {**case, **came, **one}), **STAMP}
+            yield (
+                share_of("perturbations", part),
+                {**columns_of(PerturbedRow, {**case, **came, **one}), **versions},
+            )
     if not (perturbed and case["executable"]):
-        yield share_of("executions", part), {**columns_of(ExecutionRow, case), **STAMP}
+        yield share_of("executions", part), {**columns_of(ExecutionRow, case), **versions}
     for repair in case["repairs"]:
-        yield share_of("repairs", part), {**columns_of(RepairedRow, {**case, **came, **repair}), **STAMP}
+        yield share_of("repairs", part), {**columns_of(RepairedRow, {**case, **came, **repair}), **versions}
 
 
 def program_row(case: SplitCaseRow) -> ProgramRow:
@@ -118,7 +127,7 @@ STAGE = Stage(
     process=process,
     reads=("sample", "augment"),
     needs=("ingest", "validate", "render"),
-    settings=("seed",),
+    settings=("seed", "action_set"),
     open=Context,
     prepare=overlays,
     partitions=partitions,

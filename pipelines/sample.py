@@ -13,6 +13,7 @@ from hearth.datasets.format.shared_homes import common, write_home
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.precondition_inference import infer
+from hearth.kb.action_sets import USUAL
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.settings import DERIVED, Settings
@@ -25,7 +26,7 @@ from hearth.schemas.row_types import ConditionRow, DifferenceRow, GraphRow
 from hearth.schemas.stage_rows import CaseRow, GroundingRow, RunRow, ValidatedRow
 from hearth.schemas.tables import CASE
 from hearth.simulation.engine import run
-from hearth.simulation.rules import REPLAY, RULES, Rules
+from hearth.simulation.rules import REPLAY, RULES, Rules, rules_of
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.manifest import read_manifest
@@ -52,7 +53,8 @@ def process(record: ValidatedRow, context: Context) -> Iterator[CaseRow | Reject
     if stored:
         return (_stored(record, grounding, start, context) for grounding, start in stored)
     program = program_of(record)
-    conditions = infer(program, context.homes.knowledge)
+    known = context.homes.knowledge
+    conditions = infer(program, known, rules_of(known))
     if isinstance(conditions, Failure):
         return iter([failed(conditions, program, record["place"], f"in {name}") for name in context.names[:1]])
     names = _chosen(record["program_id"], context)
@@ -83,7 +85,8 @@ def _once(outputs: list[CaseRow | Reject]) -> Iterator[CaseRow | Reject]:
 def _sampled(
     record: ValidatedRow, program: Program, conditions: Preconditions, name: str, context: Context
 ) -> CaseRow | Reject:
-    drawn = sample(program, context.homes.home(name), context.seed, record["program_id"], conditions)
+    rules = rules_of(context.homes.knowledge)
+    drawn = sample(program, context.homes.home(name), context.seed, record["program_id"], conditions, rules=rules)
     if isinstance(drawn, Failure):
         return failed(drawn, program, record["place"], f"in {name}")
     environment, execution = drawn
@@ -110,7 +113,7 @@ def _stored(record: ValidatedRow, grounding: GroundingRow, start: GraphRow, cont
     if grounding["final"]:
         reproduces = execution.executable and execution.final.changes(world) == change_of(grounding["final"])
     differs = difference_of(world, context.homes.home(name), context.homes.edges(name))
-    conditions = record["conditions"] or _inferred(program, context.homes.knowledge, REPLAY)
+    conditions = record["conditions"] or _inferred(program, context.homes.knowledge.of_set(USUAL), REPLAY)
     return _case(bound, name, differs, conditions, run_row(execution), reproduces=reproduces)
 
 
@@ -207,7 +210,7 @@ STAGE = Stage(
     tables={"": CASE},
     process=process,
     reads=("validate",),
-    settings=("seed", "homes_each"),
+    settings=("seed", "homes_each", "action_set"),
     open=open_homes,
     prepare=prepare,
     facts=overlays_used,

@@ -124,7 +124,7 @@ def _undo(one: Step, other: Step, both_new: bool, knowledge: Knowledge) -> bool:
         return False
     made = knowledge.state_of(one.action)
     if made:
-        return knowledge.state_of(other.action) == OPPOSITE[made]
+        return knowledge.state_of(other.action) in (OPPOSITE.get(made), *knowledge.excludes(made))
     return both_new and any(
         first.action in knowledge.group("takes") and then.action in knowledge.group("lets_go")
         for first, then in ((one, other), (other, one))

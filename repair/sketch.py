@@ -17,7 +17,7 @@ from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution
 from hearth.simulation.literal_truth import holds
-from hearth.simulation.rules import Rules, suited
+from hearth.simulation.rules import Rules, rules_of, suited
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -70,12 +70,13 @@ def sketch(
         (False, False, True)
     """
     program = program.numbered()
-    conditions = infer(program, knowledge) if original is None else original[0]
+    rules = suited(program, knowledge, rules_of(knowledge))
+    conditions = infer(program, knowledge, rules) if original is None else original[0]
     if isinstance(conditions, Failure):
         return _with_asked(program, _smallest(program, [], (), (), knowledge), asked(program, knowledge))
     runs = [] if original is None else [original]
     for home in homes[: ENVIRONMENTS - len(runs)]:
-        drawn = sample(program, home, seed, f"{record_id}/sketch", conditions, _BARE)
+        drawn = sample(program, home, seed, f"{record_id}/sketch", conditions, _BARE, rules)
         if not isinstance(drawn, Failure):
             runs.append((drawn[0].conditions, drawn[1]))
     goal: Postconditions = ()
@@ -83,7 +84,7 @@ def sketch(
     if runs:
         goal = meant(achieved(runs[0][1]), program, runs[0][0], knowledge)
         passed = tuple(fact for fact in milestones(runs[0][1]) if fact not in goal)
-    rules = suited(program, knowledge)  # those of the runs; what is left of a program may look as if others suited it
+    # The rules are those of the runs: what is left of a program may look as if others suited it.
     places = [_Place(execution.program, execution.worlds[0], rules) for _, execution in runs]
     keep = _smallest(program, places, goal, passed, knowledge)
     return _with_asked(program, keep, asked(program, knowledge))

@@ -7,13 +7,13 @@ rows of tables.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Set
+from collections.abc import Callable, Container, Iterable, Mapping, Set
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.short_repr import brief
-from hearth.schemas.vocabulary import STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID, STATE_ID
 
 State = tuple[int, str]
 """A node's id and a state it is in."""
@@ -85,12 +85,17 @@ class Parts(NamedTuple):
 
 def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
     """Return the change from `before` to `after`; order and repetitions make no difference."""
-    return difference(_parts(before), _parts(after))
+    return difference(_parts(before), _parts(after), EVERY_STATE_ID)
 
 
-def difference(before: Parts, after: Parts) -> Change:
-    """Return the change from `before` to `after`."""
-    removed = {i for i, node in before.nodes.items() if not _same(node, after.nodes.get(i))}
+def difference(before: Parts, after: Parts, simulated: Container[str] = STATE_ID) -> Change:
+    """Return the change from `before` to `after`.
+
+    Args:
+        before, after: the graphs.
+        simulated: the states that are compared as states; nodes that differ in others give way to each other.
+    """
+    removed = {i for i, node in before.nodes.items() if not _same(node, after.nodes.get(i), simulated)}
     new = sorted(i for i in after.nodes if i in removed or i not in before.nodes)
     edges, past, now = before.edges, before.states, after.states
     if removed:
@@ -110,21 +115,21 @@ def difference(before: Parts, after: Parts) -> Change:
 
 
 def states_of(nodes: Iterable[Node]) -> set[State]:
-    """Return the simulated states that nodes are in."""
-    return {(node.id, state) for node in nodes for state in node.states if state in STATE_ID}
+    """Return the states that nodes are in and that worlds of some action set simulate."""
+    return {(node.id, state) for node in nodes for state in node.states if state in EVERY_STATE_ID}
 
 
 def _parts(graph: EnvironmentGraph) -> Parts:
     return Parts(set(graph.edges), states_of(graph.nodes), {node.id: node for node in graph.nodes})
 
 
-def _same(one: Node, other: Node | None) -> bool:
+def _same(one: Node, other: Node | None, simulated: Container[str]) -> bool:
     """Return whether two nodes are equal, simulated states aside."""
-    return other is not None and (one == other or _still(one) == _still(other))
+    return other is not None and (one == other or _still(one, simulated) == _still(other, simulated))
 
 
-def _still(node: Node) -> Node:
-    return replace(node, states=tuple(sorted({name for name in node.states if name not in STATE_ID})))
+def _still(node: Node, simulated: Container[str]) -> Node:
+    return replace(node, states=tuple(sorted({name for name in node.states if name not in simulated})))
 
 
 def apply(graph: EnvironmentGraph, *changes: Change) -> EnvironmentGraph:

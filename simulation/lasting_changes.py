@@ -15,6 +15,7 @@ from hearth.simulation.process_plan import here
 from hearth.simulation.processes import widened
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 LEFT = ("ON", "OPEN")
 """States in which things are left: somebody else has to end them."""
@@ -61,6 +62,30 @@ def _entered(execution: Execution, number: int) -> Iterator[Lasting]:
     for i in indices(worlds[-1] & ~worlds[0]):
         step = max(k for k, row in enumerate(worlds) if not row >> i & 1) + 1
         yield Lasting(home.ids[i], home.classes[i], EVERY_STATE[number], step)
+
+
+def lasting_rows(world: World) -> tuple[int, ...]:
+    """Return the rows of all states of a world of action set 3, without the things that leave them by themselves.
+
+    What is hot cools, and a kettle that boils switches itself off: how it is a few ticks later says nothing about what
+    was done.
+    """
+    return tuple(row & ~left for row, left in zip(world.states, passing(world.home), strict=False))
+
+
+def passing(home: Home) -> tuple[int, ...]:
+    """Return for each state the things that a process takes out of it although nothing else is done to them."""
+    known: dict[str, tuple[int, ...]] = home.worked_out
+    found = known.get("passing")
+    if found is None:
+        place, rows = here(home), [0] * len(EVERY_STATE)
+        for each in place.plan.processes:
+            thing = each.part.thing
+            for number in thing.has if each.part.devices is None else ():
+                if any(_ends(effect, number, home.knowledge) for effect in each.process.effects):
+                    rows[number] |= place.kind(home, thing.number)
+        found = known["passing"] = tuple(rows)
+    return found
 
 
 def undone(home: Home, number: int) -> int:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Literal, NamedTuple, get_args
 
+from hearth.kb.action_sets import LATEST
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
@@ -107,6 +108,11 @@ def read(given: Mapping[str, Any]) -> Rules:
     if odd:
         raise ValueError(f"the rule `{odd[0]}` is {given[odd[0]]!r:.40}")
     return rules
+
+
+def rules_of(knowledge: Knowledge) -> Rules:
+    """Return the rules by which inference, sampling, augmenting and people's programs read the actions of a set."""
+    return CONSEQUENCES if knowledge.action_set == LATEST else DEFAULT
 
 
 def suited(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Rules:

@@ -186,11 +186,20 @@ def _states(atom: Literal[Term], cast: _Cast) -> str:
     x = cast.index(atom.terms[0])
     if x < 0:
         return ""
-    pair = STATE_ID[atom.terms[1].name] & ~1
-    now = [name for name in states_of(x, cast.world.states) if name in STATES[pair : pair + 2]]
-    if not now and x == cast.agent.index:
+    state = atom.terms[1].name
+    matter = _pair(state) or (state, *cast.world.home.knowledge.excludes(state))
+    now = [name for name in states_of(x, cast.world.states) if name in matter]
+    if not now and x == cast.agent.index and state in STATE_ID:
         return "the character stands"
-    return f"{cast.name(x)} is {' and '.join(now) or ' nor '.join(('neither ' + STATES[pair], STATES[pair + 1]))}"
+    if now or len(matter) == 1:
+        return f"{cast.name(x)} is {' and '.join(now) or f'not {state}'}"
+    return f"{cast.name(x)} is neither {' nor '.join(matter)}"
+
+
+def _pair(state: str) -> tuple[str, ...]:
+    """Return one of the ten states with its opposite, in the vocabulary's order; nothing of a further state."""
+    first = STATE_ID.get(state, -1) & ~1
+    return STATES[first : first + 2] if first >= 0 else ()
 
 
 def _affords(atom: Literal[Term], cast: _Cast) -> str:

@@ -2,7 +2,7 @@
 
 A problem has the execution's initial state; its goal is the execution's changes: states, and the added and removed ON,
 INSIDE and HOLDS edges of the things that it moved. CLOSE and FACING, which describe only the character's position, are
-not goals.
+not goals. Of action set 3 states that no act brings about are not goals, either: they come by themselves, in time.
 
 A problem leaves out the things that cannot matter to it. It keeps the character and the things that it holds, and the
 things that the goal names. It keeps the things that these are INSIDE, up to their rooms, and things ON a seat or bed
@@ -22,12 +22,15 @@ from hearth.datasets.export.program_batches import Wanted, runs, write
 from hearth.datasets.format.row_conversion import change_of
 from hearth.datasets.published_program import Run
 from hearth.datasets.verify import StoredHomes
+from hearth.kb.action_sets import LATEST
+from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.pddl import LIMITS, limit_predicate, option_predicate, options, predicate, unary_predicates
 from hearth.schemas.graph import Edge
 from hearth.schemas.graph_change import compose
-from hearth.schemas.vocabulary import STATE_ID, STATES
+from hearth.schemas.vocabulary import EVERY_STATE, STATE_ID
 from hearth.simulation.rules import DEFAULT, RULES, Rules
 from hearth.simulation.world import rows
+from hearth.simulation.world.action_set_3_states import rows_with_further
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -87,7 +90,7 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
 
     homes = StoredHomes(dataset)
     for _, run in runs(dataset, wanted):
-        states, edges = _goal(run)
+        states, edges = _goal(run, dataset.knowledge)
         if states or edges:
             world = start_of(run.row["environment"], run.home, homes)
             named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
@@ -96,10 +99,11 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
             yield Task(run.row["execution_id"], world, objects, states, edges, of, rules)
 
 
-def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
+def _goal(run: Run, knowledge: Knowledge) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
     """Return the net change of all ticks."""
     whole = compose(map(change_of, run.row["ticks"]))
     states = [(*state, True) for state in whole.set_states] + [(*state, False) for state in whole.cleared_states]
+    states = [each for each in states if each[1] in STATE_ID or (each[2] and knowledge.achieving(each[1]))]
     edges = [(edge, True) for edge in whole.added] + [(edge, False) for edge in whole.removed]
     return tuple(sorted(states)), tuple(sorted((edge, holds) for edge, holds in edges if edge.relation in WANTED))
 
@@ -248,4 +252,5 @@ def _kinds(world: World, i: int, known: set[str]) -> Iterator[str]:
     parts = sorted(kind.removeprefix("named-") for kind in known if kind.startswith("named-"))
     yield from (predicate("class_contains", part) for part in parts if part in name)
     yield from (limit_predicate(kind, home.limit(i, lying=kind == "bed_limit")) for kind in LIMITS)
-    yield from (predicate("state", state) for state in STATES if world.states[STATE_ID[state]] & bit)
+    states = rows_with_further(world) if home.knowledge.action_set == LATEST else world.states
+    yield from (predicate("state", state) for state, row in zip(EVERY_STATE, states, strict=False) if row & bit)

@@ -13,11 +13,12 @@ from hearth.datasets.format.datasheet import datasheet
 from hearth.datasets.format.image_tables import FOLDER as IMAGES
 from hearth.datasets.format.split_columns import PARTS
 from hearth.datasets.format.splits import DESCENDED, LEFT_OUT
+from hearth.kb.action_sets import USUAL, name_of_set
 from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.storage.files import write_bytes
 from hearth.storage.templates import rendered
-from hearth.version import ACTION_SET, VERSION
+from hearth.version import VERSION
 
 NAME = "README.md"
 
@@ -27,12 +28,12 @@ ROWS = "rows"
 _LEAKS = {"siblings": "siblings", "steps": "near-duplicate steps", "texts": "near-duplicate texts"}
 
 
-def write_card(folder: Path, strength: str = MILD) -> None:
+def write_card(folder: Path, strength: str = MILD, action_set: int = USUAL) -> None:
     """Write the card of a dataset's folder: counts, tables and columns, ledger, splits and leakage, licences."""
-    write_bytes(folder / NAME, card(folder, strength).encode() + b"\n")
+    write_bytes(folder / NAME, card(folder, strength, action_set).encode() + b"\n")
 
 
-def card(folder: Path, strength: str) -> str:
+def card(folder: Path, strength: str, action_set: int = USUAL) -> str:
     """Return the card, as `card.jinja` has it."""
     return rendered(
         "hearth.datasets.format",
@@ -41,7 +42,7 @@ def card(folder: Path, strength: str) -> str:
         configs=list(_configs(folder)),
         summary=SUMMARY,
         version=VERSION,
-        action_set=ACTION_SET,
+        action_set=name_of_set(action_set),
         sheet=datasheet(folder, strength),
         tables=TABLES,
         counts={table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES},

@@ -22,8 +22,11 @@ from hearth.schemas.graph import Edge
 from hearth.schemas.graph_change import Change, State
 from hearth.schemas.row_types import DifferenceRow
 from hearth.schemas.stage_rows import CaseRow, RunRow
+from hearth.schemas.vocabulary import FURTHER_STATES, STATES
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
+from hearth.simulation.world.action_set_3_states import is_wide
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.derived_homes import changed
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.nodes import states_of
@@ -42,12 +45,43 @@ def environment_of(environment: Environment, edges: frozenset[Edge]) -> Differen
     """
     home = environment.base
     states: dict[int, Iterable[str]] = dict(environment.states)
-    nodes = [replace(node, states=tuple(states.pop(node.id, node.states))) for node in environment.nodes]
+    further, ended = further_states(environment)
+    nodes = [
+        replace(node, states=(*states.pop(node.id, node.states), *further.pop(node.id, ())))
+        for node in environment.nodes
+    ]
     added = set(_both_ways(environment.added))
     removed = set(_both_ways(environment.removed)) - added
     came, went = _restated(home, states)
+    if further or ended:
+        came = tuple(sorted((*came, *_pairs(further))))
+        went = tuple(sorted((*went, *_pairs(ended))))
     moved = (tuple(sorted(added - edges)), tuple(sorted(removed & edges)))
     return environment_row(Change(*moved, came, went, tuple(nodes), tuple(environment.left_out)))
+
+
+def further_states(environment: Environment) -> tuple[dict[int, list[str]], dict[int, list[str]]]:
+    """Return the further states that nodes of an environment of action set 3 have at its start and had not in its home,
+    and those that they had there and have no more, by the nodes' ids.
+
+    What lies in a running fridge is cold from the start, and so from the start graph on.
+    """
+    came: dict[int, list[str]] = {}
+    went: dict[int, list[str]] = {}
+    world, home = environment.world, environment.base
+    if is_wide(world):
+        for number, name in enumerate(FURTHER_STATES):
+            now = {world.home.ids[i] for i in indices(world.states[len(STATES) + number])}
+            before = {home.ids[i] for i in indices(home.further[number])} - {*environment.left_out}
+            for node_id in sorted(now - before):
+                came.setdefault(node_id, []).append(name)
+            for node_id in sorted(before - now):
+                went.setdefault(node_id, []).append(name)
+    return came, went
+
+
+def _pairs(states: Mapping[int, Iterable[str]]) -> Iterable[State]:
+    return ((node_id, name) for node_id, names in states.items() for name in names)
 
 
 def _both_ways(edges: Iterable[Edge]) -> Iterable[Edge]:

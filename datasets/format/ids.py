@@ -3,11 +3,15 @@
 import re
 from functools import lru_cache
 
+from hearth.kb.action_sets import USUAL, name_of_set
 from hearth.schemas.rng import derive
-from hearth.version import ACTION_SET, VERSION
+from hearth.version import VERSION
 
-STAMP = {"action_set": ACTION_SET, "dataset_version": VERSION}
-"""Version columns of every published row."""
+
+def stamp(action_set: int = USUAL) -> dict[str, str]:
+    """Return the version columns of every published row, by the number of the action set."""
+    return {"action_set": name_of_set(action_set), "dataset_version": VERSION}
+
 
 TRAIN, VALIDATION = 7, 1
 """Shares of train, validation and test: 7, 1 and 2 of ten activities (thesis 5.6: 7:3)."""

@@ -136,21 +136,25 @@ def _helps(words: str, command: Any) -> Iterator[tuple[str, str]]:
 
 def actions() -> str:
     """All actions."""
+    from hearth.kb.action_sets import LATEST
     from hearth.kb.loading.load import default
+    from hearth.simulation.actions.registry import EVERY
 
+    latest = default().of_set(LATEST).actions
+    number = sum(action.executed for action in latest.values())
     lines = [
         "# Actions",
         "",
         "Objects, text and failures of each; `hearth kb action NAME` shows all about one.",
+        f"Action set 3 executes {number} of {len(latest)}, action set 2 {len(EVERY)}. The last column has",
+        "the failures of set 3. Moves by metres are executed where the home says where the character stands.",
     ]
-    lines += ["", "| action | text | objects | failures |", "|---|---|---|---|"]
-    for name, action in sorted(default().actions.items()):
-        roles, needed = (
-            ", ".join(action.roles) or "none",
-            ", ".join(sorted({str(c.code) for c in action.preconditions})),
-        )
-        words = action.template.format("...", "...")
-        lines.append(f"| `{name}` | {words} | {roles} | {needed if action.executed else 'not executed'} |")
+    lines += ["", "| action | text | objects | sets | failures |", "|---|---|---|---|---|"]
+    for name, action in sorted(latest.items()):
+        roles = ", ".join(action.roles) or "none"
+        needed = ", ".join(sorted({str(c.code) for c in action.preconditions}))
+        words, sets = action.template.format("...", "..."), "2, 3" if name in EVERY else "3"
+        lines.append(f"| `{name}` | {words} | {roles} | {sets} | {needed} |")
     return "\n".join(lines) + "\n"
 
 

@@ -125,7 +125,8 @@ class PartialEnvironment:
     def set_state(self, node_id: int, state: str) -> None:
         """Put a node into a state and out of the opposite."""
         now = self.states_now(node_id)
-        self.states[node_id] = (*(name for name in now if name not in (state, OPPOSITE[state])), state)
+        excluded = (state, *self.base.knowledge.excludes(state), OPPOSITE.get(state))
+        self.states[node_id] = (*(name for name in now if name not in excluded), state)
 
     def states_now(self, node_id: int) -> tuple[str, ...]:
         """Return the states of a node so far."""

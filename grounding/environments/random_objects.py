@@ -37,7 +37,7 @@ def fill(partial: PartialEnvironment, least: int, most: int, some: int) -> None:
             continue
         category, properties, states = kinds(name)
         for state in states:
-            if random() < TURNED:
+            if random() < TURNED and state in OPPOSITE:
                 states = _turned(states, state)
         near = 1 << i | (bears[i] if relation == "ON" else contents[i])
         partial.movable.append(Movable(Node(node_id, name, category, properties, states), relation, i, rooms[i], near))

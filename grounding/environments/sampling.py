@@ -21,6 +21,7 @@ from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import Execution, run
+from hearth.simulation.processes import widened
 from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import Movable
@@ -67,12 +68,15 @@ class Environment:
         return (*self.placed, *(edge for one in self.movable for edge in one.edges(ids)))
 
 
-def of_partial(partial: PartialEnvironment, seed: int, program: Program, conditions: Preconditions) -> Environment:
-    """Return the environment made of a partial one."""
+def of_partial(
+    partial: PartialEnvironment, seed: int, program: Program, conditions: Preconditions, rules: Rules = DEFAULT
+) -> Environment:
+    """Return the environment made of a partial one; by action set 3 its world has the further states of the start."""
+    start = World.start(partial.home())
     return Environment(
         partial.base.whole,
         seed,
-        World.start(partial.home()),
+        widened(start) if rules.consequences else start,
         program,
         conditions,
         (*partial.nodes, *[one.node for one in partial.movable]),
@@ -205,7 +209,7 @@ def draw(
     fulfil(partial, conditions)
     settle_character(partial, program, conditions)
     fill(partial, size.least, size.most, size.some)
-    return of_partial(partial, seed, program.bound(partial.binding), conditions)
+    return of_partial(partial, seed, program.bound(partial.binding), conditions, rules)
 
 
 def settle_character(partial: PartialEnvironment, program: Program, conditions: Preconditions) -> None:

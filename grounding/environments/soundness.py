@@ -1,8 +1,10 @@
 """Soundness of a sampled environment: the checks of `home lint`, made of its differences from the home only."""
 
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.vocabulary import STATES
+from hearth.schemas.vocabulary import EVERY_STATE, STATES
+from hearth.simulation.actions.literal_effects import excluded
 from hearth.simulation.world import rows
+from hearth.simulation.world.action_set_3_states import WIDTH, is_wide
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
@@ -29,13 +31,24 @@ def _fault(world: World, code: Code, mask: int, expected: str, actual: str) -> F
 
 
 def _in_states(world: World, touched: int) -> Failure | None:
-    states, properties = dict(zip(STATES, world.states, strict=True)), world.home.properties
+    states, properties = dict(zip(STATES, world.states, strict=False)), world.home.properties
     for one, other in zip(STATES[::2], STATES[1::2], strict=True):
         if both := states[one] & states[other] & touched:
             return _fault(world, Code.CONTRADICTION, both, f"{one} or {other}", "both")
     for prop, one, other in NEEDED:
         if neither := properties[prop] & touched & ~(states[one] | states[other]) & ~world.home.characters:
             return _fault(world, Code.CONDITION_UNMET, neither, f"{one} or {other}", "neither")
+    return _in_further_states(world, touched) if is_wide(world) else None
+
+
+def _in_further_states(world: World, touched: int) -> Failure | None:
+    excludes = excluded(world.home.knowledge)
+    for number in range(len(STATES), WIDTH):
+        row = world.states[number] & touched
+        for other in excludes[number] if row else ():
+            if both := row & world.states[other]:
+                one, rival = EVERY_STATE[number], EVERY_STATE[other]
+                return _fault(world, Code.CONTRADICTION, both, f"{one} or {rival}", "both")
     return None
 
 

@@ -29,8 +29,9 @@ class StartContext(FailureContext):
     keys: dict[int, Key]
 
     def key(self, position: int = 0) -> Key | None:
-        """Return the program's object that the failure names at this position."""
-        return self.keys.get(self.failure.objects[position])
+        """Return the program's object that the failure names at this position; None where it names none."""
+        named = self.failure.objects
+        return self.keys.get(named[position]) if position < len(named) else None
 
     def needs(self, name: str, *objects: Key) -> Condition:
         """Return the condition, needed by this step."""

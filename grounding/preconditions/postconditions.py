@@ -8,9 +8,11 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import Program
-from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
+from hearth.schemas.vocabulary import CHARACTER_CLASS, EVERY_STATE, EVERY_STATE_ID
 from hearth.simulation.engine import Execution
+from hearth.simulation.lasting_changes import lasting_rows
 from hearth.simulation.literal_truth import RELATED, holds
+from hearth.simulation.world.action_set_3_states import is_wide
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.world import World
 
@@ -21,7 +23,8 @@ Postconditions = tuple[Literal[Key], ...]
 def achieved(execution: Execution) -> Postconditions:
     """Facts that hold at the end of a run and did not at its start, about the program's objects and the characters.
 
-    That a bottle is INSIDE the glass it was poured into counts only if it is put nowhere else. A room counts where it
+    That a bottle is INSIDE the glass it was poured into counts only if it is put nowhere else, and that it is GONE when
+    the glass was drunk not at all: carried on, the bottle is no longer INSIDE. A room counts where it
     is the point: for a character, when the last walk was to that room itself; for a thing, when it lies in a room that
     the program walked to and on or in none of its objects.
     """
@@ -36,10 +39,11 @@ def achieved(execution: Execution) -> Postconditions:
     poured = _residues(program, now, held, rooms)
     placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in rooms}
     going = home.knowledge.group("goes")
+    drunk = {Literal("GONE", (step.objects[0].key,)) for step in program.steps if step.action == "Pour"}
     walked = [step.objects[0].key for step in program.steps if step.action in going and step.objects]
 
     def is_meant(fact: Literal[Key]) -> bool:
-        if fact in poured:
+        if fact in poured or fact in drunk:
             return False
         if fact.name != "INSIDE" or fact.target not in rooms:
             return True
@@ -72,16 +76,26 @@ def nodes_of(program: Program, world: World) -> dict[Key, int]:
 def facts(
     world: World,
     nodes: Mapping[Key, int],
-    states: Sequence[str] = STATES,
+    states: Sequence[str] = (),
     relations: Sequence[str] = ("ON", "INSIDE", HOLDS),
 ) -> Iterable[Literal[Key]]:
-    """All states and relations, or these, of some objects in a world."""
+    """All states and relations, or these, of some objects in a world; not states that a thing leaves by itself.
+
+    Args:
+        world: whose facts they are.
+        nodes: the node of each object.
+        states: names of the ten states of worlds of every action set; all states of the world when empty.
+        relations: names of relations.
+    """
+    rows = world.states if not is_wide(world) else lasting_rows(world)
     index = world.home.index
     keys: dict[int, list[Key]] = {}
     for key, node in nodes.items():
         keys.setdefault(index[node], []).append(key)
     named = mask_of(keys)
-    known = [(state, world.states[STATE_ID[state]]) for state in states if world.states[STATE_ID[state]] & named]
+    known = [
+        (state, row) for state in states or EVERY_STATE[: len(rows)] if (row := rows[EVERY_STATE_ID[state]]) & named
+    ]
     for i, subjects in keys.items():
         found: list[tuple[str, tuple[Key, ...]]] = [(state, ()) for state, row in known if row >> i & 1]
         for relation in relations:

@@ -4,6 +4,8 @@ In that domain places, states and properties become predicates; derived predicat
 found thing (`room(o)`) is stated for every such thing. Where a Grab would remember one of several places, the
 domain remembers all of them, its only difference from the engine. A rule that a derived predicate asks for (`option`)
 is a predicate without arguments, such as `(option-made-bed)`: problems in which the rule is on state it.
+
+Of action set 3 acts are written, and processes are not: nothing gets hot by itself in a plan.
 """
 
 from abc import ABC, abstractmethod
@@ -11,11 +13,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 
-from hearth.kb.formula import OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
+from hearth.kb.action_sets import states_of_set
+from hearth.kb.formula import GONE, OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action, Requirement
-from hearth.schemas.literals import Literal
-from hearth.schemas.vocabulary import RELATIONS, STATES
+from hearth.schemas.literals import HANDS, Literal
+from hearth.schemas.vocabulary import RELATIONS
 
 Names = Mapping[str, str]
 """Names of a formula's variables in PDDL."""
@@ -47,7 +50,9 @@ def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> li
 
     These properties and all that executed actions need, and its states.
     """
-    words = {("state", state) for state in STATES} | {("property", name) for name in properties}
+    words = {("state", state) for state in states_of_set(knowledge.action_set)} | {
+        ("property", name) for name in properties
+    }
     formulas = [body for _, body in knowledge.derived.values()]
     for action in knowledge.actions.values():
         if action.executed:
@@ -231,13 +236,31 @@ class Writer(ABC):
     def changes(self, effect: Effect) -> Iterator[Effect]:
         """Yield an effect as one or more: CLOSE both ways, a state with the end of its opposite."""
         literal = effect.literal
+        if literal.name == GONE:
+            yield from self._gone(effect)
+            return
         yield effect
         if literal.name == "CLOSE":
             yield replace(effect, literal=literal._replace(terms=literal.terms[::-1]))
         if literal.name == "state" and not literal.negated:
             subject, state = literal.terms
-            opposites = (other for other in self.knowledge.excludes(state.name) if other in STATES)
+            opposites = (
+                other
+                for other in self.knowledge.excludes(state.name)
+                if other in states_of_set(self.knowledge.action_set)
+            )
             yield from (replace(effect, literal=Literal("state", (subject, Term(each)), True)) for each in opposites)
+
+    @staticmethod
+    def _gone(effect: Effect) -> Iterator[Effect]:
+        """Yield the effect by which a thing ceases to be anywhere as what it is: in no place and in no hand."""
+        thing, anything = effect.literal.terms[0], Term("anything")
+        yield replace(effect, literal=Literal("state", (thing, Term("GONE"))))
+        pairs = [(name, (thing, anything)) for name in ("ON", "INSIDE", "CLOSE", "FACING")]
+        pairs += [(name, (anything, thing)) for name in ("CLOSE", *HANDS)]
+        for name, terms in pairs:
+            literal = Literal(name, terms, negated=True)
+            yield replace(effect, literal=literal, variables=(*effect.variables, anything.name))
 
     def _effect(self, effect: Effect, names: Names) -> str:
         """One change under its variables and condition, found things turned into variables of their own."""

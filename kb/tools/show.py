@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from hearth.kb.action_sets import LATEST
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action, Consequence, ObjectClass, Placement
 from hearth.kb.tools.correction_reasons import Reasons
@@ -43,6 +44,7 @@ def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
         "name": action.name,
         "id": action.id,
         "executed": action.executed,
+        "executed_by_set_3": knowledge.of_set(LATEST).actions[action.name].executed,
         "said": action.template,
         "words": list(action.words),
         "aliases": list(action.aliases),

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets.dataset_knowledge import copy_overlay, made_with
+from hearth.kb.action_sets import USUAL, name_of_set
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import digest, overlaid
 from hearth.pipelines.engine.settings import Settings
@@ -11,8 +12,14 @@ from hearth.pipelines.engine.stage import Job
 
 
 def knowledge(settings: Settings) -> Knowledge:
-    """Our knowledge, with the user's laid over it."""
-    return overlaid(Path(settings.kb_folder) if settings.kb_folder else None)
+    """Our knowledge, with the user's laid over it, and the actions of the build's set."""
+    known = overlaid(Path(settings.kb_folder) if settings.kb_folder else None)
+    return known.of_set(settings.action_set or USUAL)
+
+
+def set_used(settings: Settings) -> dict[str, Any]:
+    """Return the name of the build's action set, for a manifest or a row."""
+    return {"action_set": name_of_set(settings.action_set or USUAL)}
 
 
 def knowledge_used(job: Job) -> dict[str, Any]:

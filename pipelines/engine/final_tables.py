@@ -1,7 +1,7 @@
 """The tables that need all cases, the pictures and the catalog, published last."""
 
 import shutil
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -15,12 +15,13 @@ from hearth.datasets.format import splits
 from hearth.datasets.format.card import write_card
 from hearth.datasets.format.catalog import write_catalog
 from hearth.datasets.format.croissant import write_croissant
-from hearth.datasets.format.ids import STAMP
+from hearth.datasets.format.ids import stamp
 from hearth.datasets.format.image_tables import write_images
 from hearth.datasets.format.row_conversion import node_row
 from hearth.datasets.format.split_runs import Run, Runs
 from hearth.datasets.format.split_summary import summary
 from hearth.datasets.tensors import EDGE_TYPES
+from hearth.kb.action_sets import USUAL, states_of_set
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.activity_tables import COUNTED, Activities
 from hearth.pipelines.engine.annotated_sketches import ANNOTATED, Annotations, fitting, inherited_annotations
@@ -33,7 +34,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
 from hearth.schemas.tables import TABLES
-from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
+from hearth.schemas.vocabulary import PROPERTIES, RELATIONS
 from hearth.simulation.world.world import World
 from hearth.storage.batch_sizes import ROWS_OF_A_FINAL_TABLE
 from hearth.storage.files import replacing, sync_folder, write_json
@@ -66,22 +67,26 @@ def finish(job: Job, counts: Counts) -> None:
         "ledger": lambda: _ledger(job, counts),
     }
     for table, rows in makers.items():
-        write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
+        write_rows(part_path(job.folder, table, 0), TABLES[table], rows(), _versions(job))
     _write_split(job, annotated.rows)
     _copy_pictures(job)
     write_images(job.folder)
     copy_overlay(job.settings.kb_folder, job.folder)
     copy_homes(job.settings.homes_folder, job.folder)
     strength = strength_used(job)
-    write_card(job.folder, strength)
+    write_card(job.folder, strength, job.settings.action_set or USUAL)
     write_croissant(job.folder, strength)
     write_catalog(job.folder)
 
 
-def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row]) -> None:
+def _versions(job: Job) -> dict[str, str]:
+    return stamp(job.settings.action_set or USUAL)
+
+
+def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row], versions: Mapping[str, str]) -> None:
     """Write a table from rows, each stamped with the versions it belongs to."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    stamped = ({**row, **STAMP} for row in rows)
+    stamped = ({**row, **versions} for row in rows)
     shares = iter(lambda: list(islice(stamped, ROWS_OF_A_FINAL_TABLE)), [])
     write_batches(path, schema, (pa.RecordBatch.from_pylist(share, schema) for share in shares))
 
@@ -101,7 +106,7 @@ def _write_activities(job: Job) -> None:
     """Write the activities, and the descriptions, which are in memory no longer than that."""
     found = Activities(lambda columns: _rows(job, "ingest", columns=columns), _programs(job, COUNTED))
     for table, rows in (("activities", found.activity_rows()), ("descriptions", found.description_rows())):
-        write_rows(part_path(job.folder, table, 0), TABLES[table], rows)
+        write_rows(part_path(job.folder, table, 0), TABLES[table], rows, _versions(job))
 
 
 def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
@@ -114,9 +119,9 @@ def _write_split(job: Job, annotated: Iterable[stage_rows.SketchRow]) -> None:
     """Write the tables that descend from programs, each row to its program's part; a clip to the part that it names."""
     part_of = job.context.assignment.part_of
     sketches = ((part_of(row["program_id"]), row) for row in _sketches(job, annotated))
-    write_split_rows(job.folder, "sketches", TABLES["sketches"], sketches)
+    write_split_rows(job.folder, "sketches", TABLES["sketches"], sketches, _versions(job))
     for table in splits.DRAWN:
-        write_split_rows(job.folder, table, TABLES[table], _filmed(job, table))
+        write_split_rows(job.folder, table, TABLES[table], _filmed(job, table), _versions(job))
 
 
 def _sketches(job: Job, annotated: Iterable[stage_rows.SketchRow]) -> Iterator[stage_rows.SketchRow]:
@@ -267,7 +272,12 @@ def _vocabulary(knowledge: Knowledge) -> Iterator[published_rows.NameRow]:
         yield _name("action", action.id, action.name, action.arity, action.executed)
     for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
         yield _name("class", thing.id, thing.name)
-    graphs = {"state": STATES, "property": PROPERTIES, "relation": RELATIONS, "edge_type": EDGE_TYPES}
+    graphs = {
+        "state": states_of_set(knowledge.action_set),
+        "property": PROPERTIES,
+        "relation": RELATIONS,
+        "edge_type": EDGE_TYPES,
+    }
     for kind, names in graphs.items():
         yield from (_name(kind, number, name) for number, name in enumerate(names))
     for code in sorted(Code, key=lambda code: code.number):

@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engine.build_context import set_used
 from hearth.pipelines.engine.engines import Engine
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.settings import Settings
@@ -81,7 +82,7 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
     if stage.finish:
         stage.finish(job, counts)
     counts.check(stage.name)
-    facts = {**stage.facts(job), "counts": counts.to_json(), "parts": list(_parts(job, numbers))}
+    facts = {**_set_of(job), **stage.facts(job), "counts": counts.to_json(), "parts": list(_parts(job, numbers))}
     manifest = describe(job.folder, job.asked(), inputs, key, **facts)
     seconds = time.monotonic() - began
     write_json(job.folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
@@ -89,6 +90,11 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
     _put_in_place(job)
     progress.end(stage.name, counts, seconds, fresh=True)
     return Result(replace(manifest, folder=settings.folder(stage.name)), fresh=True)
+
+
+def _set_of(job: Job) -> dict[str, str]:
+    """Return the action set of a stage's rows, where they depend on it."""
+    return set_used(job.settings) if "action_set" in job.stage.settings else {}
 
 
 def _inputs(stage: Stage, settings: Settings) -> dict[str, str]:

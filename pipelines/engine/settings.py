@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from hearth.kb.action_sets import USUAL
 from hearth.kb.language.reading_modes import Fuzzy
 
 DERIVED = "homes"
@@ -27,6 +28,8 @@ class Settings:
         homes_folder: the user's own homes, laid over ours.
         kb_folder: the user's own knowledge, laid over ours.
         salt: hashed with worker ids; by default derived from the sources, so that it is never published.
+        action_set: the number of the action set that programs are run by, 2 or 3; for a stage run alone None is that of
+            the stages before it, and else 2.
         strength: how much augmenting perturbs and clears away, a name in `repair/perturbations.yaml`.
         variants: perturbed environments for each execution, at most.
         target: augmented programs in all; 0 for as many as `variants` gives.
@@ -53,6 +56,7 @@ class Settings:
     homes_folder: str | None = None
     kb_folder: str | None = None
     salt: str | None = None
+    action_set: int | None = None
     strength: str = "mild"
     variants: int = 3
     target: int = 0
@@ -67,9 +71,12 @@ class Settings:
     revision: str = ""
 
     def chosen(self, names: tuple[str, ...]) -> dict[str, Any]:
-        """Return the named options, as stored in a manifest."""
+        """Return the named options, as stored in a manifest; of action set 2 nothing is said, as before there was 3."""
         values = asdict(self)
-        return {name: values[name] for name in names}
+        found = {name: values[name] for name in names}
+        if found.get("action_set") in (None, USUAL):
+            found.pop("action_set", None)
+        return found
 
     def folder(self, stage: str) -> Path:
         """Return the folder of a stage."""

@@ -5,20 +5,26 @@ A row is in its program's part, so that a row of `test` descends from no program
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
 import pyarrow as pa
 
-from hearth.datasets.format.ids import STAMP
+from hearth.datasets.format.ids import stamp
 from hearth.datasets.format.splits import SHARES, share_of
 from hearth.schemas.row_types import Row
 from hearth.storage.batch_sizes import ROWS_OF_A_PART
 from hearth.storage.partitions import part_path, table_writer
 
 
-def write_split_rows(folder: Path, table: str, schema: pa.Schema, rows: Iterable[tuple[str | None, Row]]) -> None:
+def write_split_rows(
+    folder: Path,
+    table: str,
+    schema: pa.Schema,
+    rows: Iterable[tuple[str | None, Row]],
+    versions: Mapping[str, str] = stamp(),
+) -> None:
     """Write the rows of a table, each stamped with its versions, to the file of its part.
 
     Args:
@@ -26,12 +32,13 @@ def write_split_rows(folder: Path, table: str, schema: pa.Schema, rows: Iterable
         table: its name.
         schema: its columns.
         rows: each with the part of its program; None for a program without one.
+        versions: the columns of the versions that every row belongs to.
     """
     with ExitStack() as files:
         names = [share_of(table, share) for share in SHARES]
         shares = {name: _Share(files, part_path(folder, name, 0), schema) for name in names}
         for part, row in rows:
-            shares[share_of(table, part)].add({**row, **STAMP})
+            shares[share_of(table, part)].add({**row, **versions})
         for share in shares.values():
             share.flush()
 

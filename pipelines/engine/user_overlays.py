@@ -5,9 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets import dataset_homes, dataset_knowledge
+from hearth.kb.action_sets import number_of_set
 from hearth.pipelines.engine.build_context import knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.manifest import read_manifest
 
 
 def keep_homes(job: Job) -> None:
@@ -18,14 +22,34 @@ def keep_homes(job: Job) -> None:
 def kept_overlays(settings: Settings, only: str) -> Settings:
     """Return the settings of a stage run alone.
 
-    Knowledge that they do not name is `validate`'s, homes are `sample`'s.
+    Knowledge that they do not name is `validate`'s, homes are `sample`'s, the action set is that of the stages before.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, when they name another action set than that of `sample`, whose executions the stage
+            reads.
     """
+    settings = _of_same_set(settings, only)
     known = settings.folder("validate") / dataset_knowledge.FOLDER
     homes = settings.folder("sample") / dataset_homes.FOLDER
     if only != "validate" and not settings.kb_folder and known.is_dir():
         settings = replace(settings, kb_folder=str(known))
     if only not in ("validate", "sample") and not settings.homes_folder and homes.is_dir():
         settings = replace(settings, homes_folder=str(homes))
+    return settings
+
+
+def _of_same_set(settings: Settings, only: str) -> Settings:
+    stages = {"ingest": (), "validate": (), "sample": ("validate",)}.get(only, ("sample", "validate"))
+    for stage in stages:
+        manifest = read_manifest(settings.folder(stage))
+        if manifest is None:
+            continue
+        made = number_of_set(manifest.content["action_set"])
+        if stage == "sample" and settings.action_set not in (None, made):
+            message = f"its executions are of action set {made}, not {settings.action_set}"
+            remedy = f"leave --action-set out, or run `sample --action-set {settings.action_set}` first"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, file=str(manifest.folder), suggestion=remedy)
+        return settings if settings.action_set is not None else replace(settings, action_set=made)
     return settings
 
 

@@ -27,7 +27,7 @@ def no_free_hand(context: RepairContext) -> Edit | None:
 
 def not_holding(context: RepairContext) -> Edit | None:
     """Find and take it first."""
-    index = _wanted(context)
+    index = _wanted(context) if context.failure.objects else None
     if index is None or not context.world.home.able("Grab") >> index & 1:
         return None
     thing = context.ref(index)

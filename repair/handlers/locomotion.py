@@ -7,12 +7,16 @@ from hearth.schemas.program import ObjectRef, Step
 
 
 def not_close(context: RepairContext) -> Edit | None:
-    """Walk to an object that is not close."""
+    """Walk to an object that is not close; nothing helps where the home lacks a tool."""
+    if not context.failure.objects:
+        return None
     return walked_to(context, "not_close", context.object())
 
 
 def not_in_room(context: RepairContext) -> Edit | None:
-    """Walk to the object to be watched if it is in another room."""
+    """Walk to the object to be watched, or to the tool, if it is in another room."""
+    if not context.failure.objects:
+        return None
     return walked_to(context, "not_in_room", context.object())
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
-from hearth.schemas.vocabulary import STATES
+from hearth.schemas.vocabulary import EVERY_STATE
 from hearth.scoring.metrics.final_graph import nodes_of
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import INSIDE, NOTHING, ON
@@ -49,7 +49,7 @@ def _achieved(start: World, final: World) -> tuple[Iterable[tuple[int, str]], It
 
 def _states_set(start: World, final: World) -> Iterator[tuple[int, str]]:
     ids = final.home.ids
-    for name, before, after in zip(STATES, start.states, final.states, strict=True):
+    for name, before, after in zip(EVERY_STATE, start.states, final.states, strict=False):
         yield from ((ids[i], name) for i in indices(after & ~before))
 
 

@@ -7,14 +7,16 @@ An act that only set 3 executes has no function of its own: its checks and effec
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from hearth.kb.formula import Formula, free
+from hearth.kb.formula import And, Formula, Or, Some, Term, free
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action as Known
 from hearth.kb.knowledge_records import Condition, Consequence
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Literal
+from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.actions import common
 from hearth.simulation.actions.common import Action, Masks, refuse
 from hearth.simulation.actions.formula_evaluation import Reading
@@ -23,6 +25,7 @@ from hearth.simulation.actions.prepared_effects import bound_to, prepared
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
+from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
@@ -119,8 +122,53 @@ class _Check:
             found = need_legs(world, agent, *[i for i in objects if i >= 0])
         else:
             found = _REFUSALS[code](world, agent, o) if code in _REFUSALS and o >= 0 else None
-        expected, actual = _wanted(str(self.condition.formula), world, objects[0])
-        return found or refuse(world, code, expected, actual, *[i for i in objects[:1] if i >= 0])
+        if found is not None:
+            return found
+        expected, actual = _wanted(str(self.condition.formula), world, o)
+        if self.position >= 0:
+            return refuse(world, code, expected, actual, o)
+        names, tools = tools_of(self.condition.formula, world)
+        if not tools:
+            return replace(refuse(world, code, expected, actual), names=names[:1])
+        here = rows.agent_room(world, agent)
+        return refuse(world, code, expected, actual, min(tools, key=lambda i: (rows.room_of(world, i) != here, i)))
+
+
+def tools_of(formula: Formula, world: World) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """Return what a check of a tool asks for, by class or part of its name, and the things of the world that are so.
+
+    Of alternatives the first counts of which the home has things: a needle before a sewing machine.
+    """
+    names: list[str] = []
+    for some in formula.parts if isinstance(formula, Or) else (formula,):
+        if not isinstance(some, Some):
+            continue
+        kinds = [each for each in _literals(some.part) if each.name in ("class", "class_contains")]
+        home = world.home
+        things = mask_of(i for each in kinds for i in indices(_of_class(each, home)))
+        names += [each.terms[1].name for each in kinds]
+        things &= ~home.absent & ~(world.states[_GONE] if len(world.states) > _GONE else 0)
+        if things:
+            return tuple(names), tuple(indices(things))
+    return tuple(names), ()
+
+
+def _of_class(atom: Literal[Term], home: Home) -> int:
+    name = atom.terms[1].name
+    if atom.name == "class":
+        return home.by_class.get(name, 0)
+    return mask_of(i for known, row in home.by_class.items() if name in known for i in indices(row))
+
+
+def _literals(formula: Formula) -> Iterator[Literal[Term]]:
+    if isinstance(formula, Literal):
+        yield formula
+    elif isinstance(formula, And | Or):
+        for part in formula.parts:
+            yield from _literals(part)
+
+
+_GONE = EVERY_STATE_ID["GONE"]
 
 
 _REFUSALS = {

@@ -4,6 +4,7 @@ Rows are shared by copying lists of references, so that what is not touched cost
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from operator import attrgetter, or_
 from types import MappingProxyType
@@ -12,9 +13,9 @@ from typing import NamedTuple
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.graph_change import Change, restated
+from hearth.schemas.graph_change import Change, State, restated
 from hearth.schemas.short_repr import brief
-from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
+from hearth.schemas.vocabulary import CHARACTER_CLASS, FURTHER_STATES, ROOM_CATEGORY, STATE_ID
 from hearth.simulation.world.agent import Agent, change_characters
 from hearth.simulation.world.bits import cleared, indices
 from hearth.simulation.world.home import Home
@@ -105,9 +106,33 @@ def changed(home: Home, change: Change) -> Home:
     Raises:
         HearthError: BAD_GRAPH, when an id is used twice or an edge names a node that there is not.
     """
-    states = restated(change, lambda node_id: states_of(home.index[node_id], home.states))
+    simulated = replace(
+        change, set_states=_simulated(change.set_states), cleared_states=_simulated(change.cleared_states)
+    )
+    states = restated(simulated, lambda node_id: states_of(home.index[node_id], home.states))
     ordered = {node_id: sorted(names) for node_id, names in states.items()}
-    return extended(home, change.added_nodes, change.added, change.removed, ordered)
+    new = extended(home, change.added_nodes, change.added, change.removed, ordered)
+    if simulated != change:
+        _restate_further(new, change.cleared_states, change.set_states)
+    return new
+
+
+def _simulated(states: tuple[State, ...]) -> tuple[State, ...]:
+    """Return the states that worlds of every action set know; nearly always all of them."""
+    further = any(name not in STATE_ID for _, name in states)
+    return tuple(each for each in states if each[1] in STATE_ID) if further else states
+
+
+def _restate_further(home: Home, left: Iterable[State], entered: Iterable[State]) -> None:
+    """Change the further states of a new home's start (action set 3)."""
+    found = dict(zip(FURTHER_STATES, home.further, strict=True))
+    for states, change in ((left, cleared), (entered, or_)):
+        for node_id, name in states:
+            if name in found:
+                bit = 1 << home.index[node_id]
+                found[name] = change(found[name], bit)
+                home.restated_further |= bit
+    home.__dict__["further"] = tuple(found.values())
 
 
 def added_nodes(base: Home, home: Home) -> tuple[Node, ...]:

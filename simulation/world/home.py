@@ -77,6 +77,7 @@ class Home:
         others: edges that take no part in the simulation, kept for printing.
         nodes: as they were given; `node(i)` also knows the states that `edit.extended` gave.
         restated: nodes whose states at the start are others than the node says.
+        restated_further: nodes whose further states are (action set 3).
         absent: indices of nodes that were taken away by `edit`: nothing refers to them any more.
         base: the home this one was derived from, whose nodes are the first of its own, and the nodes whose rows differ
             from it, new ones included; None of a home of its own.
@@ -91,7 +92,7 @@ class Home:
     ) -> None:
         self.name = name
         self.knowledge = knowledge
-        self.restated = self.absent = 0
+        self.restated = self.restated_further = self.absent = 0
         self.base: tuple[Home, int] | None = None
         read = home_building.read_nodes(nodes)
         self.nodes, self.ids, self.index, self.classes = read.nodes, read.ids, read.index, read.classes
@@ -141,6 +142,8 @@ class Home:
         """The node as it was given, in the states of the start."""
         given = self.nodes[index]
         node = given if isinstance(given, Node) else read_node(given)
+        if self.restated_further >> index & 1:
+            return with_states(node, index, self.states + self.further)
         return with_states(node, index, self.states) if self.restated >> index & 1 else node
 
     def copy(self) -> Home:
@@ -148,6 +151,7 @@ class Home:
         new: Home = object.__new__(Home)
         new.name, new.knowledge, new.states, new.agents = self.name, self.knowledge, self.states, self.agents
         new.rooms, new.restated, new.absent, new.base = self.rooms, self.restated, self.absent, self.base
+        new.restated_further = self.restated_further
         new.others, new.nodes, new.ids, new.classes = self.others, self.nodes[:], self.ids[:], self.classes[:]
         new.index, new.by_class, new.properties = self.index.copy(), self.by_class.copy(), self.properties.copy()
         new.on, new.bears, new.inside, new.contents = self.on[:], self.bears[:], self.inside[:], self.contents[:]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hearth.kb.action_sets import LATEST
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.vocabulary import STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID, STATE_ID
 from hearth.simulation.actions.common import refuse
 from hearth.simulation.world import rows
 
@@ -43,11 +44,14 @@ def impossible(home: Home, i: int, state: str) -> Failure | None:
     name = home.classes[i]
     thing = home.knowledge.object_class(name)
     posture = state in ("SITTING", "LYING")
-    if state in STATE_ID and (posture == bool(home.characters >> i & 1)):
+    simulated = EVERY_STATE_ID if home.knowledge.action_set == LATEST else STATE_ID
+    if state in simulated and (posture == bool(home.characters >> i & 1)):
         if posture or thing is None or state in thing.states:
             return None
         group = home.knowledge.state_groups[home.knowledge.group_of(state)]
         if any(home.properties.get(prop, 0) >> i & 1 for prop in group.given_by | group.needs):
+            return None
+        if state not in STATE_ID and not group.needs:  # acts and processes bring any thing into it
             return None
     expected = f"a thing that can be {state}"
     return Failure(Code.NOT_AFFORDED, objects=(home.ids[i],), names=(name,), expected=expected, actual="none")

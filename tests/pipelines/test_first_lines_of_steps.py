@@ -12,7 +12,7 @@ SENTENCES = {
     "Please grab the towel. Wipe the mirror with it.\nNow drop the towel. Walk to the hall.": "grab the towel",
 }
 NUMBERED_FROM_0 = {
-    "ff: found legal plan as follows\n\nstep    0: WALK BEDROOM\n        1: FIND LAPTOP\n        2: GRAB LAPTOP": "bedroom",
+    "ff: found legal plan as follows\n\nstep    0: WALK BEDROOM\n    1: FIND LAPTOP\n    2: GRAB LAPTOP": "bedroom",
     "step 0: WALK BEDROOM\n1: FIND LAPTOP\n2: GRAB LAPTOP": "bedroom",
     "0: FLY BEDROOM\n1: FIND LAPTOP\n2: GRAB LAPTOP": "BEDROOM",
 }

@@ -33,6 +33,7 @@ THINGS = CATALOG | {
     "blanket": ("GRABBABLE", "COVER_OBJECT"),
     "broom": ("GRABBABLE",),
     "drinking_glass": ("GRABBABLE", "RECIPIENT"),
+    "faucet": ("HAS_SWITCH",),
     "dishwasher": ("CAN_OPEN", "CONTAINERS", "HAS_SWITCH", "HAS_PLUG"),
     "hair": ("BODY_PART", "GRABBABLE"),
     "hairbrush": ("GRABBABLE",),
@@ -45,6 +46,7 @@ THINGS = CATALOG | {
     "razor": ("GRABBABLE",),
     "sauce_pan": ("GRABBABLE", "RECIPIENT"),
     "shower": ("HAS_SWITCH", "CAN_OPEN"),
+    "sink": ("RECIPIENT", "CONTAINERS"),
     "stove": ("HAS_SWITCH", "SURFACES"),
     "telephone": ("GRABBABLE", "HAS_SWITCH"),
     "toaster": ("HAS_SWITCH", "CONTAINERS"),
@@ -229,6 +231,16 @@ def test_what_comes_by_itself_comes_after_its_ticks(where, steps, expected):
     world, ids = kitchen(**where)
     execution = ran(world, ids, *steps)
     assert {key: first_tick(execution, ids[key[0]], key[1]) for key in expected} == expected
+
+
+def test_water_runs_into_the_sink_beside_its_tap_while_that_is_on():
+    world, ids = kitchen(plate="INSIDE sink", faucet="CLOSE sink")
+    done = ran(world, ids, "SwitchOn faucet", "Wait 2", "SwitchOff faucet")
+    assert first_tick(done, ids["plate"], "WET") == 1
+    assert done.worlds[1].has_state(ids["sink"], "FULL") and done.final.has_state(ids["sink"], "EMPTY")
+    assert first_tick(ran(world, ids, "Wait 4"), ids["plate"], "WET") == -1
+    apart, ids = kitchen(plate="INSIDE sink")
+    assert first_tick(ran(apart, ids, "SwitchOn faucet", "Wait 4"), ids["plate"], "WET") == -1
 
 
 def test_what_ends_by_itself_ends():
