@@ -213,6 +213,7 @@ def digest_of(tasks: Iterable[HouseholdTask]) -> str:
     """Return 32 hexadecimal digits of all that tasks are; equal for equal tasks in the same order."""
     whole = blake2b(digest_size=16)
     for task in tasks:
-        parts = (task.id, task.home, task.seed, task.instruction, task.goal, *task.expert)
+        made = (task.family, task.split, task.activity, task.min_ticks)
+        parts = (task.id, *made, task.home, task.seed, task.instruction, task.goal, *task.expert)
         whole.update("\x1f".join(map(str, parts)).encode() + b"\x1e")
     return whole.hexdigest()
