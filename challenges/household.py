@@ -28,8 +28,9 @@ from hearth.challenges.household_definition import (
 )
 from hearth.challenges.household_families import FAMILIES
 from hearth.challenges.household_starts import overlaps, start_for_goal
-from hearth.challenges.instruction_reader import IN_SHORT, read_instruction
+from hearth.challenges.instruction_reader import read_instruction
 from hearth.challenges.instruction_writer import instruction
+from hearth.envs.compact_text import IN_SHORT
 from hearth.grounding.environments.default_state import prepared
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import default

@@ -27,24 +27,24 @@ class OpenTask(Task):
     """A household task as a task of a challenge: its family is its goal set, and it was demonstrated nowhere.
 
     Attributes:
-        told: the household task.
+        origin: the household task.
     """
 
-    told: HouseholdTask
+    origin: HouseholdTask
 
     @property
     def instruction(self) -> str:
         """Return the task's own instruction."""
-        return self.told.instruction
+        return self.origin.instruction
 
     def worded(self, knowledge: Knowledge, number: int = 0, terse: bool | None = None) -> str:
         """Return the goal in English, in another wording of the split's pool."""
         pool, seed = split_named(self.split).words, derive(self.seed, "instruction", number)
-        return instruction(self.goal, knowledge, seed, pool=pool, family=self.told.family, terse=terse)
+        return instruction(self.goal, knowledge, seed, pool=pool, family=self.origin.family, terse=terse)
 
     def start(self, knowledge: Knowledge, agents: int | None = None) -> World:
         """Return the world in which it starts; equal every time, and with one agent."""
-        return self.told.start(knowledge)
+        return self.origin.start(knowledge)
 
     def read(self, text: str, knowledge: Knowledge) -> Goal:
         """Return the goal of an instruction; errors as of `read_instruction`."""
@@ -63,14 +63,14 @@ class OpenTask(Task):
     def published(self) -> bool:
         """Return whether the task is the one that is made from its id; making it takes a second or two."""
         try:
-            return household_task(self.id, knowledge=default()) == self.told
+            return household_task(self.id, knowledge=default()) == self.origin
         except HearthError:
             return False
 
 
-def as_task(told: HouseholdTask) -> OpenTask:
+def as_task(origin: HouseholdTask) -> OpenTask:
     """Return a household task as a task of a challenge."""
-    return OpenTask(told.id, NAME, told.split, told.home, "", (told.family,), told.goal, told.seed, told)
+    return OpenTask(origin.id, NAME, origin.split, origin.home, "", (origin.family,), origin.goal, origin.seed, origin)
 
 
 def split_of(tasks: tuple[Task, ...]) -> str:

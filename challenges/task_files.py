@@ -51,8 +51,8 @@ class Suite:
         """32 hexadecimal digits of all that the tasks are; equal for equal tasks."""
         import orjson
 
-        if told := self.household:
-            return digest_of([task.told for task in told])
+        if origins := self.household:
+            return digest_of([task.origin for task in origins])
         data = [self.challenge, self.split, *map(task_data, self.tasks)]
         return blake2b(orjson.dumps(data, option=orjson.OPT_SORT_KEYS), digest_size=16).hexdigest()
 
@@ -67,8 +67,8 @@ class Suite:
 
         A household task is made anew to find out, which takes a second or two.
         """
-        if told := self.household:
-            return all(task.published for task in told)
+        if origins := self.household:
+            return all(task.published for task in origins)
         try:
             return self.tasks == published_tasks.tasks(self.challenge, self.split, limit=len(self.tasks))
         except HearthError:
@@ -97,8 +97,8 @@ def task_data(task: Task) -> dict[str, Any]:
 
 def suite_data(found: Suite) -> dict[str, Any]:
     """Tasks as JSON, with their digest."""
-    if told := found.household:
-        return household_files.tasks_data([task.told for task in told])
+    if origins := found.household:
+        return household_files.tasks_data([task.origin for task in origins])
     return {
         "format": FORMAT,
         "challenge": found.challenge,

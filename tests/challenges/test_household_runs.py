@@ -90,7 +90,7 @@ def test_a_changed_task_is_noticed(some, part, value):
 
 def test_other_tasks_are_not_the_published_ones(some):
     first, *others = some.tasks
-    changed = replace(first, told=replace(first.told, instruction="Do nothing."))
+    changed = replace(first, origin=replace(first.origin, instruction="Do nothing."))
     assert not replace(some, tasks=(changed, *others)).published
     assert not replace(some, tasks=(replace(first, id="mine"), *others)).published
 
