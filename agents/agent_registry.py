@@ -13,6 +13,7 @@ from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.human_population import PEOPLE
 from hearth.agents.learned_helpers import Hybrid, Learned
 from hearth.agents.protocol import Agent
+from hearth.agents.random_agents import AdmissibleRandom, Random
 from hearth.agents.random_helper import RandomHelper
 
 
@@ -46,6 +47,8 @@ MAIN: dict[str, Callable[[GoalsIn], MainAgent]] = {
     "human_like": lambda goals: HumanLike(),
     "oracle": lambda goals: HumanLike(Habits(sees_all=True)),
     "answering": lambda goals: Answering(),
+    "random": lambda goals: Random(),
+    "admissible_random": lambda goals: AdmissibleRandom(),
     **PEOPLE,
 }
 """The main agents, which a helper helps; each is made from the possible goals."""

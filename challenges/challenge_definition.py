@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
 
+from hearth.challenges import household_definition
 from hearth.challenges.goal_grammar import GoalSet, Grammar, instance
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
@@ -115,8 +116,10 @@ def challenge(name: str) -> Challenge:
     Raises:
         HearthError: BAD_ARGUMENT: there is none of that name.
     """
+    if name == household_definition.NAME:
+        return _household()
     if name not in (*NAMES, *VARIANTS):
-        remedy = ", ".join((*NAMES, *VARIANTS))
+        remedy = ", ".join((*NAMES, *VARIANTS, household_definition.NAME))
         raise HearthError.of(Code.BAD_ARGUMENT, f"there is no challenge `{name[:40]}`", suggestion=remedy)
     data = packaged("hearth.challenges", f"{name}.yaml")
     if "like" in data:
@@ -144,6 +147,30 @@ def challenge(name: str) -> Challenge:
         splits,
         data["demonstrations"],
         data["habits"],
+    )
+
+
+def _household() -> Challenge:
+    """Return the challenge of household tasks: any goal, one agent, no splits of `published_tasks`."""
+    data = household_definition.settings()
+    homes = {part: tuple(given["ours"]) for part, given in data["homes"].items()}
+    return Challenge(
+        household_definition.NAME,
+        data["title"],
+        Grammar({}, 0),
+        frozenset(data["never_at"]),
+        data["ticks"],
+        partial=True,
+        messages=False,
+        bodies=household_definition.RULES.bodies,
+        strides=(data["stride"],),
+        actions=data["actions"],
+        train=homes["train"],
+        test=homes["test"],
+        held_out=0,
+        splits={},
+        demonstrations=0,
+        habits={},
     )
 
 

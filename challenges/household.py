@@ -28,8 +28,9 @@ from hearth.challenges.household_definition import (
 )
 from hearth.challenges.household_families import FAMILIES
 from hearth.challenges.household_starts import overlaps, start_for_goal
-from hearth.challenges.instruction_reader import IN_SHORT, read_instruction
+from hearth.challenges.instruction_reader import read_instruction
 from hearth.challenges.instruction_writer import instruction
+from hearth.envs.compact_text import IN_SHORT
 from hearth.grounding.environments.default_state import prepared
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import default
@@ -213,6 +214,7 @@ def digest_of(tasks: Iterable[HouseholdTask]) -> str:
     """Return 32 hexadecimal digits of all that tasks are; equal for equal tasks in the same order."""
     whole = blake2b(digest_size=16)
     for task in tasks:
-        parts = (task.id, task.home, task.seed, task.instruction, task.goal, *task.expert)
+        made = (task.family, task.split, task.activity, task.min_ticks)
+        parts = (task.id, *made, task.home, task.seed, task.instruction, task.goal, *task.expert)
         whole.update("\x1f".join(map(str, parts)).encode() + b"\x1e")
     return whole.hexdigest()

@@ -17,6 +17,9 @@ from hearth.storage.input_files import read_input
 
 FORMAT = "hearth-household-1"
 
+MOST_TASKS = 20_000
+"""Tasks of a file, at most."""
+
 _TEXTS = ("id", "family", "home", "instruction", "split", "activity")
 _NUMBERS = ("seed", "min_ticks")
 
@@ -37,11 +40,16 @@ def task_data(task: HouseholdTask) -> dict[str, Any]:
     }
 
 
+def tasks_data(tasks: Sequence[HouseholdTask]) -> dict[str, Any]:
+    """Return tasks as JSON, with their digest."""
+    return {"format": FORMAT, "challenge": NAME, "digest": digest_of(tasks), "tasks": list(map(task_data, tasks))}
+
+
 def write_tasks(path: Path, tasks: Sequence[HouseholdTask]) -> None:
     """Write a file of tasks."""
     import orjson
 
-    data = {"format": FORMAT, "challenge": NAME, "digest": digest_of(tasks), "tasks": list(map(task_data, tasks))}
+    data = tasks_data(tasks)
     write_bytes(path, orjson.dumps(data, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
 
 
@@ -58,15 +66,24 @@ def read_tasks(path: Path, knowledge: Knowledge) -> tuple[HouseholdTask, ...]:
         data = orjson.loads(read_input(path))
     except orjson.JSONDecodeError as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error
+    return tasks_of(data, str(path), knowledge)
+
+
+def tasks_of(data: Any, path: str, knowledge: Knowledge) -> tuple[HouseholdTask, ...]:
+    """Return the tasks of a file's content; errors as of `read_tasks`, and DUPLICATE."""
     if not isinstance(data, Mapping) or data.get("format") != FORMAT or not isinstance(data.get("tasks"), list):
         remedy = "`challenge tasks household --split train --limit 5 --out FILE` writes one"
-        raise HearthError.of(Code.BAD_JSON, f"not a file of tasks ({FORMAT})", file=str(path), suggestion=remedy)
+        raise HearthError.of(Code.BAD_JSON, f"not a file of tasks ({FORMAT})", file=path, suggestion=remedy)
+    if not 0 < len(data["tasks"]) <= MOST_TASKS:
+        raise HearthError.of(Code.BAD_JSON, f"`tasks` is not a list of 1 to {MOST_TASKS:,} tasks", file=path)
     given = enumerate(data["tasks"], 1)
     tasks = tuple(_task(each, f"{path}: task {number}", knowledge) for number, each in given)
+    if len({task.id for task in tasks}) < len(tasks):
+        raise HearthError.of(Code.DUPLICATE, "two tasks have one id", file=path)
     if data.get("digest") != digest_of(tasks):
         message = f"the tasks have the digest {digest_of(tasks)}, not {str(data.get('digest'))[:40]}"
         remedy = "the file was changed after it was written"
-        raise HearthError.of(Code.DAMAGED_FILE, message, file=str(path), suggestion=remedy)
+        raise HearthError.of(Code.DAMAGED_FILE, message, file=path, suggestion=remedy)
     return tasks
 
 

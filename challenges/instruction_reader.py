@@ -9,15 +9,13 @@ from typing import NamedTuple
 
 from hearth.challenges.instruction_object_names import EVERY, Nouns, nouns, wordings
 from hearth.challenges.instruction_writer import SEPARATOR
+from hearth.envs.compact_text import IN_SHORT
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.simulation.world.home import Home
-
-IN_SHORT = " In short: "
-"""Between somebody's own words and the instruction that says the same."""
 
 LONGEST = 20_000
 """Characters of an instruction, at most."""

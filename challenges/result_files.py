@@ -165,6 +165,17 @@ def _digest(header: Header, episode: Mapping[str, Any]) -> str:
     return blake2b(orjson.dumps(parts, option=orjson.OPT_SORT_KEYS), digest_size=16).hexdigest()
 
 
+def is_results(path: Path) -> bool:
+    """Return whether a file begins as results do; other files are read as tasks."""
+    import orjson
+
+    try:
+        first = orjson.loads(next(read_lines(path), b"") if path.is_file() else read_input(path).partition(b"\n")[0])
+    except orjson.JSONDecodeError:
+        return False
+    return isinstance(first, dict) and first.get("format") == FORMAT
+
+
 def read(path: Path) -> Results:
     """Return the results of a file; whether they are true, `verification` finds out.
 

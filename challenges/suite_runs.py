@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from hearth.challenges.episode_agents import Lineup
+from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Job, Known, Record
 from hearth.challenges.parallel_episodes import Spread, here
 from hearth.challenges.result_files import Header, Results, first_line, line, read, read_records
@@ -55,7 +55,7 @@ def run(
     Raises:
         HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
     """
-    header = Header(suite, lineup.checked(), seeds, code=lineup.code)
+    header = Header(suite, _with_room(suite, lineup.checked()), seeds, code=lineup.code)
     before: dict[tuple[str, int, bool], Record] = {}
     if out.exists() and next(read_lines(out), b"") == first_line(header):
         found = read(out)
@@ -79,6 +79,18 @@ def run(
             seen(done, kept + len(jobs))
     commit(partial, out)
     return read(out)
+
+
+def _with_room(suite: Suite, lineup: Lineup) -> Lineup:
+    """Return a lineup that the tasks have room for.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: the tasks are for one agent, and there is a helper.
+    """
+    if suite.household and lineup.helper != NOBODY:
+        message = f"tasks of `{suite.challenge}` are for one agent, and there is a helper `{lineup.helper[:60]}`"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out --helper")
+    return lineup
 
 
 def _kept(header: Header, partial: Path) -> int:

@@ -10,9 +10,13 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-from hearth.challenges import published_tasks
+from hearth.challenges import household_files, published_tasks
 from hearth.challenges.challenge_definition import Challenge, challenge
+from hearth.challenges.household import digest_of, household_tasks
+from hearth.challenges.household_definition import NAME as HOUSEHOLD
+from hearth.challenges.household_runs import OpenTask, as_task, split_of
 from hearth.challenges.tasks import Task
+from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import write_bytes
@@ -47,12 +51,24 @@ class Suite:
         """32 hexadecimal digits of all that the tasks are; equal for equal tasks."""
         import orjson
 
+        if origins := self.household:
+            return digest_of([task.origin for task in origins])
         data = [self.challenge, self.split, *map(task_data, self.tasks)]
         return blake2b(orjson.dumps(data, option=orjson.OPT_SORT_KEYS), digest_size=16).hexdigest()
 
     @property
+    def household(self) -> tuple[OpenTask, ...]:
+        """Return its tasks where they are household tasks; none where they are another challenge's."""
+        return tuple(task for task in self.tasks if isinstance(task, OpenTask))
+
+    @cached_property
     def published(self) -> bool:
-        """Return whether these are the first tasks of the published split."""
+        """Return whether these are published tasks: the first of their split; of `household`, those of their ids.
+
+        A household task is made anew to find out, which takes a second or two.
+        """
+        if origins := self.household:
+            return all(task.published for task in origins)
         try:
             return self.tasks == published_tasks.tasks(self.challenge, self.split, limit=len(self.tasks))
         except HearthError:
@@ -60,7 +76,10 @@ class Suite:
 
 
 def suite(name: str, split: str, seed: int = published_tasks.PUBLISHED, limit: int | None = None) -> Suite:
-    """Return the tasks of a split (see `published_tasks.tasks`)."""
+    """Return the tasks of a split (see `published_tasks.tasks` and, of `household`, `household.household_tasks`)."""
+    if name == HOUSEHOLD:
+        drawn = household_tasks(split, limit, max(seed, 0))
+        return Suite(name, split, published_tasks.PUBLISHED, tuple(map(as_task, drawn)))
     return Suite(name, split, seed, published_tasks.tasks(name, split, seed, limit))
 
 
@@ -78,6 +97,8 @@ def task_data(task: Task) -> dict[str, Any]:
 
 def suite_data(found: Suite) -> dict[str, Any]:
     """Tasks as JSON, with their digest."""
+    if origins := found.household:
+        return household_files.tasks_data([task.origin for task in origins])
     return {
         "format": FORMAT,
         "challenge": found.challenge,
@@ -113,6 +134,9 @@ def read(path: Path) -> Suite:
 
 def read_suite(data: Any, file: str) -> Suite:
     """Return the tasks of a file's content; errors as of `read`."""
+    if isinstance(data, Mapping) and data.get("format") == household_files.FORMAT:
+        tasks = tuple(map(as_task, household_files.tasks_of(data, file, default())))
+        return Suite(HOUSEHOLD, split_of(tasks), published_tasks.PUBLISHED, tasks)
     if not isinstance(data, Mapping) or data.get("format") != FORMAT:
         remedy = "`challenge tasks wah --split test-1 --out FILE` writes one"
         raise HearthError.of(Code.BAD_JSON, f"not a file of tasks ({FORMAT})", file=file, suggestion=remedy)

@@ -37,6 +37,12 @@ Nothing; commands about small things that are not wanted; the numbers of those t
 CUT = " ..."
 """The end of a text that was cut."""
 
+IN_SHORT = " In short: "
+"""Between a person's own words and the instruction that says the same."""
+
+MOST_GOAL = 300
+"""Characters of the goal's words."""
+
 
 @dataclass(frozen=True)
 class Layout:
@@ -125,6 +131,13 @@ def _cut(text: str, most: int) -> str:
     return text if len(text) <= most else text[: most - len(CUT)] + CUT
 
 
+def _shortened(said: str) -> str:
+    """Return the words of a goal; where they are too long, a person's own words are cut, and not their short form."""
+    words, mark, short = said.rpartition(IN_SHORT)
+    room = MOST_GOAL - len(mark) - len(short)
+    return f"{_cut(words, room)}{mark}{short}" if mark and room > len(CUT) else _cut(short if mark else said, MOST_GOAL)
+
+
 class _Writer:
     """The lines of one observation."""
 
@@ -152,7 +165,7 @@ class _Writer:
         seen = list(seen_goal(self.wanted_goal, self.view))
         said = printable(task) or "; ".join(self._said(each) for each in seen)
         counts = ", ".join(f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None)
-        return f"Goal: {_cut(said, 300)}{'' if said.endswith(('.', '!', '?')) else '.'} You see {counts} done."
+        return f"Goal: {_shortened(said)}{'' if said.endswith(('.', '!', '?')) else '.'} You see {counts} done."
 
     def _said(self, each: SeenLiteral) -> str:
         """Return a counted literal in words, where the protocol has a phrase; as goals write it otherwise."""

@@ -354,11 +354,15 @@ class TextHome:
 
 
 def _towards(step: Step, view: View) -> Step:
-    """Return an expert's walk in words for those who see less: to the place of an unseen thing, or to its room."""
+    """Return an expert's instruction for those who see less: about an unseen thing, a walk to its place or its room.
+
+    An expert at a door reaches things of the next room that nobody sees from there.
+    """
     home, world = view.world.home, view.world
-    if step.action != WALK or step.objects[0].node is None or view.sees(step.objects[0].node):
+    unseen = [ref.node for ref in step.objects if ref.node is not None and not view.sees(ref.node)]
+    if not unseen:
         return step
-    at = home.index[step.objects[0].node]
+    at = home.index[unseen[0]]
     while not view.mask >> at & 1:
         inside = rows.inside(world, at)
         above = rows.on(world, at) | inside & ~home.rooms or inside

@@ -21,8 +21,9 @@ from hearth.challenges.household_definition import (
 )
 from hearth.challenges.household_drawing import attempts, drawn_tasks
 from hearth.challenges.household_files import read_tasks, write_tasks
-from hearth.challenges.instruction_reader import IN_SHORT, read_instruction
+from hearth.challenges.instruction_reader import read_instruction
 from hearth.commands import challenge_household, play
+from hearth.envs.compact_text import IN_SHORT
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

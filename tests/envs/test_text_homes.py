@@ -226,6 +226,20 @@ def test_the_sentence_of_a_task_is_its_goal():
     assert text.startswith("Goal: Bring me the ? milk!") and info["id"] == "said"
 
 
+@pytest.mark.parametrize("length", [10, 400, 5_000])
+def test_of_a_long_sentence_a_persons_words_are_cut_and_not_their_short_form(length):
+    said = Said()
+    short = "Put a carton of milk on the table."
+    said.instruction = f"{'Words of mine. ' * (length // 15)}In short: {short}"
+    (text,), _ = TextHomes([said], worlds=1).reset()
+    first = text.splitlines()[0]
+    assert f"In short: {short} You see" in first and len(first) < 350
+    assert (" ..." in first) == (length > 300)
+    said.instruction = f"Words. In short: {short * 20}"
+    (text,), _ = TextHomes([said], worlds=1).reset()
+    assert text.startswith("Goal: Put a carton") and len(text.splitlines()[0]) < 350
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [
