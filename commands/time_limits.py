@@ -1,4 +1,4 @@
-"""Time limits of commands where `--within` is not given, in seconds; `--within 0` is no limit."""
+"""Time limits of commands where `--within` is not given, in seconds; `--within 0` sets none."""
 
 WITHIN: float = 3600
 """Time for `verify`, `diff`, `export`, `report` and `kb mine`, which may be given a stranger's dataset."""
