@@ -66,6 +66,7 @@ def action(name: str, kb: Path | None = None, as_json: bool = False) -> None:
 
 @app.command()
 def find(
+    word: str = "",
     can: list[str] | None = None,
     on: str = "",
     inside: str = "",
@@ -79,22 +80,31 @@ def find(
 ) -> None:
     """Find the objects that meet all conditions, ordered by frequency if a place is given.
 
+    A WORD finds the objects and the actions with it in one of their names.
+
     \b
-    Example:
+    Examples:
+      hearth kb find counter
       hearth kb find --can Grab --in fridge
     """
-    from hearth.kb.tools.find import Query
+    from hearth.kb.tools.find import Query, find_actions
     from hearth.kb.tools.find import find as find_objects
 
-    query = Query(tuple(can or ()), on, inside, near, room, tuple(has or ()), tuple(may_be or ()), kind)
-    found = find_objects(read_knowledge(kb), query)
+    known = read_knowledge(kb)
+    query = Query(tuple(can or ()), on, inside, near, room, tuple(has or ()), tuple(may_be or ()), kind, word)
+    found = find_objects(known, query)
+    actions = find_actions(known, word) if query == Query(word=word) and word else ()
     if as_json:
-        output.emit({"found": [thing.name for thing in found], "count": len(found)})
+        named = {"actions": [action.name for action in actions]} if word else {}
+        output.emit({"found": [thing.name for thing in found], "count": len(found), **named})
         return
     output.table(
         ("object", "kind", "rooms", "what it is"), [(o.name, o.hypernym, " ".join(o.rooms), o.gloss) for o in found]
     )
-    output.line(output.counted(len(found), "object"))
+    if actions:
+        output.table(("action", "as a phrase"), [(action.name, action.template) for action in actions])
+    counts = [output.counted(len(found), "object"), *([output.counted(len(actions), "action")] if word else [])]
+    output.line(", ".join(counts))
 
 
 @app.command()

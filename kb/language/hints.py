@@ -1,12 +1,12 @@
 """Hints for a sentence that is not understood: the steps that may be meant, or the word that Hearth does not know."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import islice, product
 from typing import NamedTuple
 
-from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge import Knowledge, grouped
 from hearth.kb.language.lexicon import is_english, is_noun, is_verb, noun_lemmas, verb_lemmas
 from hearth.kb.language.noun_phrases import bare_words, thing_of
 from hearth.kb.language.phrasings import PHRASED, phrasings
@@ -130,7 +130,7 @@ def _steps(known: Knowledge, parse: Parse) -> Iterator[Parse]:
 def _meant(known: Knowledge, words: str) -> tuple[str, ...]:
     """Return the class that words name.
 
-    Else those spelt alike, that which their last words name, and those of their kind.
+    Else those spelt alike, that which their last words name, and those of their kind or with their last word.
     """
     thing = thing_of(known, words)
     if thing:
@@ -140,7 +140,9 @@ def _meant(known: Knowledge, words: str) -> tuple[str, ...]:
     is_name = _JOINED.isdisjoint(parts)
     ends = (" ".join(parts[n:]) for n in range(1, len(parts) if is_name else 0))
     heads = (name for end in ends if (name := thing_of(known, end)))
-    found = (*_spelt_alike(known, bare), *islice(heads, 1), *_of_kind(known, bare))
+    last = parts[-1] if is_name and parts else ""
+    alike = tuple(_of_kind(known, bare)) or _of_head(known, last)
+    found = (*_spelt_alike(known, bare), *islice(heads, 1), *alike)
     return tuple(dict.fromkeys(found))
 
 
@@ -158,6 +160,21 @@ def _spelt_alike(known: Knowledge, words: str) -> Iterator[str]:
     for spelt, _, _ in sorted(near, key=lambda each: each[1]):
         if spelt[0] == key[0] or not is_right:
             yield spellings[spelt]
+
+
+@lru_cache(maxsize=8)
+def _by_head(known: Knowledge) -> Mapping[str, tuple[str, ...]]:
+    """Return the classes of several words by the last one, as two are counters."""
+    return grouped((head, name) for name in known.objects if (head := name.rpartition("_")[2]) != name)
+
+
+def _of_head(known: Knowledge, noun: str) -> tuple[str, ...]:
+    """Return the classes of which a noun that is no class is the last word, where they are of one kind."""
+    if not noun or thing_of(known, noun):
+        return ()
+    named = (name for each in (noun, *noun_lemmas(noun)) for name in _by_head(known).get(each, ()))
+    names = tuple(dict.fromkeys(known.objects[name].same_as or name for name in named))
+    return names if len({known.objects[name].hypernym for name in names}) == 1 else ()
 
 
 def _of_kind(known: Knowledge, words: str) -> Iterator[str]:

@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.knowledge_records import ObjectClass
+from hearth.kb.knowledge_records import Action, ObjectClass
+from hearth.kb.spelling import key_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.short_repr import brief
@@ -22,6 +23,7 @@ class Query:
         has: properties.
         may_be: states.
         kind: a kind or class it is one of.
+        word: a word of its name, or of another name of it.
     """
 
     can: tuple[str, ...] = ()
@@ -32,6 +34,7 @@ class Query:
     has: tuple[str, ...] = ()
     may_be: tuple[str, ...] = ()
     kind: str = ""
+    word: str = ""
 
     __repr__ = brief
 
@@ -91,7 +94,19 @@ def _tests(knowledge: Knowledge, query: Query) -> list[Callable[[ObjectClass], b
         tests.append(lambda thing: states.issubset(thing.states))
     if query.kind:
         tests.append(lambda thing: query.kind in knowledge.ancestors(thing.name))
+    if query.word:
+        named = frozenset(name for key, name in knowledge.object_spellings.items() if key_of(query.word) in key)
+        tests.append(lambda thing: thing.name in named)
     return tests
+
+
+def find_actions(knowledge: Knowledge, word: str) -> tuple[Action, ...]:
+    """Return the actions with a word in their name, in another name of theirs, or in the words that mean them."""
+    words = f" {' '.join(word.lower().split())} "
+    spelt = {name for spelling, name in knowledge.action_spellings.items() if key_of(word) in spelling}
+    phrases = ((action.name, f" {each} ") for action in knowledge.actions.values() for each in action.words)
+    said = {name for name, phrase in phrases if words in phrase}
+    return tuple(action for name, action in sorted(knowledge.actions.items()) if name in spelt | said)
 
 
 def _faults(knowledge: Knowledge, query: Query) -> list[Diagnostic]:

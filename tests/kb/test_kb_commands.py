@@ -43,6 +43,16 @@ def test_find_and_path():
     assert run("path", "bed", "bed") == "they are one\n"
 
 
+def test_find_takes_a_word_of_names_of_objects_and_actions():
+    assert as_json("find", "wait") == {"found": [], "count": 0, "actions": ["Wait"]}
+    assert {"bathroom_counter", "kitchen_counter"} <= {*as_json("find", "counter")["found"]}
+    assert as_json("find", "pick up")["actions"] == ["Grab"]
+    assert as_json("find", "juice", "--in", "fridge")["found"] == ["juice"]
+    assert run("find", "wait").splitlines()[-2:] == ["Wait    Wait", "0 objects, 1 action"]
+    assert run("find", "zorb").endswith("0 objects, 0 actions\n")
+    assert "actions" not in as_json("find", "--in", "fridge")
+
+
 def test_lint_ends_with_1_when_something_contradicts(tmp_path):
     assert run("lint") == "11 checks: no contradictions\n"
     (tmp_path / "placements.csv").write_text("object,relation,destination,room,weight,evidence\ndresser,IN,cup,,1,me\n")

@@ -82,3 +82,17 @@ def test_readings_that_are_equally_near_are_named_without_figures(knowledge):
     (fault,) = parse_steps("Task: T\nStep 1: Wash the plante\n", 0, "a.txt", knowledge).faults
     assert fault.code == "AMBIGUOUS"
     assert "`Wash plant`" in fault.suggestion and "(0." not in fault.suggestion
+
+
+@pytest.mark.parametrize(
+    ("sentence", "steps"),
+    [
+        ("Walk to the counter", ["Walk to bathroom counter", "Walk to kitchen counter"]),
+        ("Put the cup on the counter", ["Put cup on bathroom counter", "Put cup on kitchen counter"]),
+        ("Wipe the blue counter", ["Wipe bathroom counter", "Wipe kitchen counter"]),
+        ("Grab the filter", ["Grab coffee filter"]),
+        ("Grab the floss", ["Grab dental floss"]),
+    ],
+)
+def test_a_noun_that_is_the_last_word_of_classes_is_hinted_at(knowledge, sentence, steps):
+    assert suggestion(knowledge, sentence) == f"did you mean {' or '.join(f'`{step}`' for step in steps)}?"
