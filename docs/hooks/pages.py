@@ -144,8 +144,8 @@ def actions() -> str:
         "# Actions",
         "",
         "Objects, text and failures of each; `hearth kb action NAME` shows all about one.",
-        f"Action set 3 executes {number} of {len(latest)}, action set 2 {len(EVERY)}. The last column has the failures of",
-        "set 3. Moves by metres are executed where the home says where the character stands.",
+        f"Action set 3 executes {number} of {len(latest)}, action set 2 {len(EVERY)}. The last column has the failures",
+        "of set 3. Moves by metres are executed where the home says where the character stands.",
     ]
     lines += ["", "| action | text | objects | sets | failures |", "|---|---|---|---|---|"]
     for name, action in sorted(latest.items()):
