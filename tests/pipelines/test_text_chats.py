@@ -1,4 +1,4 @@
-"""Chats as plain text: what a request corrects is no program, and every step stands on its line of the file."""
+"""Chats as plain text: answers that a request corrects make no program, and every step stands on its line of the file."""
 
 import json
 
