@@ -116,7 +116,7 @@ def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rule
         return Outcome(program, place, trial, sampling=sample)
     found = attempt(program.unbound(), place, seed, rules, size=LEAST)
     if isinstance(found, Failure):
-        return Outcome(program, place, trial, unsampled=in_program(found, program), sampling=True)
+        return Outcome(program, place, trial, "", in_program(found, program), found.code, True)
     return Outcome(program, place, found, as_it_is=stop_reason(trial.execution), sampling=True)
 
 
