@@ -99,7 +99,9 @@ def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
         if given.program.steps:
             output.note(f"Nothing was run; `--skip-faults` leaves these lines out and runs the {steps}.")
         raise HearthError(given.faults)
-    output.report((*given.faults, *given.warnings), kind="warning")
+    from hearth.commands.grouped_faults import in_order
+
+    output.report(in_order((*given.faults, *given.warnings)), kind="warning")
     if given.faults:
         lines = output.counted(len({fault.line for fault in given.faults}), "line")
         output.note(f"Left out: {lines}. The status is 1: the program does not run as given.")

@@ -7,6 +7,7 @@ import json
 import pytest
 
 from hearth.commands import inputs
+from hearth.kb.language.action_keys import holds_object
 from hearth.kb.loading.load import default
 from hearth.pipelines.readers import program_tables
 from hearth.pipelines.readers.delimited import Rows
@@ -428,3 +429,28 @@ def test_calls_of_tools_among_the_parts_of_a_message(write):
     used = [{"type": "tool_use", "name": name, "input": {"object": "lamp"}} for name in ("walk", "switch_on")]
     programs, faults = read(write("a.json", json.dumps({"role": "assistant", "content": used})))
     assert [[step for _, step in steps] for _, steps in programs] == [LINES] and not faults
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("target_object", "destination_object"),
+        ("object_name", "target_receptacle"),
+        ("primary object", "secondary object"),
+        ("source_item", "target_location"),
+        ("first_obj", "second_obj"),
+    ],
+)
+def test_columns_of_several_words_name_the_objects_of_a_step(write, knowledge, first, second):
+    text = f"title,step,action,{first},{second}\nTea,1,walk,kitchen,\nTea,2,put,cup,table\n"
+    steps = ["[Walk] <kitchen> (1)", "[PutBack] <cup> (1) <table> (1)"]
+    records = [{"action": "walk", first: "kitchen"}, {"action": "put", first: "cup", second: "table"}]
+    value = json.dumps([{"title": "Tea", "plan": records}])
+    for name, content in (("a.csv", text), ("a.json", value)):
+        (given,) = inputs.read_programs(write(name, content), knowledge, name)
+        assert ([print_step(step) for step in given.program.steps], given.faults) == (steps, ())
+
+
+@pytest.mark.parametrize("name", ["object_id", "target_time", "from_home", "item_price", "where_from_here"])
+def test_other_columns_of_several_words_name_none(name):
+    assert not holds_object(name)

@@ -32,6 +32,9 @@ _HEAD = re.compile(
     r"\s*(?P<word>(?:async\s+)?(?:for|while|if|elif|else|try|except|finally|with|match|case|switch|repeat|until|do))\b"
     r"(?P<rest>.*[:{].*)"
 )
+_ALWAYS = re.compile(r"\s*if\s+\(?(?:True|1)\)?\s*:\s*(\S.*)?")
+"""A condition that holds always: its lines are done once, and those of its `else` never."""
+
 _MAIN = re.compile(r"\s*if\s+__name__\s*==")
 _CLAUSE = re.compile(r"\s*(?:elif|else|except|finally)\b")
 _ASSERT = re.compile(r"\s*assert\b")
@@ -42,7 +45,7 @@ _INLINE = re.compile(r"\)\s*(if|for|and|or)\b|^\s*(not|lambda)\b")
 _QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
 _ASSIGNED = re.compile(r"\s*(?:await\s+)?(\w+)\s*=\s*(?:await\s+)?(?:\w+\.)*\w+\((.*)\)\s*;?\s*(?:#.*)?")
 _REASONS = {
-    "for": "the loop goes over neither a written list of texts nor `range` of a number",
+    "for": "the loop goes over neither a written list nor `range` of a number",
     "while": "a `while` runs until something changes, which a list of steps cannot say",
     "with": "a `with` is not a step, and its lines depend on it",
     "try": "a `try` has steps that are done only if others fail",
@@ -79,7 +82,10 @@ def _run(lines: CodeRows, names: ThingNames) -> Iterator[CodeLine]:
 
 
 def _compound(row: int, raw: str, body: CodeRows, names: ThingNames, word: str) -> Iterator[CodeLine]:
-    """Yield the lines of a loop over literals, round by round; else the refused head of the lines below it."""
+    """Yield the lines of a loop over literals, round by round, and of `if True:`; else the refused head."""
+    if always := _ALWAYS.fullmatch(raw):
+        yield from _run([(row, always[1]), *body] if always[1] else body, names)
+        return
     loop = _FOR.fullmatch(raw)
     values = _values(loop[2]) if loop else None
     if loop is None or values is None:
@@ -94,7 +100,7 @@ def _compound(row: int, raw: str, body: CodeRows, names: ThingNames, word: str) 
 
 
 def _values(listed: str) -> list[str | None] | None:
-    """Return the values of a literal list of texts, or of `range(3)`; None for anything else."""
+    """Return the values of a literal list of texts or numbers, or of `range(3)`; None for anything else."""
     try:
         found = ast.parse(listed.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -107,8 +113,10 @@ def _values(listed: str) -> list[str | None] | None:
             return None
         return [None] * len(range(*numbers))  # type: ignore[arg-type]
     entries = found.elts if isinstance(found, ast.List | ast.Tuple) else []
-    texts = [each.value for each in entries if isinstance(each, ast.Constant) and isinstance(each.value, str)]
-    return list(texts) if texts and len(texts) == len(entries) else None
+    constants = [each.value for each in entries if isinstance(each, ast.Constant) and type(each.value) in (str, int)]
+    if not constants or len(constants) != len(entries):
+        return None
+    return [each if isinstance(each, str) else None for each in constants]
 
 
 _LARGEST = 1_000_000
