@@ -228,6 +228,20 @@ def _print_fault(execution: Execution, steps: tuple[Step, ...]) -> None:
     if failure.agent < len(execution.final.agents):
         for line in facts(execution.final, failure.agent, nodes):
             output.line(f"         {line}")
+    for ref in (ref for step in steps for ref in step.objects if ref.node is None):
+        output.line(f"         {_looked_for(execution.final.home, ref.name)}")
+
+
+def _looked_for(home: Home, name: str) -> str:
+    """Return the classes that a name stands for, and the nodes of a home that have one of them."""
+    names = home.knowledge.found_as(name)
+    nodes = [(cls, node) for cls, node in zip(home.classes, home.ids, strict=True) if cls in names]
+    found = ", ".join(f"{cls} ({node})" for cls, node in nodes[:_MOST_NODES])
+    more = f" and {len(nodes) - _MOST_NODES} more" if len(nodes) > _MOST_NODES else ""
+    return f"looked for {', '.join(names)}: {f'found {found}{more}; none fits' if nodes else f'{home.name} has none'}"
+
+
+_MOST_NODES = 6
 
 
 def _checks(execution: Execution, tick: int, step: Step) -> list[Check]:

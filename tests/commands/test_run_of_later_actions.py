@@ -52,3 +52,16 @@ def test_where_nothing_has_to_be_added_one_line_says_so(tmp_path):
     assert run(tmp_path, text, "--sample").output.splitlines().count(line) == 1
     assert line not in run(tmp_path, text).output.splitlines()
     assert line not in run(tmp_path, "[Walk] <sofa> (1)\n[Wash] <plate> (1)", "--sample").output.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("[Walk] <violin> (1)", "looked for instrument_violin, instrumentviolin, violin: maple has none"),
+        ("[Walk] <sofa> (1)\n[Grab] <violin> (1)", "looked for instrument_violin, instrumentviolin, violin"),
+        ("[Walk] <fridge> (1)\n[Walk] <fridge> (2)", "found fridge (137), freezer (182); none fits"),
+    ],
+)
+def test_the_explanation_of_a_step_without_its_object_says_what_was_looked_for(tmp_path, text, line):
+    assert line in run(tmp_path, text, "--explain").output
+    assert "looked for" not in run(tmp_path, text).output
