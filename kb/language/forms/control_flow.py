@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from hearth.kb.language.forms.code_blocks import end_of_block, indent
 from hearth.kb.language.refusals import Refusal
 
 ThingNames = Mapping[str, str | None]
@@ -60,6 +61,7 @@ def in_order(lines: Sequence[str]) -> list[CodeLine]:
 
 def _run(lines: CodeRows, names: ThingNames) -> Iterator[CodeLine]:
     at, names, is_asserted = 0, dict(names), False
+    texts = [raw for _, raw in lines]
     while at < len(lines):
         row, raw = lines[at]
         at += 1
@@ -70,11 +72,11 @@ def _run(lines: CodeRows, names: ThingNames) -> Iterator[CodeLine]:
         head = None if is_asserted and _ELSE.match(raw) else _HEAD.fullmatch(raw)
         is_asserted = _ASSERT.match(raw) is not None or (is_asserted and _ELSE.match(raw) is not None)
         if head and not _MAIN.match(raw):
-            end = _end(lines, at, _indent(raw))
+            end = end_of_block(texts, at, indent(raw))
             yield from _compound(row, raw, lines[at:end], names, head["word"].split()[-1])
             at = end
-            while at < len(lines) and _CLAUSE.match(lines[at][1]) and _indent(lines[at][1]) == _indent(raw):
-                at = _end(lines, at + 1, _indent(raw))
+            while at < len(lines) and _CLAUSE.match(texts[at]) and indent(texts[at]) == indent(raw):
+                at = end_of_block(texts, at + 1, indent(raw))
         elif not head:
             yield CodeLine(row, raw, dict(names), _why_plain(raw, lines[at:]))
             if assigned := _ASSIGNED.fullmatch(raw):
@@ -126,7 +128,7 @@ def _why_plain(raw: str, below: CodeRows) -> Refusal | None:
     """Return why a line that holds no other lines is refused."""
     if leaves := _LEAVES.match(raw):
         follows = any(not _BLANK.match(line) and not _DEF.match(line) for _, line in below)
-        if leaves[1] in ("break", "continue") or (follows and _indent(raw)):
+        if leaves[1] in ("break", "continue") or (follows and indent(raw)):
             return Refusal(f"the lines below this `{leaves[1]}` are not always done", _REMEDY)
         return None
     return Refusal(_DECIDES, _REMEDY) if _INLINE.search(_QUOTED.sub("''", raw)) and not _ASSERT.match(raw) else None
@@ -143,16 +145,3 @@ def _thing(arguments: str, names: ThingNames) -> str | None:
     if found in names:
         return names[found]
     return found.strip("\"'") if re.fullmatch(r"\w+|\"[^\"']+\"|'[^\"']+'", found) else None
-
-
-def _indent(raw: str) -> int:
-    return len(raw.expandtabs()) - len(raw.expandtabs().lstrip())
-
-
-def _end(lines: CodeRows, at: int, indent: int) -> int:
-    """Return where the lines end that are indented deeper."""
-    last = at
-    while at < len(lines) and (not lines[at][1].strip() or _indent(lines[at][1]) > indent):
-        last = at + 1 if lines[at][1].strip() else last
-        at += 1
-    return last
