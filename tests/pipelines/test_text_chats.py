@@ -1,4 +1,4 @@
-"""Chats as plain text: what a request corrects is no program, and every step stands on its line of the file."""
+"""Chats as plain text: an answer that a request corrects is left out, and every step stands on its line of the file."""
 
 import json
 
