@@ -145,6 +145,7 @@ def read_given(
         HearthError: every fault of a program without a step that can be used, or of an input without a program.
     """
     from hearth.commands import output
+    from hearth.commands.grouped_faults import in_order
 
     given = choose_given(file, known, number, columns, fuzzy)
     fuzzy_steps = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
@@ -152,7 +153,7 @@ def read_given(
         raise HearthError([*given.faults, *fuzzy_steps])
     if given.faults and (strict or not given.program.steps):
         raise HearthError(given.faults)
-    output.report((*given.faults, *given.warnings), kind="warning")
+    output.report(in_order((*given.faults, *given.warnings)), kind="warning")
     if given.faults:
         lines = output.counted(len({fault.line for fault in given.faults}), "line")
         output.note(f"Left out: {lines}; with `--strict` such a program is refused.")
