@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
-from hearth.commands.inputs import choose_given, read_knowledge
+from hearth.commands.inputs import choose_given, of_rules, read_knowledge
 from hearth.commands.run_additions import Additions, additions, names_of
 from hearth.kb.language.reading_modes import Fuzzy
 
@@ -47,7 +47,7 @@ def hazards(
     from hearth.simulation.hazards import hazards as found_in
     from hearth.simulation.lasting_changes import irreversible, left
 
-    known = read_knowledge(kb, home, graph, homes)
+    known = of_rules(read_knowledge(kb, home, graph, homes), "consequences")
     given = choose_given(file, known, which, columns, fuzzy)
     if given.faults:
         raise HearthError(given.faults)

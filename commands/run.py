@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import typer
 
 from hearth.commands import output
-from hearth.commands.inputs import Given, choose_given, read_goals, read_knowledge, read_rules
+from hearth.commands.inputs import Given, choose_given, of_rules, read_goals, read_knowledge, read_rules
 from hearth.commands.run_output import Outcome, document, show
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.schemas.diagnostics import HearthError
@@ -58,7 +58,7 @@ def run(
       hearth run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
-    known = read_knowledge(kb, home, graph, homes)
+    known = of_rules(read_knowledge(kb, home, graph, homes), rules)
     given = choose_given(file, known, which, columns, fuzzy)
     _refuse_faults(given, skip_faults, strict)
     program, place, _ = given.at_home(home, graph, homes, known)
