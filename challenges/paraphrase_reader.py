@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import NamedTuple
 
-from hearth.challenges.instruction_nouns import EVERY, NUMBERS, Counted
+from hearth.challenges.instruction_object_names import EVERY, NUMBERS, Counted
 from hearth.challenges.paraphrase_things import UNSAID, Known, known_nouns, patterns, place, things
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal, Joined

@@ -6,7 +6,7 @@ import re
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
-from hearth.challenges.instruction_nouns import EVERY, NUMBERS, Counted, noun, nouns, plural
+from hearth.challenges.instruction_object_names import EVERY, NUMBERS, Counted, noun, nouns, plural
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.yaml_limits import packaged
 

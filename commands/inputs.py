@@ -280,6 +280,13 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     return Home.from_graph(library.load_graph(name, known, homes), name, known)
 
 
+def of_rules(known: Knowledge, name: str) -> Knowledge:
+    """Return the knowledge with the actions of the set that rules of that name read; only `consequences` read set 3."""
+    from hearth.kb.action_sets import LATEST
+
+    return known.of_set(LATEST) if name == "consequences" else known
+
+
 def read_rules(name: str, home: Home) -> Rules:
     """Return the rules of that name (see `simulation.rules.CHOICES`).
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import typer
 
 from hearth.commands import output
-from hearth.commands.inputs import Given, read_goals, read_rules
+from hearth.commands.inputs import Given, of_rules, read_goals, read_rules
 from hearth.commands.run_output import Outcome, document, show
 from hearth.commands.shared_options import HomeOptions, ProgramOptions
 from hearth.schemas.diagnostics import HearthError
@@ -53,7 +53,7 @@ def run(
       hearth run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
-    known = place.knowledge()
+    known = of_rules(place.knowledge(), rules)
     given = chosen.given(file, known)
     _refuse_faults(given, skip_faults, strict)
     program, home = place.placed(given, known)
