@@ -79,7 +79,7 @@ def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> GraphLa
 
 
 def _check_number(parts: Parts, name: str) -> None:
-    """Refuse a graph with so many rooms, or things on the floor, that to place them takes minutes."""
+    """Refuse a graph with more rooms, or things on the floor, than are placed in a minute."""
     standing = sum(len(parts.roots(room)) for room in parts.rooms)
     if len(parts.rooms) > MOST_ROOMS or standing > MOST_STANDING:
         message = f"a graph without boxes of {len(parts.rooms):,} rooms and {standing:,} things that stand in them"

@@ -1,4 +1,4 @@
-"""Withdrawal leaves no text on which nobody built: a look at it is no building."""
+"""Withdrawal erases each text on which nobody built, also where somebody looked at it."""
 
 import pytest
 import sqlalchemy as sql
