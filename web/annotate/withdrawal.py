@@ -11,7 +11,7 @@ from hearth.web.web_tables import SESSIONS
 def keep(connection: sql.Connection, person: str, nobody: str) -> int:
     """Give accepted programs, and descriptions for which there are programs of others, to nobody; how many.
 
-    A program in which nothing was set yet keeps no description, and neither are the programs that go with
+    A program in which nothing was set yet keeps no description, nor does one that goes with
     this person: descriptions of nobody that only they were for go, too. What the person wrote to authors as a reviewer
     goes; the verdicts stay with the programs.
     """
