@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, seen_instances
 from hearth.envs.text_protocol import USUAL, plain
@@ -84,16 +84,16 @@ def layout(home: Home, protocol: Protocol) -> Layout:
     return Layout(tuple(f"{name} {home.ids[i]}" for i, name in enumerate(home.classes)), **found)
 
 
-def wanted_nodes(goal: Goal, view: View) -> int:
-    """Return the seen nodes that a goal names."""
-    home, found = view.world.home, 0
+def wanted_nodes(goal: Goal, home: Home, seen: int) -> int:
+    """Return the nodes that a goal names among those that are seen."""
+    found = 0
     for literal, _ in goal.literals():
         for term in literal.terms:
             if isinstance(term, int):
                 found |= 1 << home.index[term] if term in home.index else 0
             else:
-                found |= seen_instances(term, home, view.mask)
-    return found & view.mask & ~home.characters
+                found |= seen_instances(term, home, seen)
+    return found & seen & ~home.characters
 
 
 def compact(
@@ -148,7 +148,7 @@ class _Writer:
         self.stopped = stopped
         self.world, self.home = view.world, view.world.home
         self.layout = layout(self.home, protocol)
-        self.wanted = wanted_nodes(goal, view)
+        self.wanted = wanted_nodes(goal, self.home, view.mask)
         poses = (view.me, *view.others)
         self.held = sum(1 << self.home.index[node] for pose in poses for node in {*pose.holding, *pose.wearing})
         self.kept = view.mask & ~self.layout.built & (~self.layout.fixtures | self.wanted)
@@ -273,11 +273,17 @@ class _Writer:
     def commands(self, detail: int) -> str:
         """Return the sensible commands, without walks."""
         lines = ["Walk <room or thing>"]
-        for action in _listed_actions(self.home.knowledge, self.protocol):
-            masks = self.legal.masks.get(action)  # the masks of walks, which are dear, are not asked for
-            if masks is not None and (line := self._command(action, masks, detail)):
+        for action, masks in self._possible:
+            if line := self._command(action, masks, detail):
                 lines.append(line)
         return f"Do: {'; '.join([*lines, 'wait'])}"
+
+    @cached_property
+    def _possible(self) -> list[tuple[str, tuple[int, ...]]]:
+        """Actions that `Do:` may list and that can be done; the masks of walks, which are dear, are not asked for."""
+        asked, found = self.legal.asked, self.legal.masks
+        listed = _listed_actions(self.home.knowledge, self.protocol)
+        return [(each, masks) for each in listed if each in asked and (masks := found.get(each)) is not None]
 
     def _command(self, action: str, masks: tuple[int, ...], detail: int) -> str:
         keep = ~self.layout.built & (~self.layout.fixtures | self.wanted)
