@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from itertools import chain, islice
 from multiprocessing import connection, forkserver, resource_tracker
 from multiprocessing.context import BaseContext
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
