@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.agents.human_population import PEOPLE
-from hearth.analysis.challenge_table import CONFIDENT
+from hearth.challenges.metrics import CONFIDENT
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Known
 from hearth.challenges.metrics import mean, of_tasks, speedups
