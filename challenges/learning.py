@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from hearth.challenges.episodes import Known
-from hearth.challenges.household_definition import need_two_agents
 from hearth.models.interface import Training
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -58,8 +57,6 @@ def train(
         HearthError: BAD_ARGUMENT: nothing of that name is learnt; MISSING_FILE: the extra `models` is not installed.
     """
     import shutil
-
-    need_two_agents(name)
 
     from hearth.models.checkpoint import save
     from hearth.models.fit_model import STATE

@@ -17,13 +17,13 @@ from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.household import household_task
 from hearth.challenges.household_definition import NAME, RULES, settings
 from hearth.challenges.household_runs import SEVERAL, as_task
-from hearth.challenges.learning import train
 from hearth.challenges.metrics import share_interval
 from hearth.challenges.result_files import read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite, read_suite, suite, suite_data
 from hearth.challenges.verification import verify
 from hearth.commands import challenge_household
+from hearth.commands.challenge_learning import learn
 from hearth.commands.challenge_online import people
 from hearth.commands.challenge_output import _figures
 from hearth.kb.loading.load import default
@@ -85,7 +85,7 @@ def test_tasks_are_for_one_agent(some, tmp_path):
 
 def test_nobody_learns_to_help_in_household(tmp_path):
     for refused in (
-        lambda: train(NAME, "subgoals", tmp_path / "x", default),
+        lambda: learn(NAME, "subgoals", out=tmp_path / "x"),
         lambda: people(NAME, split="train", out=tmp_path / "y"),
     ):
         with pytest.raises(HearthError, match="one agent") as caught:
