@@ -25,7 +25,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tables import comment_of, schema_of
-from hearth.storage.databases import limited, open_database, quoted, without_patterns
+from hearth.storage.duckdb_connections import limited, open_database, quoted, without_patterns
 from hearth.storage.files import read_json, value_digest, write_bytes
 from hearth.storage.manifest import NAME, describe
 from hearth.storage.names import inside

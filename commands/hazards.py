@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
-from hearth.commands.run_additions import Additions, additions, names_of
+from hearth.commands.home_changes_before_run import Additions, additions, names_of
 from hearth.commands.shared_options import HomeOptions, ProgramOptions
 
 if TYPE_CHECKING:
