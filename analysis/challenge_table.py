@@ -11,17 +11,13 @@ from hearth.agents.agent_registry import HELPERS
 from hearth.agents.online_helper_registry import ONLINE
 from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Known
-from hearth.challenges.metrics import mean, of_tasks, paired, speedups, summary
+from hearth.challenges.metrics import CONFIDENT, mean, of_tasks, paired, speedups, summary
 from hearth.challenges.result_files import Results
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite
 from hearth.schemas.yaml_limits import packaged
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
-
-CONFIDENT = 1.96
-"""Standard errors on either side of a mean, for an interval of 95 %."""
-
 
 TABLES: dict[str, dict[str, Any]] = packaged("hearth.analysis", "challenge_table.yaml")["tables"]
 """By challenge: the split, the number of the thesis's figure, the main agent, and the methods."""

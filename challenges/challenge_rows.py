@@ -15,17 +15,22 @@ class CountedRow(TypedDict):
 
 
 class TaskRow(TypedDict):
-    """A task: an agent has a goal in a home."""
+    """A task: an agent has a goal in a home; of `household`, it is asked in English and acts alone."""
 
     task_id: Annotated[str, "unique; files of tasks have it, too"]
-    challenge: Annotated[str, "wah or owah"]
-    split: Annotated[str, "train, test-1, test-2, or demonstrations where there is nothing but a demonstration"]
-    home: Annotated[str, "where it is done with a helper"]
-    demonstration_home: Annotated[str, "where it was demonstrated"]
-    sets: Annotated[list[str], "the goal sets of the thesis's table B.1 that the goal is of"]
+    challenge: Annotated[str, "wah, owah, one of their variants, or household"]
+    split: Annotated[
+        str, "train, test-1, test-2, or demonstrations where there is nothing but a demonstration; of household its own"
+    ]
+    home: Annotated[str, "where it is done"]
+    demonstration_home: Annotated[str, "where it was demonstrated; empty of household, whose expert acts in `home`"]
+    sets: Annotated[list[str], "the goal sets of the thesis's table B.1 that the goal is of; of household the family"]
     goal: Annotated[list[CountedRow], "what is wanted"]
     predicates: Annotated[int, "number of predicates with their counts; SIT is not counted"]
     seed: Annotated[Seed, "of its start and its episodes"]
+    instruction: Annotated[str, "the goal in English; of an activity a person's words, then `In short:`"]
+    expert_ticks: Annotated[int | None, "ticks that an agent took that sees everything; of household alone"]
+    activity: Annotated[str, "the program of the corpus that it is of, by id; empty of others"]
 
 
 class InstructionRow(TypedDict):
@@ -44,7 +49,7 @@ class HabitRow(TypedDict):
 
 
 class DemonstrationRow(TypedDict):
-    """A task that an agent did alone, in its demonstration home."""
+    """A task that an agent did alone, in its demonstration home; of household, what its expert did."""
 
     task_id: Annotated[str, "the task"]
     clean: Annotated[bool, "without habits: counting what was put where gives the goal away"]

@@ -15,6 +15,11 @@ from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.demonstration_episodes import Demonstration, demonstrations
 from hearth.challenges.episodes import Known, Record
 from hearth.challenges.helper_beliefs import beliefs
+from hearth.challenges.household import HouseholdTask
+from hearth.challenges.household_as_challenge import OpenTask, as_task
+from hearth.challenges.household_definition import NAME as HOUSEHOLD
+from hearth.challenges.household_definition import settings
+from hearth.challenges.parallel_household_tasks import drawn_tasks
 from hearth.challenges.result_files import Results, episode_data
 from hearth.challenges.tasks import Task
 from hearth.datasets.damage_faults import reading
@@ -23,6 +28,7 @@ from hearth.datasets.format.catalog import SQL
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tables import comment_of, schema_of
 from hearth.storage.duckdb_connections import limited, open_database, quoted, without_patterns
@@ -86,12 +92,11 @@ def publish(
     Returns:
         The rows of each table.
     """
-    parts = (*challenge(name).splits, *([published_tasks.DEMONSTRATIONS] if challenge(name).demonstrations else []))
-    tasks = [task for part in parts for task in published_tasks.tasks(name, part, limit=limit)]
-    shown = demonstrations(tasks, known, rate, workers, seen)
+    tasks, shown = _household(results, limit, known, workers, seen) if name == HOUSEHOLD else _published(name, limit)
     rows: dict[str, Iterable[Mapping[str, Any]]] = {
         "tasks": map(_task, tasks),
-        "demonstrations": (_demonstration(each, rate) for each in shown),
+        "demonstrations": shown
+        or (_demonstration(each, rate) for each in demonstrations(tasks, known, rate, workers, seen)),
         "episodes": (_episode(found, each) for found, each in _once(results)),
         "trajectories": (row for found, each in _once(results) for row in _trajectory(found, each)),
         "posteriors": (row for found, each in _once(results) for row in _posterior(found, each, known)),
@@ -106,6 +111,37 @@ def publish(
     asked = {"stage": STAGE, "challenge": name, "rate": rate}
     describe(folder, asked, {}, value_digest(asked), rows=counts).write()
     return counts
+
+
+def _published(name: str, limit: int | None) -> tuple[list[Task], list[challenge_rows.DemonstrationRow]]:
+    """Return the tasks of all splits; their demonstrations are made apart."""
+    parts = (*challenge(name).splits, *([published_tasks.DEMONSTRATIONS] if challenge(name).demonstrations else []))
+    return [task for part in parts for task in published_tasks.tasks(name, part, limit=limit)], []
+
+
+def _household(
+    results: Sequence[Results], limit: int | None, known: Known, workers: int, seen: Seen
+) -> tuple[list[Task], list[challenge_rows.DemonstrationRow]]:
+    """Return household tasks, each with its expert's instructions.
+
+    Without a limit these are the tasks of the results, where there are any: all 12,500 take hours to draw.
+    """
+    if results and limit is None:
+        origins = {task.id: task.origin for found in results for task in found.header.suite.household}
+    else:
+        drawn = (drawn_tasks(split, limit, 0, known, workers, seen).tasks for split in settings()["splits"])
+        origins = {task.id: task for some in drawn for task in some}
+    return [*map(as_task, origins.values())], [*map(_expert, origins.values())]
+
+
+def _expert(task: HouseholdTask) -> challenge_rows.DemonstrationRow:
+    return {
+        "task_id": task.id,
+        "clean": True,
+        "ticks": task.min_ticks,
+        "instructions": [_instruction(tick, text) for tick, text in enumerate(task.expert) if text],
+        "habits": [],
+    }
 
 
 def _sql(root: str) -> str:
@@ -148,6 +184,8 @@ class ChallengeData(Dataset):
 
 def _task(task: Task) -> challenge_rows.TaskRow:
     grammar = challenge(task.challenge).grammar
+    origin = task.origin if isinstance(task, OpenTask) else None
+    goal = [*grammar.written(task.goal).items(), *((str(Goal(parts=(part,))), 1) for part in task.goal.parts)]
     return {
         "task_id": task.id,
         "challenge": task.challenge,
@@ -155,9 +193,12 @@ def _task(task: Task) -> challenge_rows.TaskRow:
         "home": task.home,
         "demonstration_home": task.demonstration_home,
         "sets": list(task.sets),
-        "goal": [{"predicate": text, "count": number} for text, number in grammar.written(task.goal).items()],
+        "goal": [{"predicate": text, "count": number} for text, number in goal],
         "predicates": grammar.size(task.goal),
         "seed": task.seed,
+        "instruction": task.instruction,
+        "expert_ticks": origin.min_ticks if origin else None,
+        "activity": origin.activity if origin else "",
     }
 
 

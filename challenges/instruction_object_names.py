@@ -123,7 +123,7 @@ class Nouns:
 
 
 def _read_number(word: str) -> int | None:
-    if word in ("a", "an", "the"):
+    if word in ("a", "an"):
         return 1
     if word == "every":
         return EVERY

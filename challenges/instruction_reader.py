@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from hearth.challenges.instruction_object_names import EVERY, Nouns, nouns, wordings
 from hearth.challenges.instruction_writer import SEPARATOR
+from hearth.challenges.paraphrase_reader import read_paraphrase
 from hearth.envs.compact_text import IN_SHORT
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
@@ -53,6 +54,9 @@ def read_instruction(text: str, home: Home | Knowledge, doer: str = AGENT, names
                 return reader.goal(_lowered(match["clauses"]), 0)
             except HearthError as fault:
                 faults.append(fault)
+    found = read_paraphrase(whole, knowledge, doer, names)
+    if found is not None:
+        return found
     raise faults[0] if faults else HearthError.of(Code.SYNTAX, "the instruction is empty")
 
 

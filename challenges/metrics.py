@@ -201,3 +201,15 @@ def paired(one: Mapping[str, float], other: Mapping[str, float]) -> Paired:
         return Paired(None, None, len(tasks) - 1, None)
     found = stats.ttest_rel([one[task] for task in tasks], [other[task] for task in tasks])
     return Paired(float(found.statistic), float(found.pvalue), len(tasks) - 1, mean(differences).value / deviation)
+
+
+CONFIDENT = 1.96
+"""Standard errors on either side of a mean, for an interval of 95 %."""
+
+
+def share_interval(share: float, number: int) -> tuple[float, float]:
+    """Return the 95 % interval of a share of so many (Wilson 1927); unlike the usual one, it is right near 0 and 1."""
+    square = CONFIDENT**2
+    middle = (share + square / (2 * number)) / (1 + square / number)
+    half = CONFIDENT / (1 + square / number) * math.sqrt(share * (1 - share) / number + square / (4 * number**2))
+    return max(0.0, middle - half), min(1.0, middle + half)

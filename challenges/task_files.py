@@ -135,8 +135,8 @@ def read(path: Path) -> Suite:
 def read_suite(data: Any, file: str) -> Suite:
     """Return the tasks of a file's content; errors as of `read`."""
     if isinstance(data, Mapping) and data.get("format") == household_files.FORMAT:
-        household = tuple(map(as_task, household_files.tasks_of(data, file, default())))
-        return Suite(HOUSEHOLD, split_of(household), published_tasks.PUBLISHED, household)
+        origins = tuple(map(as_task, household_files.tasks_of(data, file, default())))
+        return Suite(HOUSEHOLD, split_of(origins), published_tasks.PUBLISHED, origins)
     if not isinstance(data, Mapping) or data.get("format") != FORMAT:
         remedy = "`challenge tasks wah --split test-1 --out FILE` writes one"
         raise HearthError.of(Code.BAD_JSON, f"not a file of tasks ({FORMAT})", file=file, suggestion=remedy)

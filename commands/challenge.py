@@ -16,6 +16,9 @@ from hearth.commands import (
 )
 from hearth.commands.challenge_film import film
 
+USUAL_SEEDS = 5
+"""Episodes of each task of a table, where no number is given."""
+
 app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
@@ -148,10 +151,14 @@ def build(
 ) -> None:
     """Publish all tasks of a challenge and their demonstrations, and the episodes of runs, as tables for `query`.
 
+    Of `household`, the demonstrations are what experts did; with runs and without --limit, the tasks are those of the
+    runs, because all 12,500 take hours to draw.
+
     \b
     Examples:
       hearth challenge build wah --out data_out/wah
       hearth challenge build wah hp.jsonl random.jsonl --out data_out/wah
+      hearth challenge build household mine.jsonl --out data_out/household
       hearth query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
     """
     from hearth.challenges.challenge_tables import publish
@@ -183,7 +190,7 @@ for _before in (
 def table(
     name: str,
     split: str = "",
-    seeds: int = 5,
+    seeds: int | None = None,
     *,
     out: Path,
     particles: bool = False,
@@ -195,7 +202,8 @@ def table(
     """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them next to its text.
 
     Results in the folder are kept. Intervals are of 95 %; t, p and effect compare lengths with those of the main agent
-    alone, task by task.
+    alone, task by task. Of `household`, the reference agents do the first ten tasks of each split (--limit), and the
+    rows are by split and family.
 
     \b
     Examples:
@@ -203,7 +211,11 @@ def table(
       hearth challenge table owah --seeds 3 --out data_out/challenges/owah
       hearth challenge table owah --seeds 3 --out data_out/challenges/owah --by-set     (figure 7-6a)
       hearth challenge table owah --seeds 3 --out data_out/challenges/owah --particles  (figure C-5)
+      hearth challenge table household --out data_out/challenges/household
     """
+    if name == challenge_household.HOUSEHOLD:
+        challenge_household.print_table(split, seeds or 1, out, limit, workers, as_json)
+        return
     from hearth.analysis.challenge_table import TABLES, figure, methods, rows
     from hearth.challenges.task_files import suite
     from hearth.commands.challenge_online import print_by_set
@@ -214,7 +226,7 @@ def table(
     which = f"{name}-particles" if particles else name
     chosen = suite(name, split or TABLES.get(which, {}).get("split", ""), limit=limit)
     with bar("episodes") as seen:
-        found = rows(list(methods(chosen, seeds, out, default, workers, lambda _: seen, which)))
+        found = rows(list(methods(chosen, seeds or USUAL_SEEDS, out, default, workers, lambda _: seen, which)))
     inside(out, f"figure-{TABLES[which]['figure']}.svg").write_text(figure(found), encoding="utf-8")
     if as_json:
         output.emit(found)

@@ -91,6 +91,41 @@ def print_solved(splits: list[str] | None, limit: int | None, workers: int, as_j
         output.line(f"not solved within {settings()['ticks']} ticks: {task_id}")
 
 
+def print_table(split: str, seeds: int, out: Path, limit: int | None, workers: int, as_json: bool) -> None:
+    """Let the reference agents do tasks, and print their success by split and family."""
+    from hearth.analysis.household_table import AGENTS, household_rows, household_runs, household_suite
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    with bar("tasks") as seen:
+        suite = household_suite(split, limit, default, workers, seen)
+    with bar("episodes") as seen:
+        found = household_rows(household_runs(suite, seeds, out, default, workers, lambda _: seen))
+    if as_json:
+        output.emit(found)
+        return
+    rows: dict[tuple[str, str], dict[str, dict[str, Any]]] = {}
+    for row in found:
+        rows.setdefault((row["kind"], row["group"]), {})[row["agent"]] = row
+    names = tuple(AGENTS)
+    columns = ("", "tasks", *(f"{name}, success" for name in names), *(f"{name}, ticks" for name in names[2:]))
+    output.table(columns, [_cells(*key, row, names) for key, row in rows.items()])
+
+
+def _cells(kind: str, group: str, row: dict[str, dict[str, Any]], names: tuple[str, ...]) -> list[Any]:
+    """Return a line of the table: shares with their intervals, and mean ticks of those that solve tasks."""
+    shares = [_share(row[name]) for name in names]
+    ticks = [f"{row[name]['length']:.0f}" if row[name]["tasks"] else "" for name in names[2:]]
+    return [group if kind == group else f"{kind} {group}", row[names[0]]["tasks"], *shares, *ticks]
+
+
+def _share(figures: dict[str, Any]) -> str:
+    """Return a share with its interval; empty of no task."""
+    if not figures["tasks"]:
+        return ""
+    return f"{figures['success']:.2f} ({figures['success_from']:.2f}-{figures['success_to']:.2f})"
+
+
 def _drawn(split: str, seed: int, limit: int | None, workers: int) -> Drawing:
     from hearth.challenges.parallel_household_tasks import drawn_tasks
     from hearth.commands.progress_line import bar

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import grouped_faults, inputs, output
-from hearth.commands.grouped_faults import in_order
+from hearth.commands.grouped_faults import in_order, place_of
 from hearth.kb import action_grammar
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import recognizing
@@ -158,15 +158,25 @@ def _json(checked: Checked) -> dict[str, Any]:
     return {**found, "faults": faults, "fuzzy": fuzzy, **{name: value for name, value in more.items() if value}}
 
 
+_KINDS = ("error", "warning")
+
+
+def _in_order(checked: Checked) -> list[tuple[str, Diagnostic]]:
+    """Return the faults and warnings of a source by their places, each with its kind."""
+    found = [
+        (kind, each) for kind, listed in zip(_KINDS, (checked.faults, checked.warnings), strict=True) for each in listed
+    ]
+    return sorted(found, key=lambda pair: place_of(pair[1]))
+
+
 def _print(checked: list[Checked], faults: int, *, summary: bool) -> None:
     for each in checked:
         output.line(each.diff, end="")
-    kinds = [(kind, [fault for each in checked for fault in in_order(getattr(each, f"{name}s"))])
-             for kind, name in (("error", "fault"), ("warning", "warning"))]  # fmt: skip
+    found = [pair for each in checked for pair in _in_order(each)]
     if summary:
-        grouped_faults.summary(kinds)
-    for kind, found in () if summary else kinds:
-        grouped_faults.report(found, sys.stdout, kind)
+        grouped_faults.summary([(kind, [fault for its, fault in found if its == kind]) for kind in _KINDS])
+    else:
+        grouped_faults.report_together(found, sys.stdout)
     programs, steps = sum(each.programs for each in checked), sum(each.steps for each in checked)
     result = output.counted(faults, "fault") if faults else "no faults"
     warnings = sum(len(each.warnings) for each in checked)

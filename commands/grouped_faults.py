@@ -18,7 +18,12 @@ NODE = re.compile(r"\w+ \(\d+\)")
 
 def in_order(faults: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return faults by file, line and column."""
-    return sorted(faults, key=lambda fault: (fault.file, fault.line, fault.column))
+    return sorted(faults, key=place_of)
+
+
+def place_of(fault: Diagnostic) -> tuple[str, int, int]:
+    """Return file, line and column of a fault."""
+    return fault.file, fault.line, fault.column
 
 
 def equal(fault: Diagnostic) -> Hashable:
@@ -52,6 +57,15 @@ def report(
         output.report([first], stream, kind)
         if others:
             output.line(f"    + {len(others):,} more: {_places(first, others)}", file=stream or sys.stderr)
+
+
+def report_together(found: Iterable[tuple[str, Diagnostic]], stream: TextIO) -> None:
+    """Print faults, each with its kind, as `report` does: equal ones of a kind once, in the order of the first."""
+    kept: dict[Hashable, tuple[str, list[Diagnostic]]] = {}
+    for kind, fault in found:
+        kept.setdefault((kind, equal(fault)), (kind, []))[1].append(fault)
+    for kind, group in kept.values():
+        report(group, stream, kind)
 
 
 def _places(first: Diagnostic, others: list[Diagnostic]) -> str:

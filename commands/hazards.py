@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
 from hearth.commands.home_changes_before_run import Additions, additions, names_of
+from hearth.commands.inputs import of_rules
 from hearth.commands.shared_options import HomeOptions, ProgramOptions
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def hazards(
     from hearth.simulation.hazards import hazards as found_in
     from hearth.simulation.lasting_changes import irreversible, left
 
-    known = place.knowledge()
+    known = of_rules(place.knowledge(), "consequences")
     given = chosen.given(file, known)
     if given.faults:
         raise HearthError(given.faults)

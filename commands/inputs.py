@@ -145,6 +145,7 @@ def read_given(
         HearthError: every fault of a program without a step that can be used, or of an input without a program.
     """
     from hearth.commands import output
+    from hearth.commands.grouped_faults import in_order
 
     given = choose_given(file, known, number, columns, fuzzy)
     fuzzy_steps = [each for each in given.warnings if each.code == Code.FUZZY_MATCH]
@@ -152,7 +153,7 @@ def read_given(
         raise HearthError([*given.faults, *fuzzy_steps])
     if given.faults and (strict or not given.program.steps):
         raise HearthError(given.faults)
-    output.report((*given.faults, *given.warnings), kind="warning")
+    output.report(in_order((*given.faults, *given.warnings)), kind="warning")
     if given.faults:
         lines = output.counted(len({fault.line for fault in given.faults}), "line")
         output.note(f"Left out: {lines}; with `--strict` such a program is refused.")
@@ -277,6 +278,13 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)
+
+
+def of_rules(known: Knowledge, name: str) -> Knowledge:
+    """Return the knowledge with the actions of the set that rules of that name read; only `consequences` read set 3."""
+    from hearth.kb.action_sets import LATEST
+
+    return known.of_set(LATEST) if name == "consequences" else known
 
 
 def read_rules(name: str, home: Home) -> Rules:

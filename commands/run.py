@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import typer
 
 from hearth.commands import output
-from hearth.commands.inputs import Given, read_goals, read_rules
+from hearth.commands.inputs import Given, of_rules, read_goals, read_rules
 from hearth.commands.run_output import Outcome, document, show
 from hearth.commands.shared_options import HomeOptions, ProgramOptions
 from hearth.schemas.diagnostics import HearthError
@@ -53,7 +53,7 @@ def run(
       hearth run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     _check(sample, as_is, skip_faults, strict)
-    known = place.knowledge()
+    known = of_rules(place.knowledge(), rules)
     given = chosen.given(file, known)
     _refuse_faults(given, skip_faults, strict)
     program, home = place.placed(given, known)
@@ -94,7 +94,9 @@ def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
         if given.program.steps:
             output.note(f"Nothing was run; `--skip-faults` leaves these lines out and runs the {steps}.")
         raise HearthError(given.faults)
-    output.report((*given.faults, *given.warnings), kind="warning")
+    from hearth.commands.grouped_faults import in_order
+
+    output.report(in_order((*given.faults, *given.warnings)), kind="warning")
     if given.faults:
         lines = output.counted(len({fault.line for fault in given.faults}), "line")
         output.note(f"Left out: {lines}. The status is 1: the program does not run as given.")
@@ -111,7 +113,7 @@ def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rule
         return Outcome(program, place, trial, sampling=sample)
     found = attempt(program.unbound(), place, seed, rules, size=LEAST)
     if isinstance(found, Failure):
-        return Outcome(program, place, trial, unsampled=in_program(found, program), sampling=True)
+        return Outcome(program, place, trial, "", in_program(found, program), found.code, True)
     return Outcome(program, place, found, as_it_is=stop_reason(trial.execution), sampling=True)
 
 

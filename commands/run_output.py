@@ -12,6 +12,7 @@ from hearth.commands.home_changes_before_run import Additions, additions, names_
 
 if TYPE_CHECKING:
     from hearth.grounding.grounded_run import Trial
+    from hearth.schemas.failures import Code
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.schemas.program import Program, Step
     from hearth.simulation.engine import Execution
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 SAMPLE = "`--sample` adds what is missing, and prints all of it."
 """Advice of a run in which an object was missing."""
 
+NOTHING_ADDED = "Nothing was added: the program runs in the home as it is."
+"""Said where `--sample` had nothing to do."""
+
 
 class Outcome(NamedTuple):
     """A run in a home.
@@ -34,6 +38,7 @@ class Outcome(NamedTuple):
         trial: the run that is shown.
         as_it_is: why the program did not run in the home as it is, where another start was sampled; else "".
         unsampled: why no other start could be sampled, where one was wanted; else "".
+        unsampled_code: the code of that.
         sampling: whether `--sample` was given; then no output advises it.
     """
 
@@ -42,6 +47,7 @@ class Outcome(NamedTuple):
     trial: Trial
     as_it_is: str = ""
     unsampled: str = ""
+    unsampled_code: Code | None = None
     sampling: bool = False
 
     def additions(self) -> Additions:
@@ -67,6 +73,8 @@ def show(outcome: Outcome, explain: bool) -> None:
     execution = outcome.trial.execution
     if outcome.as_it_is:
         output.line(f"  as it is, {outcome.as_it_is}")
+    elif outcome.sampling and execution.failure is None:
+        output.line(f"  {NOTHING_ADDED}")
     for line in outcome.added_lines():
         output.line(f"  {line}")
     _print_binding(execution)
@@ -80,6 +88,8 @@ def show(outcome: Outcome, explain: bool) -> None:
         output.line(SAMPLE)
     if outcome.unsampled:
         output.line(f"Sampling does not help: {outcome.unsampled}")
+    if advice := _other_rules(outcome):
+        output.line(advice)
     left = len(execution.program.steps) - len(_reached(execution))
     if left > 0:
         output.line(f"{output.counted(left, 'later step')} {'was' if left == 1 else 'were'} not run.")
@@ -120,6 +130,24 @@ def _sampling_helps(outcome: Outcome) -> bool:
     return failure.actual == "it has none" or failure.actual.startswith("other objects")
 
 
+def _other_rules(outcome: Outcome) -> str:
+    """Return which rules simulate an action that stopped the run or its sampling; empty where none would."""
+    from hearth.schemas.failures import Code
+
+    execution = outcome.trial.execution
+    codes = {execution.failure.code if execution.failure else None, outcome.unsampled_code}
+    if Code.NOT_SIMULATED not in codes or execution.rules.consequences:
+        return ""
+    actions = execution.worlds[0].home.knowledge.actions
+    used = dict.fromkeys(step.action for step in execution.program.steps)
+    later = [name for name in used if name in actions and not actions[name].executed and actions[name].later]
+    named = ", ".join(f"[{name}]" for name in later)
+    verb, object_ = ("is", "it") if len(later) == 1 else ("are", "them")
+    return (
+        f"Under these rules {named} {verb} not simulated; `--rules consequences` simulates {object_}." if later else ""
+    )
+
+
 def _failure(outcome: Outcome) -> dict[str, Any] | None:
     from hearth.repair.remedies import remedy, stop_reason
     from hearth.schemas.failure_words import why
@@ -128,7 +156,7 @@ def _failure(outcome: Outcome) -> dict[str, Any] | None:
     failure = execution.failure
     if failure is None:
         return None
-    advice = remedy(execution) or (SAMPLE if _sampling_helps(outcome) else None)
+    advice = remedy(execution) or _other_rules(outcome) or (SAMPLE if _sampling_helps(outcome) else None)
     words = {"message": stop_reason(execution), "why": why(failure), "remedy": advice}
     return {**(failure_document(failure, execution.program) or {}), **words}
 
@@ -200,6 +228,20 @@ def _print_fault(execution: Execution, steps: tuple[Step, ...]) -> None:
     if failure.agent < len(execution.final.agents):
         for line in facts(execution.final, failure.agent, nodes):
             output.line(f"         {line}")
+    for ref in (ref for step in steps for ref in step.objects if ref.node is None):
+        output.line(f"         {_looked_for(execution.final.home, ref.name)}")
+
+
+def _looked_for(home: Home, name: str) -> str:
+    """Return the classes that a name stands for, and the nodes of a home that have one of them."""
+    names = home.knowledge.found_as(name)
+    nodes = [(cls, node) for cls, node in zip(home.classes, home.ids, strict=True) if cls in names]
+    found = ", ".join(f"{cls} ({node})" for cls, node in nodes[:_MOST_NODES])
+    more = f" and {len(nodes) - _MOST_NODES} more" if len(nodes) > _MOST_NODES else ""
+    return f"looked for {', '.join(names)}: {f'found {found}{more}; none fits' if nodes else f'{home.name} has none'}"
+
+
+_MOST_NODES = 6
 
 
 def _checks(execution: Execution, tick: int, step: Step) -> list[Check]:

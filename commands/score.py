@@ -132,7 +132,7 @@ def program(
     from hearth.scoring.refused_rows import FirstFaults
     from hearth.simulation.rules import CHOICES
 
-    known, rejects = inputs.read_knowledge(None, "", graph), FirstFaults()
+    known, rejects = inputs.of_rules(inputs.read_knowledge(None, "", graph), rules), FirstFaults()
     auto = inputs.read_rules(rules, inputs.read_home("", graph, None, known)) if graph else CHOICES["default"]
     how = Options(auto if rules == "auto" else CHOICES[rules], match, scope, instances, seed)
     pairs = read_predictions(file, references, known, rejects, fuzzy)

@@ -116,9 +116,15 @@ def attempt(
     )
     if isinstance(sampled, Failure):
         # Environments are sampled without places: the home says what is in the way of a move by metres.
-        return found if sampled.code is Code.NOT_SIMULATED else sampled
+        return found if sampled.code is Code.NOT_SIMULATED and not _is_unknown_to_rules(sampled, home) else sampled
     environment, execution = sampled
     return Trial(execution, environment, found)
+
+
+def _is_unknown_to_rules(failure: Failure, home: Home) -> bool:
+    """Return whether an action is never executed, wherever the character is."""
+    action = home.knowledge.actions.get(failure.action)
+    return action is not None and not action.executed
 
 
 def _characters(program: Program) -> int:

@@ -1,7 +1,7 @@
 """Episodes as chats for fine-tuning: what the text environment says, and the commands that were answered.
 
 A line is an episode: a system message with the protocol's instructions, then observations (`user`) and commands
-(`assistant`) in turn. They are those of `hearth.TextHome`, so that a model is trained on what it will be shown.
+(`assistant`) in turn. They are those of `hearth.TextHome`, in which the model will act.
 """
 
 from __future__ import annotations

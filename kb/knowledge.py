@@ -89,10 +89,6 @@ class Knowledge:
 
         Raises:
             ValueError: the set is neither 2 nor 3.
-
-        Examples:
-            >>> [known.of_set(number).action("Cut").executed for number in (2, 3)]
-            [False, True]
         """
         if number not in (USUAL, LATEST):
             raise ValueError(f"no action set {number!r:.20}; there are {USUAL} and {LATEST}")

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, cast
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph_json_faults import REMEDY, graph_fault
-from hearth.schemas.numbers import stored
+from hearth.schemas.numbers import FARTHEST, LONGEST_HOME, stored
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import RELATIONS
 
@@ -148,7 +148,7 @@ def read_node(data: Mapping[str, Any]) -> Node:
         tuple(map(word, _listed(data.get("properties")))),
         tuple(map(word, _listed(data.get("states")))),
         None if prefab is None else word(prefab),
-        Box(_point(box["center"]), _point(box["size"])) if box else None,
+        Box(_point(box["center"], FARTHEST), _point(box["size"], LONGEST_HOME)) if box else None,
         yaw,
     )
 
@@ -177,8 +177,15 @@ def _listed(value: Any) -> Iterable[Any]:
     return value or ()
 
 
-def _point(values: Iterable[float]) -> Point:
+def _point(values: Iterable[float], most: float) -> Point:
+    """Return a place or a size in metres.
+
+    Raises:
+        ValueError: it is not three numbers, or one that no home has.
+    """
     x, y, z = map(float, values)
+    if not (-most <= x <= most and -most <= y <= most and -most <= z <= most):
+        raise ValueError(f"a box with {x:g}, {y:g}, {z:g} metres, where {most:g} is the most")
     return x, y, z
 
 

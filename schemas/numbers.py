@@ -5,6 +5,12 @@ from typing import Any
 LARGEST = 2**31 - 1
 """The tables' integers have 32 bits."""
 
+LONGEST_HOME = 500.0
+"""Metres that a home measures at most, and each thing in it: its floor is a grid of cells of 10 cm."""
+
+FARTHEST = 10_000.0
+"""Metres from the origin at which something may be: graphs of a simulator's scenes lie apart from one another."""
+
 _DIGITS = len(str(LARGEST))
 
 

@@ -67,8 +67,8 @@ def _entered(execution: Execution, number: int) -> Iterator[Lasting]:
 def lasting_rows(world: World) -> tuple[int, ...]:
     """Return the rows of all states of a world of action set 3, without the things that leave them by themselves.
 
-    What is hot cools, and a kettle that boils switches itself off: how it is a few ticks later says nothing about what
-    was done.
+    Hot food cools, and a kettle that boils switches itself off: their state a few ticks later does not follow from the
+    steps that were done.
     """
     return tuple(row & ~left for row, left in zip(world.states, passing(world.home), strict=False))
 

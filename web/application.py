@@ -213,6 +213,11 @@ async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
         await socket.close(TRY_LATER)
         return
     await socket.accept()
+    if not web.rates["request"].allows(session.id if session else sender_of(socket)):
+        fast = WebError(Code.TOO_FAST, "socket", f"at most {web.rates['request'].each_second:g} a second", "more")
+        await socket.send_json({"type": "error", **fast.as_json()})
+        await socket.close(TRY_LATER)
+        return
     if session is None:
         await socket.send_json({"type": "error", **nobody().as_json()})
         await socket.close(4401)

@@ -13,6 +13,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from hearth.web.limits import MOST_CONNECTIONS, QUIET_SECONDS
 from hearth.web.security import HEADERS
+from hearth.web.small_pieces import Requests
 
 LOOK_EVERY = 1.0
 """Seconds between looks at all connections."""
@@ -47,6 +48,10 @@ class Connection(H11Protocol):
     _seen: Any = None
     _unsent: tuple[int, float] = (0, 0.0)
 
+    def __init__(self, *args: Any, **more: Any) -> None:
+        super().__init__(*args, **more)
+        self.conn = Requests(h11.SERVER, self.conn._max_incomplete_event_size)
+
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Take a connection; at the limit it takes the place of the one that has been quiet longest, or is refused."""
         super().connection_made(transport)
@@ -69,7 +74,13 @@ class Connection(H11Protocol):
         super().handle_events()
 
     def send_400_response(self, msg: str) -> None:
-        """Answer what is not HTTP with the headers of every other answer."""
+        """Answer what is not HTTP with the headers of every other answer; after half an answer, end the connection."""
+        if self.cycle is not None and not self.cycle.response_complete:  # its handler has nothing more to say here
+            self.cycle.disconnected = True
+            self.cycle.message_event.set()
+        if self.conn.our_state not in (h11.IDLE, h11.SEND_RESPONSE):
+            self._drop()
+            return
         headers = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
         headers += [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close")]
         for event in (

@@ -16,6 +16,15 @@ MOST_FIELDS = 2_000
 MOST_MESSAGE = 64 * 1024
 """Bytes of a message over a socket."""
 
+FREE_CHUNKS = 256
+"""Pieces of a request's body, whatever their size."""
+
+LEAST_OF_A_CHUNK = 256
+"""Bytes of a body for each further piece, on average."""
+
+FRAMES_EACH_SECOND, BURST_OF_FRAMES = 120, 300
+"""Frames of a socket, pings and parts of messages too: twice as many as the messages that a page may send."""
+
 QUIET_SECONDS = 9.0
 """Seconds for which a connection may ask nothing, read nothing, or be in the middle of a request's body.
 

@@ -11,6 +11,7 @@ from hearth.schemas.failures import Code
 from hearth.web.connections import KERNEL_QUEUE, Connection, affordable, watch
 from hearth.web.limits import MOST_MESSAGE, QUIET_SECONDS
 from hearth.web.log_limits import limit_logs
+from hearth.web.small_pieces import Socket
 
 
 class _Server(uvicorn.Server):
@@ -58,7 +59,7 @@ def run(app: ASGIApp, where: socket.socket, proxy: str = "") -> None:
     config = uvicorn.Config(
         app,
         http=Connection,
-        ws="websockets-sansio",
+        ws=Socket,
         ws_max_size=4 * MOST_MESSAGE,  # larger ones end the connection; smaller ones are refused with a reason
         ws_ping_interval=0.3 * QUIET_SECONDS,
         ws_ping_timeout=0.7 * QUIET_SECONDS,

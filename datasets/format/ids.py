@@ -13,6 +13,10 @@ def stamp(action_set: int = USUAL) -> dict[str, str]:
     return {"action_set": name_of_set(action_set), "dataset_version": VERSION}
 
 
+STAMP = stamp()
+"""Version columns of rows of the usual action set."""
+
+
 TRAIN, VALIDATION = 7, 1
 """Shares of train, validation and test: 7, 1 and 2 of ten activities (thesis 5.6: 7:3)."""
 

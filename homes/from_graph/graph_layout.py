@@ -20,6 +20,7 @@ from hearth.homes.plans.floor import REACH
 from hearth.homes.plans.home_shell import Thing, outer_walls, shared_wall, span
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Plan, Room, Window
+from hearth.homes.plans.plan_entries import MOST_ROOMS
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -31,6 +32,8 @@ HEIGHT = 2.6
 LEAST_SIDE = 2.6
 SPACE = 2.4
 """Square metres of room for each square metre of furniture."""
+MOST_STANDING = 500
+"""Things that are in a room, and not on or in another thing: each is placed among all others. Ours have 170."""
 GOES = 2
 """Number of times that a home is furnished in a series; each time uses the result of the one before."""
 ENLARGED = (1.0, 1.2, 1.45, 1.75, 2.1)
@@ -56,12 +59,13 @@ def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> GraphLa
     """Give a graph plausible geometry; the same graph always gets the same.
 
     Raises:
-        HearthError: NO_ROOM: it has no room.
+        HearthError: NO_ROOM: it has no room; FILE_TOO_LARGE: it has more to place than any home.
     """
     parts = Parts(graph, knowledge)
     if not parts.rooms:
         raise HearthError.of(Code.NO_ROOM, "there is no room to lay out", file=name,
                              suggestion="a node of the category Rooms")  # fmt: skip
+    _check_number(parts, name)
     plan, built = _large_enough(parts, name)
     crowd, things = _arranged(parts, plan, built)
     layout = Layout(plan, built, (*built.things, *crowd.things.values()))
@@ -72,6 +76,17 @@ def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> GraphLa
         things[person] = layout.character
     new = EnvironmentGraph(tuple(_placed(node, things.get(node.id)) for node in graph.nodes), graph.edges, graph.extra)
     return GraphLayout(new, layout, tuple(unmet(new, things, parts, crowd.squeezed)))
+
+
+def _check_number(parts: Parts, name: str) -> None:
+    """Refuse a graph with more rooms, or things on the floor, than are placed in a minute."""
+    standing = sum(len(parts.roots(room)) for room in parts.rooms)
+    if len(parts.rooms) > MOST_ROOMS or standing > MOST_STANDING:
+        message = f"a graph without boxes of {len(parts.rooms):,} rooms and {standing:,} things that stand in them"
+        remedy = (
+            f"at most {MOST_ROOMS} rooms and {MOST_STANDING} such things; or give each room and thing a bounding_box"
+        )
+        raise HearthError.of(Code.FILE_TOO_LARGE, message, file=name, suggestion=remedy)
 
 
 def _large_enough(parts: Parts, name: str) -> tuple[Plan, home_shell.Shell]:

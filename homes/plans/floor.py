@@ -13,11 +13,10 @@ from hearth.homes.plans.plan import Plan
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box
+from hearth.schemas.numbers import LONGEST_HOME
 
 CELL = 0.1
 """Metres a cell."""
-LONGEST = 500.0
-"""Metres of a home at most."""
 BODY = 0.2
 """Half the width of someone walking."""
 HEAD = 1.8
@@ -86,12 +85,22 @@ def stands_on_floor(thing: Thing) -> bool:
     )  # fmt: skip
 
 
+def check_extent(width: float, depth: float) -> None:
+    """Refuse a home whose floor is larger than any, before a grid of it takes the memory.
+
+    Raises:
+        HearthError: BAD_GRAPH.
+    """
+    if not (0 < width <= LONGEST_HOME and 0 < depth <= LONGEST_HOME):
+        message = f"a home of {width:g} by {depth:g} metres"
+        remedy = f"boxes of rooms in metres, up to {LONGEST_HOME:g} in all"
+        raise HearthError.of(Code.BAD_GRAPH, message, suggestion=remedy)
+
+
 def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
     """Return the floor of a furnished plan."""
     x0, z0, x1, z1 = Rect.over(room.rect for room in plan.rooms)
-    if not (0 < x1 - x0 <= LONGEST and 0 < z1 - z0 <= LONGEST):
-        message = f"a home of {x1 - x0:g} by {z1 - z0:g} metres"
-        raise HearthError.of(Code.BAD_GRAPH, message, suggestion=f"boxes of rooms in metres, up to {LONGEST:g} in all")
+    check_extent(x1 - x0, z1 - z0)
     shape = (round((x1 - x0) / cell + 0.499), round((z1 - z0) / cell + 0.499))
 
     def part(low: float, high: float, size: int) -> slice:

@@ -29,6 +29,12 @@ OBJECTS = frozenset({
 """Keys of the objects of a step; or one with a number, as `arg1`."""
 
 
+_MODIFIERS = frozenset({
+    "first", "second", "third", "primary", "secondary", "main", "other", "source", "goal", "direct", "indirect", "name",
+    "class", "interacted", "manipulated", "held", "step",
+})  # fmt: skip
+"""Words that say which of the objects of a step a key names, as `target_object` or `secondary_object_name`."""
+
 INSTANCE = re.compile(r"(?:object[_ ])?inst(?:ance)?s?(?:[_ ](?:id|no|nr|number))?[._ -]?\d*", re.IGNORECASE)
 """The name of a column or key with the instance of the thing before it, or of the only one."""
 
@@ -61,4 +67,16 @@ def bare_key(key: str) -> str:
 
 def holds_object(key: str) -> bool:
     """Return whether a key names an object of a step."""
-    return bare_key(key) in OBJECTS
+    bare = bare_key(key)
+    return bare in OBJECTS or _is_compound(bare)
+
+
+def _is_compound(key: str) -> bool:
+    """Return whether a key of several words names an object of a step, as `target_object` does."""
+    words = _BETWEEN.split(key)
+    return 1 < len(words) <= _MOST_WORDS and not _NOUNS.isdisjoint(words) and (OBJECTS | _MODIFIERS).issuperset(words)
+
+
+_BETWEEN = re.compile(r"[\s_.-]+")
+_NOUNS = frozenset({"object", "objects", "obj", "target", "item", "receptacle", "thing", "entity", "location"})
+_MOST_WORDS = 3

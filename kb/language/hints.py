@@ -169,7 +169,7 @@ def _by_head(known: Knowledge) -> Mapping[str, tuple[str, ...]]:
 
 
 def _of_head(known: Knowledge, noun: str) -> tuple[str, ...]:
-    """Return the classes of which a noun that is no class is the last word, where they are of one kind."""
+    """Return the classes of one kind that end with a noun which names none itself."""
     if not noun or thing_of(known, noun):
         return ()
     named = (name for each in (noun, *noun_lemmas(noun)) for name in _by_head(known).get(each, ()))

@@ -16,7 +16,7 @@ from hearth.kb.language.step_phrases import parses
 
 _LINKS = ("", "on ", "to ", "in ", "into ", "at ", "with ")
 _THING = "zzthing"
-"""A name in the place of the object, which is no word."""
+"""A name in the place of the object; not a word."""
 
 _EVERYDAY = (
     "table", "bread", "chair", "bed", "television", "fridge", "book", "water", "cup", "shoes", "door", "phone", "child",

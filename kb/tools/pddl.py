@@ -253,7 +253,7 @@ class Writer(ABC):
 
     @staticmethod
     def _gone(effect: Effect) -> Iterator[Effect]:
-        """Yield the effect by which a thing ceases to be anywhere as what it is: in no place and in no hand."""
+        """Yield the effects of `gone`: a thing that is used up is in no place and in no hand, and close to nothing."""
         thing, anything = effect.literal.terms[0], Term("anything")
         yield replace(effect, literal=Literal("state", (thing, Term("GONE"))))
         pairs = [(name, (thing, anything)) for name in ("ON", "INSIDE", "CLOSE", "FACING")]

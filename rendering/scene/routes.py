@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.homes.plans import grid_shapes
-from hearth.homes.plans.floor import Floor
+from hearth.homes.plans.floor import Floor, check_extent
 from hearth.rendering.arrays import Floats
 from hearth.rendering.scene.floor_cells import BODY, CELL, cells_of, eroded, is_in_the_way
 from hearth.rendering.scene.room_shell import hung_doors
@@ -128,6 +128,7 @@ def ways_of(rooms: Iterable[Node], nodes: Sequence[Node], leaves: Floats | None 
         return None
     low = [min(box.center[axis] - box.size[axis] / 2 for box in boxes) - 2 * CELL for axis in range(3)]
     high = [max(box.center[axis] + box.size[axis] / 2 for box in boxes) + 2 * CELL for axis in range(3)]
+    check_extent(high[0] - low[0] - 4 * CELL, high[2] - low[2] - 4 * CELL)
     origin = (low[0], low[2])
     free = np.zeros((int((high[0] - low[0]) / CELL) + 1, int((high[2] - low[2]) / CELL) + 1), np.bool_)
     for box in [*boxes, *(_deeper(node.box) for node in nodes if node.class_name == "doorjamb" and node.box)]:

@@ -7,14 +7,22 @@ from dataclasses import replace
 import orjson
 import pytest
 
+from hearth.analysis import household_table
+from hearth.analysis.household_table import AGENTS as ROWS
+from hearth.analysis.household_table import ALL, household_rows, household_runs, household_suite
+from hearth.challenges import challenge_tables
 from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.challenge_tables import ChallengeData, publish
 from hearth.challenges.episode_agents import Lineup
-from hearth.challenges.household_as_challenge import SEVERAL
+from hearth.challenges.household import household_task
+from hearth.challenges.household_as_challenge import SEVERAL, as_task
 from hearth.challenges.household_definition import NAME, RULES, settings
+from hearth.challenges.metrics import share_interval
 from hearth.challenges.result_files import read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite, read_suite, suite, suite_data
 from hearth.challenges.verification import verify
+from hearth.commands import challenge_household
 from hearth.commands.challenge_output import _figures
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -127,3 +135,67 @@ def test_a_task_is_in_a_file_once(some):
 def test_results_name_their_tasks(results):
     path = results["oracle"].records._path
     assert read(path).header.suite == results["oracle"].header.suite
+
+
+def asked(found, query):
+    """The rows of a query, by column."""
+    columns, rows = found.rows(query)
+    return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
+def test_tables_have_the_tasks_of_runs_their_experts_and_their_episodes(some, results, tmp_path):
+    runs = [results["human_like"], results["random"]]
+    counts = publish(tmp_path / "out", NAME, default, runs)
+    assert (counts["tasks"], counts["demonstrations"], counts["episodes"], counts["posteriors"]) == (3, 3, 6, 0)
+    found = ChallengeData.found(tmp_path / "out")
+    rows = asked(found, "SELECT * FROM tasks ORDER BY task_id")
+    for row, task in zip(rows, some.tasks, strict=True):
+        assert (row["instruction"], row["expert_ticks"]) == (task.instruction, task.origin.min_ticks)
+        assert row["sets"] == [task.origin.family] and bool(row["activity"]) == (task.origin.family == "activity")
+        assert " and ".join(each["predicate"] for each in row["goal"]).split(" and ")[0] in str(task.goal)
+    joined = "trajectories JOIN episodes USING (episode_id) JOIN tasks USING (task_id)"
+    assert asked(found, f"SELECT count(*) AS n FROM {joined}")[0]["n"] == counts["trajectories"] > 750
+    shown = {row["task_id"]: row["ticks"] for row in asked(found, "SELECT task_id, ticks FROM demonstrations")}
+    assert shown == {task.id: task.origin.min_ticks for task in some.tasks}
+
+
+def test_a_limit_draws_tasks_of_every_split(tmp_path, monkeypatch):
+    monkeypatch.setattr(challenge_tables, "settings", lambda: {"splits": ["train", "test_seen"]})
+    counts = publish(tmp_path / "out", NAME, default, limit=1)
+    assert (counts["tasks"], counts["demonstrations"], counts["episodes"]) == (2, 2, 0)
+
+
+def test_a_part_that_forbids_is_a_predicate_of_its_row(knowledge):
+    task = as_task(household_task("household-train-00009", knowledge=knowledge))
+    row = challenge_tables._task(task)
+    assert row["goal"][-1] == {"predicate": "not ([Open](chest_of_drawers))", "count": 1}
+
+
+def test_the_table_has_intervals_by_split_and_family(some, results, tmp_path):
+    found = household_runs(some, 1, tmp_path / "runs", default)
+    rows = household_rows(found)
+    whole = {row["agent"]: row for row in rows if row["kind"] == ALL}
+    assert set(whole) == set(ROWS) and whole["expert"]["success"] == 1.0 and whole["random"]["success"] == 0.0
+    assert whole["expert"]["success_from"] == pytest.approx(0.438, abs=0.001) and whole["expert"]["success_to"] == 1.0
+    assert len(rows) == 4 * (1 + 1 + 3) and {row["kind"] for row in rows} == {ALL, "split", "family"}
+    assert household_rows(household_runs(some, 1, tmp_path / "runs", default)) == rows
+    assert list(found["random"].records) == list(results["random"].records)
+
+
+def test_the_tasks_of_a_table_are_the_first_of_each_split():
+    found = household_suite("valid_words", 1, default)
+    assert [task.id for task in found.tasks] == ["household-valid_words-00000"] and found.split == "valid_words"
+
+
+@pytest.mark.parametrize(
+    ("share", "number", "low", "high"), [(0.0, 10, 0.0, 0.278), (1.0, 10, 0.722, 1.0), (0.5, 100, 0.404, 0.596)]
+)
+def test_the_interval_of_a_share_is_wilsons(share, number, low, high):
+    assert share_interval(share, number) == (pytest.approx(low, abs=0.001), pytest.approx(high, abs=0.001))
+
+
+def test_the_command_prints_the_table(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(household_table, "AGENTS", {"expert": "oracle"})
+    challenge_household.print_table("test_unseen", 1, tmp_path / "t", 1, 1, True)
+    (row, *_) = orjson.loads(capsys.readouterr().out)
+    assert (row["agent"], row["tasks"], row["success"]) == ("expert", 1, 1.0)

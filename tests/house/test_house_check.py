@@ -68,6 +68,15 @@ def test_the_json_has_every_fault_in_the_order_of_lines(tmp_path):
     assert [fault["line"] for fault in report["faults"]] == [4, 5, 6]
 
 
+def test_faults_and_warnings_stand_in_the_order_of_their_lines(tmp_path):
+    (tmp_path / "b.txt").write_text("1. Walk to kitchin\n2. Zap the tea\n3. Walk to the sofa quickly\n4. Fly\n")
+    (tmp_path / "a.txt").write_text("1. Zap the milk\n2. Walk to kitchan\n3. Zap the milk\n")
+    result = check(tmp_path / "b.txt", tmp_path / "a.txt")
+    places = [line.split("/")[-1] for line in result.stdout.splitlines() if "-->" in line]
+    assert places == ["b.txt:1:4", "b.txt:2:4", "b.txt:3:4", "b.txt:4:4", "a.txt:1:4", "a.txt:2:4"]
+    assert "+ 1 more: 3:4" in result.stdout
+
+
 def test_a_summary_counts_faults_by_kind(tmp_path):
     result = check(tmp_path, *faulty_files(tmp_path)[1:], "--summary", "--lint")
     rows = [line.split()[:4] for line in result.stdout.splitlines()[1:-1]]

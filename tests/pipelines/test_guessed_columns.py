@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 from lamp_plan import CUP, LINES, read
 
+from hearth.commands import inputs
+from hearth.kb.language.action_keys import holds_object
 from hearth.pipelines.readers import program_tables
 from hearth.pipelines.readers.delimited import Rows
 from hearth.pipelines.readers.table_heads import begun
+from hearth.schemas.syntax import print_step
 
 
 @pytest.mark.parametrize(
@@ -139,3 +144,28 @@ def test_rows_of_a_task_without_numbers_are_steps_and_single_answers_are_not(wri
     assert [[step for _, step in steps] for _, steps in programs] == [LINES, ["[Sleep]", "[StandUp]"]]
     apart = "task,plan\nLight,Walk to lamp\nNap,Sleep\nLight,Switch on lamp\n"
     assert [len(steps) for _, steps in read(write("b.csv", apart))[0]] == [1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("target_object", "destination_object"),
+        ("object_name", "target_receptacle"),
+        ("primary object", "secondary object"),
+        ("source_item", "target_location"),
+        ("first_obj", "second_obj"),
+    ],
+)
+def test_columns_of_several_words_name_the_objects_of_a_step(write, knowledge, first, second):
+    text = f"title,step,action,{first},{second}\nTea,1,walk,kitchen,\nTea,2,put,cup,table\n"
+    steps = ["[Walk] <kitchen> (1)", "[PutBack] <cup> (1) <table> (1)"]
+    records = [{"action": "walk", first: "kitchen"}, {"action": "put", first: "cup", second: "table"}]
+    value = json.dumps([{"title": "Tea", "plan": records}])
+    for name, content in (("a.csv", text), ("a.json", value)):
+        (given,) = inputs.read_programs(write(name, content), knowledge, name)
+        assert ([print_step(step) for step in given.program.steps], given.faults) == (steps, ())
+
+
+@pytest.mark.parametrize("name", ["object_id", "target_time", "from_home", "item_price", "where_from_here"])
+def test_other_columns_of_several_words_name_none(name):
+    assert not holds_object(name)

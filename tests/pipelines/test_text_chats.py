@@ -1,4 +1,4 @@
-"""Chats as plain text: what a request corrects is no program, and every step stands on its line of the file."""
+"""Chats as plain text: an answer that a request corrects is left out, and every step stands on its line of the file."""
 
 import json
 
@@ -87,3 +87,11 @@ def test_a_chat_without_a_correction_loses_no_answer(write, knowledge, second):
     turns = ("Make tea", "\n".join(FIRST), second, "\n".join(LAST))
     read = found(write, knowledge, chat(NAMES["plain"], *turns))
     assert [steps[-1] for _, _, steps in read] == ["[Grab] <cup> (1)", "[Grab] <mug> (1)"]
+
+
+@pytest.mark.parametrize("names", [NAMES["on its line"], NAMES["letters"], ("Human: ", "Robot: "), ("Anna: ", "Bot: ")])
+@pytest.mark.parametrize("steps", [FIRST, (*FIRST, "3. Close the fridge")])
+def test_the_list_of_an_answer_goes_on_below_its_speaker(write, knowledge, names, steps):
+    ((_, _, found_steps),) = found(write, knowledge, names[0] + "Make tea\n" + names[1] + "\n".join(steps) + "\n")
+    expected = ["[Walk] <kitchen> (1)", "[Grab] <cup> (1)", "[Close] <fridge> (1)"]
+    assert found_steps == expected[: len(steps)]

@@ -311,10 +311,10 @@ def test_a_task_that_is_opened_twice_at_once_is_begun_once(server, person, text,
     from hearth.web.annotate import annotated_programs
 
     owner = server.store.read(lambda connection: connection.execute(sql.select(SESSIONS.c.id)).scalars().first())
-    first = annotated_programs.begun(server.store, owner, text)
+    first = annotated_programs.begin(server.store, owner, text)
     looks = iter((None, first))
     monkeypatch.setattr(annotated_programs, "own_program", lambda *_: next(looks))
-    assert annotated_programs.begun(server.store, owner, text) == first
+    assert annotated_programs.begin(server.store, owner, text) == first
 
 
 def test_what_was_accepted_builds_into_a_dataset_with_a_closed_ledger(server, person, text, build_folder, tmp_path):

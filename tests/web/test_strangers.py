@@ -151,7 +151,7 @@ def test_who_kept_rows_are_nobodys_has_no_token(server):
 def test_a_draft_of_another_person_is_not_deleted_with_its_description(server, person):
     text = described(person)
     second = server.person()
-    second.post(f"/annotate/task/{text}/scene", data={"room living_room": "1"})
+    second.post(f"/annotate/task/{text}/scene", data={"version": "1", "room living_room": "1"})
     person.post("/mine/delete")
     assert second.get(f"/annotate/task/{text}").status_code == 200
     assert [row["session"] for row in rows(server, PROGRAMS)] == [session_of(server, second)]

@@ -11,6 +11,9 @@ from hearth.web.annotate.program_draft import Draft
 from hearth.web.store import Row, Store
 from hearth.web.web_errors import WebError
 
+EMPTY = Draft({}, {}).dumped()
+"""A draft in which nothing was set yet."""
+
 CHANGED = (DRAFT, RETURNED)
 """States in which its author may change a program."""
 
@@ -34,37 +37,45 @@ def own_program(store: Store, person: str, text: str) -> Row | None:
     return store.row(query)
 
 
-def begun(store: Store, person: str, text: str) -> Row:
-    """Return a person's program, begun with an empty scene if there is none."""
-    found = own_program(store, person, text)
-    if found is not None:
-        return found
-    row: Row = {
+def seen(store: Store, person: str, text: str) -> Row:
+    """Return a person's program, or the empty one that it would begin with; nothing is stored for a look at it."""
+    return own_program(store, person, text) or {
         "id": f"P{secrets.token_hex(5).upper()}",
         "session": person,
         "text": text,
-        "draft": Draft({}, {}).dumped(),
+        "draft": EMPTY,
         "version": 1,
         "state": DRAFT,
         "note": "",
         "created": time.time(),
     }
+
+
+def begin(store: Store, person: str, text: str) -> Row:
+    """Return a person's program, stored with an empty scene if there is none: the person is about to change it."""
+    found = own_program(store, person, text)
+    if found is not None:
+        return found
+    row = seen(store, person, text)
     try:
         store.write(lambda connection: connection.execute(sql.insert(PROGRAMS).values(row)))
     except sql.exc.IntegrityError:  # begun in another tab at this moment
         found = own_program(store, person, text)
         if found is None:
+            text_of(store, text)  # it says so if the description was withdrawn at this moment
             raise
         return found
     return row
 
 
 def save(store: Store, person: str, text: str, version: int, draft: Draft, state: str | None = None) -> int:
-    """Replace the last version of a person's own program; the number of the new one.
+    """Replace the last version of a person's own program, which the first change begins; the number of the new one.
 
     Raises:
         WebError: LOCKED, if another tab has saved since, or the program is with a reviewer.
     """
+    if version == 1:
+        begin(store, person, text)
     own = (PROGRAMS.c.session == person, PROGRAMS.c.text == text)
     values = {"draft": draft.dumped(), "version": version + 1, **({"state": state} if state else {})}
     query = sql.update(PROGRAMS).where(*own, PROGRAMS.c.version == version, PROGRAMS.c.state.in_(CHANGED))

@@ -188,7 +188,7 @@ def _text(visit: Visit) -> Row:
 
 
 def _own(visit: Visit) -> Row:
-    return annotated_programs.begun(visit.web.store, visit.person, _text(visit)["id"])
+    return annotated_programs.seen(visit.web.store, visit.person, _text(visit)["id"])
 
 
 def _draft(visit: Visit) -> Draft:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from hearth.kb.language.forms.code_blocks import end_of_block, indent
 from hearth.kb.language.refusals import Refusal
 
 _DEF = re.compile(r"(\s*)(?:async\s+)?def\s+(\w+)\s*\(")
@@ -15,8 +16,6 @@ _MAIN = re.compile(r"if\s+__name__\s*==")
 _SPOKEN = re.compile(r"\s*(?:#|//|\"{3}|'{3}|@|$)")
 _IDLE = re.compile(r"\s*(?:pass|\.\.\.|return\b.*|print\(.*|\"{3}.*|'{3}.*|#.*|raise\b.*|logging\.\w+\(.*)?")
 _ONE_LINE = re.compile(r"[^:]*\)\s*(?:->[^:]*)?:\s*(?:pass|\.\.\.|#.*)?\s*")
-
-
 _SECOND = Refusal("a second function in one record", "write each plan as a record of its own")
 
 
@@ -38,11 +37,7 @@ class Functions(NamedTuple):
         named = _DEF.match(raw)
         if named:
             is_second = not self.called and row > min(self.names.values(), default=row)
-            return (
-                Refusal("a second function in one record", "write each plan as a record of its own")
-                if is_second
-                else None
-            )
+            return _SECOND if is_second else None
         found = next((name for name in _CALLED.findall(raw) if name in self.called), None) if self.called else None
         if not found or _SPOKEN.match(raw):
             return None
@@ -54,7 +49,7 @@ def plan_of(lines: Sequence[str]) -> Functions:
     starts = [row for row, raw in enumerate(lines) if _DEF.match(raw)]
     if not starts:
         return Functions(list(lines), {}, frozenset())
-    bodies = {row: range(row, _end(lines, row)) for row in starts}
+    bodies = {row: range(row, end_of_block(lines, row + 1, indent(lines[row]))) for row in starts}
     names = {row: _DEF.match(lines[row])[2] for row in starts}  # type: ignore[index]
     inside = set(itertools.chain.from_iterable(bodies.values()))
     calls = Counter(
@@ -82,17 +77,3 @@ def _is_idle(body: Sequence[str]) -> bool:
     """Return whether a function has no steps, as one that only stands for an action."""
     first, *rest = body
     return (_ONE_LINE.fullmatch(first) is not None) and all(map(_IDLE.fullmatch, rest))
-
-
-def _end(lines: Sequence[str], start: int) -> int:
-    """Return the row behind the lines of a function."""
-    indent, end = _indent(lines[start]), start + 1
-    for row in range(start + 1, len(lines)):
-        if lines[row].strip() and _indent(lines[row]) <= indent:
-            break
-        end = row + 1 if lines[row].strip() else end
-    return end
-
-
-def _indent(raw: str) -> int:
-    return len(raw.expandtabs()) - len(raw.expandtabs().lstrip())

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from hearth.kb.language.forms.code_blocks import end_of_block, indent
 from hearth.kb.language.refusals import Refusal
 
 ThingNames = Mapping[str, str | None]
@@ -32,6 +33,9 @@ _HEAD = re.compile(
     r"\s*(?P<word>(?:async\s+)?(?:for|while|if|elif|else|try|except|finally|with|match|case|switch|repeat|until|do))\b"
     r"(?P<rest>.*[:{].*)"
 )
+_ALWAYS = re.compile(r"\s*if\s+\(?(?:True|1)\)?\s*:\s*(\S.*)?")
+"""A condition that holds always: its lines are done once, and those of its `else` never."""
+
 _MAIN = re.compile(r"\s*if\s+__name__\s*==")
 _CLAUSE = re.compile(r"\s*(?:elif|else|except|finally)\b")
 _ASSERT = re.compile(r"\s*assert\b")
@@ -42,7 +46,7 @@ _INLINE = re.compile(r"\)\s*(if|for|and|or)\b|^\s*(not|lambda)\b")
 _QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
 _ASSIGNED = re.compile(r"\s*(?:await\s+)?(\w+)\s*=\s*(?:await\s+)?(?:\w+\.)*\w+\((.*)\)\s*;?\s*(?:#.*)?")
 _REASONS = {
-    "for": "the loop goes over neither a written list of texts nor `range` of a number",
+    "for": "the loop goes over neither a written list nor `range` of a number",
     "while": "a `while` runs until something changes, which a list of steps cannot say",
     "with": "a `with` is not a step, and its lines depend on it",
     "try": "a `try` has steps that are done only if others fail",
@@ -57,6 +61,7 @@ def in_order(lines: Sequence[str]) -> list[CodeLine]:
 
 def _run(lines: CodeRows, names: ThingNames) -> Iterator[CodeLine]:
     at, names, is_asserted = 0, dict(names), False
+    texts = [raw for _, raw in lines]
     while at < len(lines):
         row, raw = lines[at]
         at += 1
@@ -67,11 +72,11 @@ def _run(lines: CodeRows, names: ThingNames) -> Iterator[CodeLine]:
         head = None if is_asserted and _ELSE.match(raw) else _HEAD.fullmatch(raw)
         is_asserted = _ASSERT.match(raw) is not None or (is_asserted and _ELSE.match(raw) is not None)
         if head and not _MAIN.match(raw):
-            end = _end(lines, at, _indent(raw))
+            end = end_of_block(texts, at, indent(raw))
             yield from _compound(row, raw, lines[at:end], names, head["word"].split()[-1])
             at = end
-            while at < len(lines) and _CLAUSE.match(lines[at][1]) and _indent(lines[at][1]) == _indent(raw):
-                at = _end(lines, at + 1, _indent(raw))
+            while at < len(lines) and _CLAUSE.match(texts[at]) and indent(texts[at]) == indent(raw):
+                at = end_of_block(texts, at + 1, indent(raw))
         elif not head:
             yield CodeLine(row, raw, dict(names), _why_plain(raw, lines[at:]))
             if assigned := _ASSIGNED.fullmatch(raw):
@@ -79,7 +84,10 @@ def _run(lines: CodeRows, names: ThingNames) -> Iterator[CodeLine]:
 
 
 def _compound(row: int, raw: str, body: CodeRows, names: ThingNames, word: str) -> Iterator[CodeLine]:
-    """Yield the lines of a loop over literals, round by round; else the refused head of the lines below it."""
+    """Yield the lines of a loop over literals, round by round, and of `if True:`; else the refused head."""
+    if always := _ALWAYS.fullmatch(raw):
+        yield from _run([(row, always[1]), *body] if always[1] else body, names)
+        return
     loop = _FOR.fullmatch(raw)
     values = _values(loop[2]) if loop else None
     if loop is None or values is None:
@@ -94,7 +102,7 @@ def _compound(row: int, raw: str, body: CodeRows, names: ThingNames, word: str) 
 
 
 def _values(listed: str) -> list[str | None] | None:
-    """Return the values of a literal list of texts, or of `range(3)`; None for anything else."""
+    """Return the values of a literal list of texts or numbers, or of `range(3)`; None for anything else."""
     try:
         found = ast.parse(listed.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -107,8 +115,10 @@ def _values(listed: str) -> list[str | None] | None:
             return None
         return [None] * len(range(*numbers))  # type: ignore[arg-type]
     entries = found.elts if isinstance(found, ast.List | ast.Tuple) else []
-    texts = [each.value for each in entries if isinstance(each, ast.Constant) and isinstance(each.value, str)]
-    return list(texts) if texts and len(texts) == len(entries) else None
+    constants = [each.value for each in entries if isinstance(each, ast.Constant) and type(each.value) in (str, int)]
+    if not constants or len(constants) != len(entries):
+        return None
+    return [each if isinstance(each, str) else None for each in constants]
 
 
 _LARGEST = 1_000_000
@@ -118,7 +128,7 @@ def _why_plain(raw: str, below: CodeRows) -> Refusal | None:
     """Return why a line that holds no other lines is refused."""
     if leaves := _LEAVES.match(raw):
         follows = any(not _BLANK.match(line) and not _DEF.match(line) for _, line in below)
-        if leaves[1] in ("break", "continue") or (follows and _indent(raw)):
+        if leaves[1] in ("break", "continue") or (follows and indent(raw)):
             return Refusal(f"the lines below this `{leaves[1]}` are not always done", _REMEDY)
         return None
     return Refusal(_DECIDES, _REMEDY) if _INLINE.search(_QUOTED.sub("''", raw)) and not _ASSERT.match(raw) else None
@@ -135,16 +145,3 @@ def _thing(arguments: str, names: ThingNames) -> str | None:
     if found in names:
         return names[found]
     return found.strip("\"'") if re.fullmatch(r"\w+|\"[^\"']+\"|'[^\"']+'", found) else None
-
-
-def _indent(raw: str) -> int:
-    return len(raw.expandtabs()) - len(raw.expandtabs().lstrip())
-
-
-def _end(lines: CodeRows, at: int, indent: int) -> int:
-    """Return where the lines end that are indented deeper."""
-    last = at
-    while at < len(lines) and (not lines[at][1].strip() or _indent(lines[at][1]) > indent):
-        last = at + 1 if lines[at][1].strip() else last
-        at += 1
-    return last

@@ -92,13 +92,20 @@ def _is_step(text: str) -> bool:
 
 
 def _lines(lines: Sequence[str]) -> list[Placed]:
-    return [each for row, raw in enumerate(lines) for each in _of_line(row, raw)]
+    found: list[Placed] = []
+    is_robot = False
+    for row, raw in enumerate(lines):
+        said = said_of(raw)
+        found += _of_line(row, raw, said, is_robot)
+        is_robot = said.is_step if said else is_robot
+    return found
 
 
-def _of_line(row: int, raw: str) -> Iterator[Placed]:
-    said = said_of(raw)
+def _of_line(row: int, raw: str, said: Said | None, is_robot: bool) -> Iterator[Placed]:
+    """Yield the steps of a line; one without a speaker goes on with the words of the last, whose list may be steps."""
     if said is None:
-        yield Placed(row, plan_line(raw)._replace(number=None, numbered=False))
+        line = plan_line(raw)
+        yield Placed(row, line if is_robot and line.numbered else line._replace(number=None, numbered=False))
     elif said.is_step:
         words = _COURTESY.sub("", said.text, count=1)
         read = plan_line(words)
