@@ -291,7 +291,10 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")  # half characters, and terminals that have few
     command = typer.main.get_command(app)
     show_name(command)
-    command(prog_name=program_name())
+    try:
+        command(prog_name=program_name())
+    finally:  # from here on a signal to end has nobody to tell
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any
@@ -17,7 +16,7 @@ from hearth.pipelines.engine.dask_engine import DaskEngine
 from hearth.pipelines.engine.engines import engine as made
 from hearth.schemas.failures import Code
 from hearth.simulation.world.digest import digest
-from hearth.storage.parallel import begin, context, spread
+from hearth.storage.parallel import spread
 
 Spread = Callable[[Sequence[Job]], Iterator[Record]]
 """Plays jobs and yields their records in order."""
@@ -87,10 +86,10 @@ def on_cluster(client: Any) -> Spread:
 
 def _alone(job: Job) -> Record:
     try:
-        with ProcessPoolExecutor(1, context(), begin) as pool:
-            return pool.submit(played, job).result()
+        (record,) = spread(played, [job], 1, apart=True)
     except BrokenProcessPool:
         return _ended(job)
+    return record
 
 
 def _ended(job: Job) -> Record:

@@ -4,6 +4,7 @@ A command is a function with plain types and defaults; `described` adds the rest
 parameter whose type is a group of `shared_options` stands for the fields of the group.
 """
 
+import math
 import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields, is_dataclass
@@ -34,6 +35,8 @@ def described(command: Callable[..., Any]) -> Callable[..., Any]:
         entry = own.get(f"{command.__name__}.{name}") or own.get(name) or shared.get(name)
         if entry is None or get_origin(parameter.annotation) is Annotated:
             return parameter
+        if parameter.annotation is float:
+            entry = {"callback": _finite, **entry}
         return parameter.replace(annotation=Annotated[parameter.annotation, _parameter(**entry)])
 
     groups: dict[str, Any] = {each.name: each.annotation for each in _given(command) if is_dataclass(each.annotation)}
@@ -73,3 +76,14 @@ def _parameter(*, flags: list[str] | None = None, processes: bool = False, **mor
 def _processes(count: int) -> int:
     """Return the number of processes: 0 means one for each core."""
     return count or os.cpu_count() or 1
+
+
+def _finite(number: float) -> float:
+    """Return a number that is one; `nan` passes every comparison with a least and a most.
+
+    Raises:
+        typer.BadParameter: it is none.
+    """
+    if not math.isfinite(number):
+        raise typer.BadParameter(f"{number} is not a number that can be used here")
+    return number

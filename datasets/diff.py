@@ -8,6 +8,7 @@ from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import absent_tables, earlier, reading
 from hearth.datasets.format.ids import OURS
+from hearth.datasets.unpacked_sizes import check_unpacked
 from hearth.schemas.tables import KEYS, TABLES
 from hearth.storage.duckdb_connections import identifier, limited, open_database, quoted, without_patterns
 
@@ -64,6 +65,8 @@ def compare(first: str | Path, second: str | Path, limit: int | None = None) -> 
     a, b = Dataset.open(first), Dataset.open(second)
     for each in (a, b):
         absent_tables(each.folder, each.manifest)  # refuses pipes, which a query would wait for
+        with using(each.folder):
+            check_unpacked(each)
     found = []
     with using(f"{a.folder}, {b.folder}"), open_database() as connection:
         limited(connection, *(f"{each.folder.resolve()}/" for each in (a, b)))

@@ -6,9 +6,9 @@ Everything here depends on the seen nodes alone, and no name changes from tick t
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, seen_instances
 from hearth.envs.text_agent import USUAL, plain
@@ -28,10 +28,11 @@ from hearth.simulation.world.home import Home
 FURNISHING = frozenset({"Furniture", "Appliances"})
 """Categories of things that others are put on or in, and that nobody carries."""
 
-FULL, WANTED, COUNTED = range(3)
+FULL, WANTED, COUNTED, SUMMED = range(4)
 """Degrees of detail; each leaves out more to keep to the length.
 
-Nothing; commands about small things that are not wanted; the numbers of those things, and commands about furniture.
+Nothing; commands about small things that are not wanted; the numbers of those things, and commands about furniture;
+their classes, so that a place only says how many they are, and commands about furniture but those that open it.
 """
 
 CUT = " ..."
@@ -83,16 +84,16 @@ def layout(home: Home, protocol: Protocol) -> Layout:
     return Layout(tuple(f"{name} {home.ids[i]}" for i, name in enumerate(home.classes)), **found)
 
 
-def wanted_nodes(goal: Goal, view: View) -> int:
-    """Return the seen nodes that a goal names."""
-    home, found = view.world.home, 0
+def wanted_nodes(goal: Goal, home: Home, seen: int) -> int:
+    """Return the nodes that a goal names among those that are seen."""
+    found = 0
     for literal, _ in goal.literals():
         for term in literal.terms:
             if isinstance(term, int):
                 found |= 1 << home.index[term] if term in home.index else 0
             else:
-                found |= seen_instances(term, home, view.mask)
-    return found & view.mask & ~home.characters
+                found |= seen_instances(term, home, seen)
+    return found & seen & ~home.characters
 
 
 def compact(
@@ -124,7 +125,8 @@ def _within(writer: _Writer, head: str, usual: int) -> str:
             text = f"{head}\n{here}\n{writer.commands(detail)}"
             if len(text) <= usual:
                 return text
-    return f"{head}\n{writer.here(COUNTED)}\n{writer.commands(COUNTED)}"
+    text = f"{head}\n{writer.here(COUNTED)}\n{writer.commands(COUNTED)}"
+    return text if len(text) <= usual else f"{head}\n{writer.here(SUMMED)}\n{writer.commands(SUMMED)}"
 
 
 def _cut(text: str, most: int) -> str:
@@ -146,7 +148,7 @@ class _Writer:
         self.stopped = stopped
         self.world, self.home = view.world, view.world.home
         self.layout = layout(self.home, protocol)
-        self.wanted = wanted_nodes(goal, view)
+        self.wanted = wanted_nodes(goal, self.home, view.mask)
         poses = (view.me, *view.others)
         self.held = sum(1 << self.home.index[node] for pose in poses for node in {*pose.holding, *pose.wearing})
         self.kept = view.mask & ~self.layout.built & (~self.layout.fixtures | self.wanted)
@@ -225,7 +227,8 @@ class _Writer:
     def here(self, detail: int) -> str:
         """Return the seen things, those on and in others behind these."""
         counted = 0 if detail < COUNTED else self.kept & ~(self.wanted | self.layout.large | self.home.doors)
-        return f"Here: {self._group(self.top, counted) or 'nothing'}"
+        said = _counted if detail < SUMMED else _summed
+        return f"Here: {self._group(self.top, counted, said) or 'nothing'}"
 
     def _place(self) -> None:
         """Find the seen things that are on and in nothing seen, and the others by their place."""
@@ -244,25 +247,25 @@ class _Writer:
             below = self.inside if inside and opened >> at & 1 else self.on
             below[at] = below.get(at, 0) | bit
 
-    def _group(self, things: int, counted: int) -> str:
+    def _group(self, things: int, counted: int, said: Callable[[Home, int], str]) -> str:
         """Return some things: those of a class and state together, then those that others are on or in."""
         places = things & self.places
         stated = things & self.stated & ~counted & ~places
         bare = things & ~places & ~stated
         found = [_by_class(self.home, bare & ~counted, ", ")] if bare & ~counted else []
         if bare & counted:
-            found.append(_counted(self.home, bare & counted))
+            found.append(said(self.home, bare & counted))
         groups: dict[tuple[str, str], int] = {}
         for i in indices(stated):
             key = self.home.classes[i], self.states[i]
             groups[key] = groups.get(key, 0) | 1 << i
         found += [f"{_by_class(self.home, nodes, ', ')}{state}" for (_, state), nodes in groups.items()]
-        found += [self._with_things(i, counted) for i in indices(places)]
+        found += [self._with_things(i, counted, said) for i in indices(places)]
         return ", ".join(found)
 
-    def _with_things(self, i: int, counted: int) -> str:
-        on = self._group(self.on.get(i, 0), counted)
-        inside = self._group(self.inside.get(i, 0), counted)
+    def _with_things(self, i: int, counted: int, said: Callable[[Home, int], str]) -> str:
+        on = self._group(self.on.get(i, 0), counted, said)
+        inside = self._group(self.inside.get(i, 0), counted, said)
         both = f"{on}, in it {inside}" if on and inside else f"in it {inside}" if inside else on
         state = "" if counted >> i & 1 else self.states.get(i, "")
         return f"{self.layout.names[i]}{state} [{both}]"
@@ -270,16 +273,24 @@ class _Writer:
     def commands(self, detail: int) -> str:
         """Return the sensible commands, without walks."""
         lines = ["Walk <room or thing>"]
-        for action in _listed_actions(self.home.knowledge, self.protocol):
-            masks = self.legal.masks.get(action)  # the masks of walks, which are dear, are not asked for
-            if masks is not None and (line := self._command(action, masks, detail)):
+        for action, masks in self._possible:
+            if line := self._command(action, masks, detail):
                 lines.append(line)
         return f"Do: {'; '.join([*lines, 'wait'])}"
+
+    @cached_property
+    def _possible(self) -> list[tuple[str, tuple[int, ...]]]:
+        """Actions that `Do:` may list and that can be done; the masks of walks, which are dear, are not asked for."""
+        asked, found = self.legal.asked, self.legal.masks
+        listed = _listed_actions(self.home.knowledge, self.protocol)
+        return [(each, masks) for each in listed if each in asked and (masks := found.get(each)) is not None]
 
     def _command(self, action: str, masks: tuple[int, ...], detail: int) -> str:
         keep = ~self.layout.built & (~self.layout.fixtures | self.wanted)
         if detail == WANTED:
             keep &= self.wanted | self.layout.large | self.held
+        elif detail == SUMMED and action != self.home.knowledge.achiever("OPEN"):
+            keep &= self.wanted | self.held
         elif detail > WANTED:
             keep &= self.wanted | self.layout.hollow & self.layout.large | self.held
         if not masks:
@@ -321,6 +332,12 @@ def _counted(home: Home, nodes: int) -> str:
     """Return the classes of some nodes, each with how many there are."""
     counts = Counter(home.classes[i] for i in indices(nodes))
     return ", ".join(f"{name} x{number}" if number > 1 else name for name, number in counts.items())
+
+
+def _summed(home: Home, nodes: int) -> str:
+    """Return how many some nodes are; the class of one alone."""
+    number = nodes.bit_count()
+    return f"{number} things" if number > 1 else _counted(home, nodes)
 
 
 def _runs(ids: Iterable[int]) -> str:

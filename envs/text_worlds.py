@@ -19,6 +19,7 @@ from hearth.schemas.program import Step
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal
 from hearth.simulation.goals import Progress
+from hearth.simulation.observation.reach import visible
 from hearth.simulation.observation.views import LastAction, View, view
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
@@ -202,5 +203,6 @@ def _may(now: TextWorld, step: Step, play: Play) -> Legal:
 
 def _sights(now: TextWorld, play: Play, began: View) -> bool:
     """Return whether a wanted thing is in sight that was not when the walk began."""
-    here = view(now.world, 0, partial=play.partial)
-    return bool(wanted_nodes(now.progress.goal, here) & ~began.mask)
+    world = now.world
+    here = visible(world, world.agent(0)) if play.partial else world.home.everything
+    return bool(wanted_nodes(now.progress.goal, world.home, here) & ~began.mask)

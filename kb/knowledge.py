@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from hearth.kb.action_groups import groups, relation_of, state_of, tool_of
 from hearth.kb.action_sets import LATEST, USUAL, in_set
-from hearth.kb.formula import Effect, Formula, Term
+from hearth.kb.formula import TRUE, Effect, Formula, Term
 from hearth.kb.knowledge_records import (
     Action,
     Association,
@@ -37,6 +37,11 @@ def grouped(pairs: Iterable[tuple[K, V]]) -> dict[K, tuple[V, ...]]:
     for key, value in pairs:
         found.setdefault(key, []).append(value)
     return {key: tuple(values) for key, values in found.items()}
+
+
+def _is_sure_state(effect: Effect) -> bool:
+    """Return whether an effect brings the object or the character into a state in every case."""
+    return effect.literal.name == "state" and effect.condition == TRUE and not effect.variables
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +173,7 @@ class Knowledge:
     def _achieving(self) -> Mapping[str, tuple[str, ...]]:
         found = {state: self.achievers(state) for state in EVERY_STATE}
         return {
-            state: tuple(action.name for action, effect in pairs if effect.literal.name == "state")
+            state: tuple(action.name for action, effect in pairs if _is_sure_state(effect))
             for state, pairs in found.items()
         }
 

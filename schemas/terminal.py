@@ -1,16 +1,33 @@
 """Text of others for a terminal: nothing in it moves the cursor, colors it, turns it around, or ends a line early."""
 
+import json
+
 BIDIRECTIONAL = (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 """Code points that change the direction of the text after them."""
 
-_CODES = (*range(32), *range(127, 160), 0x2028, 0x2029, *BIDIRECTIONAL)
-_SHOWN = {code: f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}" for code in _CODES if chr(code) not in "\n\t"}
-_GONE = {code: None for code in _CODES if chr(code) not in "\n\r\t"}
-_IN_JSON = {code: f"\\u{code:04x}" for code in _CODES if code > 126}
+
+def escaped(code: int) -> str:
+    """Return a code point as an escape: `\\x1b`, `\\u202e`, `\\U000e0041`."""
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+INVISIBLE = (
+    0xAD, 0x180E, 0x200B, *range(0x2060, 0x2065), *range(0x206A, 0x2070), 0xFEFF, *range(0xFFF9, 0xFFFC),
+    *range(0x1BCA0, 0x1BCA4), *range(0x1D173, 0x1D17B), *range(0xE0000, 0xE0080),
+)  # fmt: skip
+"""Code points of which nobody sees anything: marks without a width, and the tags, which spell whole texts. The joiners
+U+200C and U+200D are none of them: writing and pictures have them."""
+
+CONTROLS = (*range(32), *range(127, 160), 0x2028, 0x2029, *BIDIRECTIONAL, *INVISIBLE)
+"""Code points that are not shown as they are."""
+
+_IN_JSON = {code: json.dumps(chr(code))[1:-1] for code in CONTROLS if code > 126} | {127: "\\u007f"}
+_SHOWN = {code: escaped(code) for code in CONTROLS if chr(code) not in "\n\t"}
+_GONE = {code: None for code in CONTROLS if chr(code) not in "\n\r\t"}
 
 
 def shown(text: str) -> str:
-    """Return the text with control characters and direction marks escaped; line breaks and tabs stay."""
+    """Return the text with characters escaped that are unseen or move others; line breaks and tabs stay."""
     return text if text.isprintable() else text.translate(_SHOWN)
 
 

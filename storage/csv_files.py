@@ -8,7 +8,7 @@ from typing import IO
 
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.terminal import BIDIRECTIONAL
+from hearth.schemas.terminal import CONTROLS, escaped
 from hearth.schemas.text_decoding import decode
 from hearth.storage.input_files import LARGEST, read_input
 
@@ -23,13 +23,14 @@ def delimiter_of(line: str) -> str:
     return max(DELIMITERS, key=line.count)
 
 
-_RUNS = ("=", "+", "-", "@", "\t", "\r")
+_RUNS = ("=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠")
+"""What begins a formula; spreadsheets of East Asian languages take the wide forms for the narrow ones."""
+
 _SKIPPED = " \ufeff\u200b\u200c\u200d\u2060\u00a0"
 """Characters in front of a formula that a spreadsheet does not show, or takes for the mark of a file's beginning."""
 
-_UNSEEN = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\t\n\r"} | {
-    code: f"\\u{code:04x}" for code in BIDIRECTIONAL
-}
+_UNSEEN = {code: escaped(code) for code in CONTROLS if chr(code) not in "\t\n"}
+"""A carriage return is escaped too: readers take one that stands alone, even within quotes, for the end of a row."""
 
 
 def safe_cell(text: str) -> str:
@@ -50,7 +51,8 @@ def rows_writer(file: IO[str], delimiter: str = ",") -> Callable[[Iterable[Itera
 
 
 def _safe(text: str) -> str:
-    return safe_cell(text if text.isprintable() else text.translate(_UNSEEN))
+    cell = safe_cell(text)
+    return cell if cell.isprintable() else cell.translate(_UNSEEN)
 
 
 class CsvTable:

@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sized
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -137,3 +138,21 @@ def _results(function: Callable[[Job], Result], jobs: Iterable[Job], workers: in
         finally:
             for each in given:
                 each.cancel()
+            if apart:
+                _leave(pool)
+
+
+LEAVES = 3.0
+"""Seconds that workers which run code of others have to end once there is no more to do."""
+
+
+def _leave(pool: ProcessPoolExecutor) -> None:
+    """End the workers, those too that threads, programs or finalizers of others keep from ending."""
+    workers = list((pool._processes or {}).values())
+    pool.shutdown(wait=False)
+    left, until = {each.sentinel: each for each in workers}, time.monotonic() + LEAVES
+    while left and (ended := connection.wait(list(left), max(0.0, until - time.monotonic()))):
+        for each in ended:
+            del left[each]
+    for worker in left.values():
+        worker.kill()

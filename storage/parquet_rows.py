@@ -54,15 +54,23 @@ def row_batches(file: Any, packed: int, name: str, columns: Sequence[str] | None
         HearthError: FILE_TOO_LARGE: it unpacks to more than a table of its size does.
         pyarrow.ArrowException: it is damaged.
     """
-    rows = file.metadata.num_rows
-    if rows > max(HARMLESS_ROWS, packed):
-        raise _too_large(f"{packed:,} bytes that unpack to {rows:,} rows", name)
+    check_rows(file.metadata.num_rows, packed, name)
     unpacked = 0
     for batch in file.iter_batches(_at_once(file.metadata), columns=None if columns is None else list(columns)):
         unpacked += batch.nbytes
         if unpacked > max(LARGEST_TABLE, MOST_PACKED * packed):
             raise _too_large(f"{packed:,} bytes that unpack to more than {unpacked:,}", name)
         yield batch
+
+
+def check_rows(rows: int, packed: int, name: str) -> None:
+    """Refuse a file of few bytes that says it has very many rows.
+
+    Raises:
+        HearthError: FILE_TOO_LARGE.
+    """
+    if rows > max(HARMLESS_ROWS, packed):
+        raise _too_large(f"{packed:,} bytes that unpack to {rows:,} rows", name)
 
 
 def _at_once(footer: Any) -> int:

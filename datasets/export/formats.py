@@ -14,6 +14,7 @@ from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.export.python_code import code
 from hearth.datasets.export.rdf import rdf
 from hearth.datasets.export.release_layout import release
+from hearth.datasets.unpacked_sizes import check_unpacked
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -51,6 +52,8 @@ def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) 
     if form not in FORMATS:
         raise HearthError.of(Code.UNSUPPORTED_FILE, f"unknown form `{form}`", suggestion=f"one of {', '.join(FORMATS)}")
     wanted = wanted or Wanted()
+    with using(dataset.folder):
+        check_unpacked(dataset)
     missing = [name for name in wanted.programs if name not in dataset]
     if missing:
         raise HearthError.of(Code.UNKNOWN_ID, f"no program `{missing[0]}` in this dataset", file=str(dataset.folder))

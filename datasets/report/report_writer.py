@@ -17,6 +17,7 @@ from hearth.datasets.report.floor_plan_svg import plans
 from hearth.datasets.report.program_pages import DRAWN, Stories
 from hearth.datasets.report.replays import write_replays
 from hearth.datasets.report.report_tables import figures
+from hearth.datasets.unpacked_sizes import check_unpacked
 from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -52,6 +53,8 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unse
     Raises:
         HearthError: the folder contains something else, or the tables cannot be read.
     """
+    with using(dataset.folder):
+        check_unpacked(dataset)
     if to.exists() and (not to.is_dir() or (any(to.iterdir()) and not (to / "index.html").exists())):
         message, remedy = "there is something else already", "name a new or empty folder, or an earlier report"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)

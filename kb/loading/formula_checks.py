@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping
 
-from hearth.kb.formula import GONE, OPTION, And, Count, Effect, Formula, Or, Term, free
+from hearth.kb.formula import GONE, OPTION, And, Count, Effect, Formula, Or, Some, Term, free
 from hearth.kb.knowledge_records import Action
 from hearth.kb.loading.source_files import Entry, Faults
 from hearth.schemas.literals import Literal
@@ -26,6 +26,10 @@ LIMITS = ("seat_limit", "bed_limit")
 
 MOST = 10_000
 """Predicates of a definition in which those that it uses are written out, as planners need it."""
+
+
+MOST_SEARCHED = 3
+"""Variables that stand for any thing at once: the time to look for all grows with the power of their number."""
 
 
 def check_derived(derived: Derived, entries: Mapping[str, Entry], faults: Faults) -> None:
@@ -60,7 +64,7 @@ def check_literals(action: Action, derived: Derived, at: Entry, faults: Faults) 
 def check_effect(effect: Effect, bound: set[str], whose: str, derived: Derived, at: Entry, faults: Faults) -> None:
     """Note what is wrong with an effect of given variables: what it is about, where it holds, and which state."""
     variables, literal = bound | {*effect.variables}, effect.literal
-    check_formula(effect.condition, variables, whose, derived, at, faults)
+    check_formula(effect.condition, variables, whose, derived, at, faults, len(effect.variables))
     if literal.name != GONE:
         check_formula(literal.atom, variables, whose, derived, at, faults)
     elif len(literal.terms) != 1 or literal.negated or not {literal.terms[0].name} <= variables:
@@ -70,9 +74,13 @@ def check_effect(effect: Effect, bound: set[str], whose: str, derived: Derived, 
 
 
 def check_formula(
-    formula: Formula, variables: set[str], whose: str, derived: Derived, at: Entry, faults: Faults
+    formula: Formula, variables: set[str], whose: str, derived: Derived, at: Entry, faults: Faults, searched: int = 0
 ) -> None:
-    """Note predicates that nothing defines or that have other terms, and variables that nothing binds."""
+    """Note predicates that nothing defines or that have other terms, and variables that nothing binds.
+
+    Variables that are looked for in one another are noted, too, where they are too many; `searched` of the formula's
+    arguments are, for which it is asked of all things.
+    """
     known = {*TERMS, *derived}
     for unknown in sorted({part.name for part in _asked(formula)} - known):
         faults.at(at, f"in `{formula}`: nothing says what `{unknown}` is", "see derived.yaml")
@@ -84,6 +92,9 @@ def check_formula(
         faults.at(at, f"in `{formula}`: `{limit}` is not a number of things", f"one of {', '.join(LIMITS)}")
     for unbound in sorted(free(formula) - variables):
         faults.at(at, f"in `{formula}`: `{unbound}` is not an argument of {whose} and is not bound")
+    if searched + (nested := _nested(formula, derived, ())) > MOST_SEARCHED:
+        found = f"{searched + nested} variables stand for any thing at once"
+        faults.at(at, f"in `{formula}`: {found}", f"at most {MOST_SEARCHED}: `some` and `count` in fewer others")
 
 
 def _parts(formula: Formula) -> Iterator[Formula]:
@@ -96,6 +107,16 @@ def _parts(formula: Formula) -> Iterator[Formula]:
 
 def _asked(formula: Formula) -> Iterator[Literal[Term]]:
     return (part for part in _parts(formula) if isinstance(part, Literal))
+
+
+def _nested(formula: Formula, derived: Derived, within: tuple[str, ...]) -> int:
+    """Return how many variables a formula binds within one another, in the predicates that it uses, too."""
+    if isinstance(formula, Literal):
+        name = formula.name
+        return _nested(derived[name][1], derived, (*within, name)) if name in derived and name not in within else 0
+    parts = formula.parts if isinstance(formula, And | Or) else (formula.part,)
+    inner = max((_nested(part, derived, within) for part in parts), default=0)
+    return inner + isinstance(formula, Some | Count)
 
 
 def _size(name: str, derived: Derived, sizes: dict[str, int], within: tuple[str, ...]) -> int:

@@ -33,7 +33,7 @@ def _hazard(name: str, entry: Entry, derived: Derived, faults: Faults) -> Hazard
     condition = parsed(parse_formula, fields["while"], entry, faults)
     if condition is None:
         return None
-    check_formula(condition, {"x", "y"}, name, derived, entry, faults)
+    check_formula(condition, {"x", "y"}, name, derived, entry, faults, len(free(condition)))
     if "x" not in free(condition):
         faults.at(entry, f"`{condition}` says nothing of x", "name the dangerous thing x, and a second one y")
     for key in _FLAGS:

@@ -6,6 +6,7 @@ from typing import Any
 
 from hearth.kb.action_sets import USUAL
 from hearth.kb.language.reading_modes import Fuzzy
+from hearth.storage.query_time_limit import checked_seconds
 
 DERIVED = "homes"
 """Folder of homes that come with the sources: scene graphs in the ingest stage; in the sample stage, homes derived from
@@ -69,6 +70,14 @@ class Settings:
     time_limit: float = 60.0
     store: str = ""
     revision: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse a time limit that is none.
+
+        Raises:
+            HearthError: BAD_ARGUMENT.
+        """
+        checked_seconds(self.time_limit)
 
     def chosen(self, names: tuple[str, ...]) -> dict[str, Any]:
         """Return the named options, as stored in a manifest; of action set 2 nothing is said, as before there was 3."""

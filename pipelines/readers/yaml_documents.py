@@ -22,6 +22,9 @@ from hearth.storage.rejects import Reject
 
 NAME = "yaml"
 
+MOST_DIGITS = 4_000
+"""Digits of a number; Python reads up to 4,300."""
+
 _INT = "tag:yaml.org,2002:int"
 _NULL = "tag:yaml.org,2002:null"
 _INDENT = re.compile(r"\n+( +)")
@@ -41,6 +44,8 @@ def values(path: Place, place: str) -> Iterator[tuple[Any, int]]:
                 yield _value(node, text), node.start_mark.line + 1
     except (yaml.YAMLError, RecursionError) as error:
         yield _broken(error, place), 1
+    except _NumberError as error:
+        yield Reject((error.fault(place),)), error.line
 
 
 def scan(path: Place, place: str, asked: Asked) -> Iterator[Item]:
@@ -92,6 +97,8 @@ def _scalar(node: Any, text: str) -> Any:
     if node.tag == _NULL:
         return None
     if node.tag == _INT and node.value.isdecimal():
+        if len(node.value) > MOST_DIGITS:
+            raise _NumberError(len(node.value), node.start_mark)
         return int(node.value)
     line, column = node.start_mark.line + 1, node.start_mark.column + 1
     if node.style == "|":
@@ -103,6 +110,21 @@ def _scalar(node: Any, text: str) -> Any:
         raw = text[node.start_mark.index + quotes : node.end_mark.index - quotes].rstrip()
         return _folded(node.value, line, column + quotes, raw, _ANY_INDENT)
     return text_at(node.value, line, column + quotes, node.value)
+
+
+class _NumberError(Exception):
+    """A number of more digits than Python reads."""
+
+    def __init__(self, digits: int, mark: Any) -> None:
+        super().__init__()
+        self.digits, self.line, self.column = digits, mark.line + 1, mark.column + 1
+
+    def fault(self, place: str) -> Diagnostic:
+        """Return the number as a fault of the file."""
+        message = f"a number of {self.digits:,} digits, at most {MOST_DIGITS:,} are read"
+        return Diagnostic(
+            Code.BAD_TABLE, message, place, self.line, self.column, suggestion="quote it, if it is a text"
+        )
 
 
 _ANY_INDENT = r"\n *\n *|\n *"

@@ -49,7 +49,8 @@ def _steps(context: RepairContext, fact: Literal[Key]) -> tuple[Step, ...]:
     thing = context.ref(i)
     if fact.target is None:
         action = context.knowledge.achiever(fact.name)
-        return (Step("Walk", (thing,)), Step(action, (thing,))) if action else ()
+        alone = bool(action) and context.knowledge.arity[action] == 1  # Cover and Wrap need a second thing
+        return (Step("Walk", (thing,)), Step(action, (thing,))) if alone else ()
     held = context.world.agents[0].held >> i & 1
     fetched = () if held else (Step("Walk", (thing,)), Step("Grab", (thing,)))
     if fact.target[0] == CHARACTER_CLASS:

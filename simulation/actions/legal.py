@@ -50,6 +50,11 @@ class Legal:
             return False
         return all(node in index and mask >> index[node] & 1 for node, mask in zip(nodes, masks, strict=True))
 
+    @property
+    def asked(self) -> Collection[str]:
+        """Return the actions that were asked about; whether one of them can be done, `masks` says."""
+        return self.masks.asked if isinstance(self.masks, _Masks) else self.masks
+
     def __iter__(self) -> Iterator[Step]:
         """Instructions by action name, then node ids; made one by one as they are asked for."""
         for action in sorted(self.masks):
@@ -129,6 +134,7 @@ class _Masks(Mapping[str, tuple[int, ...]]):
     def __init__(self, situation: Situation, actions: Mapping[str, Action], keep: int) -> None:
         self._situation, self._actions, self._keep = situation, actions, keep
         self._found: dict[str, tuple[int, ...] | None] = {}
+        self.asked = actions
 
     def __getitem__(self, name: str) -> tuple[int, ...]:
         masks = self._found[name] if name in self._found else self._made(name)

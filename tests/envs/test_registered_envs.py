@@ -43,9 +43,9 @@ def test_it_makes_a_home_by_names():
     assert isinstance(env.unwrapped, HomeEnv)
 
 
-@pytest.mark.parametrize("name", ["hearth/Home-v0", "hearth/WatchAndHelp-v0"])
+@pytest.mark.parametrize("name", ["hearth/Home-v0", "hearth/WatchAndHelp-v0", "hearth/Household-v0"])
 def test_gymnasium_accepts_what_it_makes(name):
-    settings = {"limit_tasks": 4} if "Watch" in name else {}
+    settings = {} if "Home-" in name else {"limit_tasks": 4}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.filterwarnings("ignore", message=".*is different from the unwrapped.*")

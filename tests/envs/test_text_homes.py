@@ -147,6 +147,47 @@ def test_a_generated_home_is_played_too(knowledge):
         assert info["fault"] is None and len(text) <= 1200
 
 
+def test_observations_have_under_800_characters_on_average(knowledge):
+    made = [
+        Home.from_graph(scene(generate(3 + n % 5, n, knowledge), knowledge), f"made {n}", knowledge) for n in range(5)
+    ]
+    lengths, means = [], {}
+    for home in (*library.names(), *made):
+        goal = next(goal for goal in (MILK, "INSIDE(apple, fridge)", "HOLDS(agent, book)") if possible(home, goal))
+        world, chooser = TextHome(opening(home, goal, agents=1), limit=40), random.Random(2)
+        text, info = world.reset(1)
+        for _ in range(40):
+            walks = [each for each in info["admissible"] if each.startswith("Walk ")]
+            rest = [each for each in info["admissible"] if not each.startswith(("Walk", "Turn"))]
+            text, _, terminated, truncated, info = world.step(
+                chooser.choice(chooser.choice([walks, rest]) or list(info["admissible"]))
+            )
+            lengths.append(len(text))
+            means.setdefault(home if isinstance(home, str) else home.name, []).append(len(text))
+            if terminated or truncated:
+                break
+    assert sum(lengths) / len(lengths) < 800 and max(lengths) <= 1200
+    assert max(sum(each) / len(each) for each in means.values()) < 850, means
+
+
+def possible(home, goal):
+    try:
+        TextHome(opening(home, goal, agents=1)).reset(1)
+    except HearthError:
+        return False
+    return True
+
+
+def test_what_is_left_out_of_a_long_observation_works_all_the_same():
+    world = TextHome("willow", MILK)
+    world.reset(1)
+    text, *_ = world.step("Walk kitchen")
+    assert " things" in text and len(text) <= 1200
+    text, *_, info = world.step("Walk kitchen_table")
+    text, *_, info = world.step(next(each for each in info["admissible"] if each.startswith("Grab plate")))
+    assert info["fault"] is None and "- done." in text
+
+
 def test_names_stay_and_texts_are_equal_for_any_number_of_worlds():
     answers = ["Walk kitchen", "wait", "Walk table", "fly", "Walk fridge"]
     many, one = TextHomes(WAH, worlds=6), TextHomes(WAH, worlds=1)

@@ -116,3 +116,8 @@ def test_states_that_end_by_themselves_are_no_goal(maple):
     execution = run(widened(World.start(maple)), Program(steps=acts), CONSEQUENCES)
     assert execution.executable and execution.final.has_state(one(maple, "kettle"), "HOT")
     assert "HOT" not in {fact.name for fact in achieved(execution)}
+
+
+def test_a_state_that_an_act_brings_about_only_at_times_has_no_achiever():
+    assert KNOWN.achiever("CUT") == "Cut" and KNOWN.achiever("FOLDED") == "Fold"
+    assert KNOWN.achiever("EMPTY") == KNOWN.achiever("FULL") == ""  # Drink empties a cup, and nobody drinks a sink

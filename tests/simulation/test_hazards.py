@@ -194,3 +194,22 @@ def test_an_own_row_is_found(tmp_path):
     (tmp_path / "hazards.yaml").write_text(row)
     known = load(overlay=tmp_path)
     assert known.hazards["dark"].say == "the {x} is warm" and len(known.hazards) == len(KNOWN.hazards) + 1
+
+
+MANY = {
+    "some within some": "some z: some w: CLOSE(x, y) & CLOSE(y, z) & CLOSE(z, w) & not CLOSE(w, x)",
+    "four within one another": "some z: some w: some v: some u: CLOSE(x, y) & CLOSE(x, z) & CLOSE(w, v) & CLOSE(v, u)",
+    "in brackets and behind a not": "ON(x, y) & not (some z: CLOSE(y, z) & not (some w: CLOSE(z, w) & CLOSE(w, x)))",
+    "in a predicate of the knowledge": "some z: CLOSE(x, y) & CLOSE(y, z) & not hidden(z)",
+    "a count within a some": "some z: CLOSE(x, y) & CLOSE(y, z) & (count w: CLOSE(w, z) < seat_limit(z))",
+}
+
+
+@pytest.mark.parametrize("condition", MANY.values(), ids=MANY)
+def test_a_hazard_of_too_many_variables_is_a_fault_of_the_file(tmp_path, condition):
+    text = f'h: {{while: "{condition}", severity: 1, say: "{{x}} and {{y}}"}}\n'
+    (tmp_path / "hazards.yaml").write_text(text)
+    with pytest.raises(HearthError) as caught:
+        load(overlay=tmp_path)
+    (fault,) = caught.value.diagnostics
+    assert "variables stand for any thing at once" in fault.message and fault.line == 1
