@@ -17,7 +17,7 @@ from hearth.kb.language.step_understanding import understand as understand
 from hearth.kb.tools.find import Query as Query
 from hearth.kb.tools.find import find as find
 from hearth.pipelines.build import build as build
-from hearth.rendering.film.snapshots import trajectory_of as trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of as trajectory_of
 from hearth.rendering.film.video import record as record
 from hearth.rendering.modalities import render as render
 from hearth.rendering.scene.scene_preparation import scene_of as scene_of

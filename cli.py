@@ -33,8 +33,8 @@ if __name__ == "__main__":
 import typer
 from typer.core import TyperGroup
 
+from hearth.commands.command_line_name import program_name, show_name
 from hearth.commands.plain_help import make_plain
-from hearth.commands.program_name import program_name, show_name
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 

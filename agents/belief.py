@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 from hearth.schemas.literals import HOLDS
 from hearth.schemas.vocabulary import OPPOSITE, STATE_ID
 from hearth.simulation.observation.views import View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.states import CLEAN, CLOSED, OFF, OPEN, PLUGGED_IN, with_state
@@ -48,11 +48,11 @@ def place_of(world: World, thing: int) -> Place:
         if agent.held >> thing & 1:
             return Place(HOLDS, agent.index)
     rooms = world.home.rooms
-    inside = rows.inside(world, thing) & ~rooms
+    inside = edge_rows.inside(world, thing) & ~rooms
     if inside:
         return Place("INSIDE", lowest(inside))
-    on = rows.on(world, thing) & ~rooms
-    return Place("ON", lowest(on)) if on else Place("INSIDE", rows.room_of(world, thing))
+    on = edge_rows.on(world, thing) & ~rooms
+    return Place("ON", lowest(on)) if on else Place("INSIDE", edge_rows.room_of(world, thing))
 
 
 def containers(home: Home) -> int:

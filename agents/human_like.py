@@ -18,7 +18,7 @@ from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.states import CLOSED, OPEN
 
@@ -171,7 +171,7 @@ class HumanLike:
         Things that are not needed come first, then those that are not of its current subgoal.
         """
         pursued = -1 if self.subgoal is None else self.subgoal.thing
-        others = [i for i in rows.held_indices(view.world.agents[view.agent]) if i != pursued]
+        others = [i for i in edge_rows.held_indices(view.world.agents[view.agent]) if i != pursued]
         return tuple(sorted(others, key=lambda i: bool(needed >> i & 1)))
 
     def _clearing(self, search: Regression, needed: int) -> Step | None:

@@ -20,7 +20,7 @@ from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import Pose, View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import mask_of
 from hearth.simulation.world.states import CLOSED
 
@@ -134,11 +134,11 @@ class OnlineHelper(ABC):
 
     def _spare(self, view: View) -> tuple[int, ...]:
         pursued = -1 if self.subgoal is None else self.subgoal.thing
-        return tuple(i for i in rows.held_indices(view.world.agents[view.agent]) if i != pursued)
+        return tuple(i for i in edge_rows.held_indices(view.world.agents[view.agent]) if i != pursued)
 
     def held(self, view: View) -> tuple[int, ...]:
         """Return the things in its hands that goals are about."""
-        return tuple(i for i in rows.held_indices(view.world.agents[view.agent]) if i in self.space.number)
+        return tuple(i for i in edge_rows.held_indices(view.world.agents[view.agent]) if i in self.space.number)
 
     def planner(self) -> Planner:
         """Return a planner of the partner's plans, from its last observed place."""

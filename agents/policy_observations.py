@@ -16,9 +16,9 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.motion import positions
-from hearth.simulation.observation import reach
+from hearth.simulation.observation import containment, reach
 from hearth.simulation.observation.views import View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.home import Home
 
@@ -70,7 +70,7 @@ class SceneReader:
     def note(self, view: View) -> None:
         """Record the agent's room and the open containers in view."""
         opened = view.world.states[STATE_ID["OPEN"]] & self.fixed & view.mask
-        room = rows.agent_room(view.world, view.world.agents[view.agent])
+        room = edge_rows.agent_room(view.world, view.world.agents[view.agent])
         self.looked |= opened | (1 << room if room >= 0 else 0)
 
     def subgoals(self, view: View, missing: Missing) -> Moment:
@@ -94,8 +94,8 @@ class SceneReader:
         others = 0
         for pose in view.others:
             others |= world.agents[pose.agent].held
-        room = rows.agent_room(world, world.agents[view.agent])
-        here = reach.in_room(world, room) if room >= 0 else 0
+        room = edge_rows.agent_room(world, world.agents[view.agent])
+        here = containment.in_room(world, room) if room >= 0 else 0
         things = targets = 0
         for part in counts:
             things |= self.counted[part]

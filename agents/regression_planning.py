@@ -22,7 +22,7 @@ from hearth.schemas.vocabulary import OPPOSITE, STATE_ID
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.actions.registry import MOVES
 from hearth.simulation.observation.views import View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest
 
 ME, FIRST, SECOND = "a", "o", "s"
@@ -139,7 +139,7 @@ class Regression:
             return self.belief.where[node].node
         if (self.home.rooms | self.home.characters) >> node & 1:
             return -1
-        return rows.room_of(self.world, node)
+        return edge_rows.room_of(self.world, node)
 
     def _put_down(self, thing: int, above: tuple[Literal[int], ...]) -> Step | None:
         """Return a held thing on a surface within reach, or else on the nearest that is in view."""
@@ -184,7 +184,7 @@ class Regression:
         if name == "hidden" and (container := self.belief.shut_in(nodes[0])) >= 0:
             return (Literal("OPEN", (container,)),)
         if name == "free_hand":
-            held = (*self.spare, *(i for i in rows.held_indices(self.me) if i not in self.spare))
+            held = (*self.spare, *(i for i in edge_rows.held_indices(self.me) if i not in self.spare))
             return tuple(Literal(HANDS[0], (self.me.index, i), True) for i in held)
         return ()
 
@@ -218,7 +218,7 @@ class Regression:
         """Return whether the agent is close to a thing; if it is out of view, to the closed node that it is in."""
         if not self.seen >> node & 1:
             node = self.belief.shut_in(node)
-        return node >= 0 and bool(self.seen >> node & 1) and rows.is_close(self.world, self.me, node)
+        return node >= 0 and bool(self.seen >> node & 1) and edge_rows.is_close(self.world, self.me, node)
 
 
 @lru_cache(maxsize=512)

@@ -131,8 +131,8 @@ def _example(each: Scored, asked: Request, case: Any, dataset: Dataset, pictures
 def _pictures(ran: Execution, home: str, dataset: Dataset, count: int) -> list[tuple[str, bytes]]:
     """Pictures of steps at equal distances, the last one among them."""
     from hearth.analysis.step_gallery import picture_of
+    from hearth.rendering.film.execution_keyframes import trajectory_of
     from hearth.rendering.film.png import encode
-    from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.scene.home_geometry import with_geometry
 
     # Not the run's start graph: things that the environment moves would be drawn where the home has them.

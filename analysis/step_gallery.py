@@ -14,7 +14,7 @@ from hearth.rendering.arrays import Image
 from hearth.rendering.cameras.recognition import shows
 from hearth.rendering.cameras.viewpoints import best_view, room_views
 from hearth.rendering.cameras.visibility import seen_as
-from hearth.rendering.film.snapshots import Keyframe, Trajectory, named_nodes, trajectory_of
+from hearth.rendering.film.execution_keyframes import Keyframe, Trajectory, named_nodes, trajectory_of
 from hearth.rendering.modalities import pictures_of
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.rays.camera_shot import shoot

@@ -20,16 +20,16 @@ from typing import NamedTuple
 
 from measurement import Figure, as_line, finish, parser
 
-from hearth.analysis.episode_drawing import ticks_of
+from hearth.analysis.episode_figure import ticks_of
 from hearth.analysis.random_program_home_pairs import FilmedPair, pairs
 from hearth.challenges.episode_films import execution_of
 from hearth.challenges.result_files import read
 from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default
 from hearth.pipelines.build import corpus
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.film.film_measures import FilmQuality, film_quality
-from hearth.rendering.film.film_walks import Walk, walks
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.walks_through_solids import Walk, walks
 from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import print_step
 

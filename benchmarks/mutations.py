@@ -32,7 +32,7 @@ MUTATIONS = (
     Mutation("simulation/actions/hands.py", "agent.inside & ~bit", "agent.inside", "tests/simulation"),
     Mutation("simulation/actions/appliances.py", "not_in_state(ON, Code.IS_ON)",
              "not_in_state(OFF, Code.IS_ON)", "tests/simulation"),
-    Mutation("simulation/world/rows.py", "row = 0 if gone >> i & 1 else row & ~gone", "row = row & ~gone",
+    Mutation("simulation/world/edge_rows.py", "row = 0 if gone >> i & 1 else row & ~gone", "row = row & ~gone",
              "tests/simulation"),
     Mutation("simulation/engine.py", "if isinstance(result, World) and now is not world:", "if False:",
              "tests/simulation tests/grounding/test_two_agents.py"),

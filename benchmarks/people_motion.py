@@ -30,7 +30,7 @@ from hearth.commands import inputs
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.rendering.film.snapshots import Trajectory, trajectory_of
+from hearth.rendering.film.execution_keyframes import Trajectory, trajectory_of
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.motion import Frame, frames
 from hearth.rendering.rays.ray_casting import Caster

@@ -23,10 +23,10 @@ import pyarrow.parquet as pq
 from measurement import Figure, Passes, as_line, finish, parser, passes, rate, seconds
 
 from hearth.pipelines.build import stage
+from hearth.pipelines.engine.option_presets import TIERS
 from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, records_of
-from hearth.pipelines.engine.tiers import TIERS
 from hearth.storage.batch_sizes import ROWS_READ
 from hearth.storage.partitions import read_rows, write_table
 

@@ -20,10 +20,10 @@ import pyarrow as pa
 from measurement import Figure, as_line, finish, parser, spread
 
 from hearth.pipelines.build import stage
+from hearth.pipelines.engine.option_presets import TIERS
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, Partition, Stage, run_partition
-from hearth.pipelines.engine.tiers import TIERS
 from hearth.pipelines.engine.workers import Workers
 from hearth.storage.parallel import unseen
 

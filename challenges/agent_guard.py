@@ -12,7 +12,7 @@ from types import FrameType, FunctionType
 from typing import TextIO, cast
 
 from hearth.agents.protocol import Agent, Choice
-from hearth.challenges.agent_output import check_descriptors
+from hearth.challenges.agent_standard_streams import check_descriptors
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError

@@ -19,8 +19,8 @@ from hearth.schemas.program import Step
 from hearth.simulation.engine import act
 from hearth.simulation.env import Tick
 from hearth.simulation.goals import Progress
-from hearth.simulation.observation.reach import visible
-from hearth.simulation.world import rows
+from hearth.simulation.observation.visible_nodes import visible
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import OPEN
 from hearth.simulation.world.world import World
@@ -207,4 +207,4 @@ def _lost(before: Progress, after: Progress) -> int:
 
 def _place(world: World, i: int) -> tuple[int, int]:
     holders = sum(agent.bit for agent in world.agents if agent.held >> i & 1)
-    return (rows.on(world, i) | rows.inside(world, i)) & ~world.home.rooms, holders
+    return (edge_rows.on(world, i) | edge_rows.inside(world, i)) & ~world.home.rooms, holders

@@ -16,10 +16,10 @@ from hearth.challenges.demonstration_episodes import Demonstration, demonstratio
 from hearth.challenges.episodes import Known, Record
 from hearth.challenges.helper_beliefs import beliefs
 from hearth.challenges.household import HouseholdTask
+from hearth.challenges.household_as_challenge import OpenTask, as_task
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
 from hearth.challenges.household_definition import settings
-from hearth.challenges.household_drawing import drawn_tasks
-from hearth.challenges.household_runs import OpenTask, as_task
+from hearth.challenges.parallel_household_tasks import drawn_tasks
 from hearth.challenges.result_files import Results, episode_data
 from hearth.challenges.tasks import Task
 from hearth.datasets.damage_faults import reading
@@ -31,7 +31,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tables import comment_of, schema_of
-from hearth.storage.databases import limited, open_database, quoted, without_patterns
+from hearth.storage.duckdb_connections import limited, open_database, quoted, without_patterns
 from hearth.storage.files import read_json, value_digest, write_bytes
 from hearth.storage.manifest import NAME, describe
 from hearth.storage.names import inside

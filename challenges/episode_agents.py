@@ -14,7 +14,7 @@ from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
 from hearth.agents.online_helper_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
 from hearth.challenges.agent_guard import SECONDS, Guarded, refusing, say_unraisable
-from hearth.challenges.agent_output import StandardDescriptors
+from hearth.challenges.agent_standard_streams import StandardDescriptors
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.command_agents import CommandAgent, is_command
 from hearth.challenges.episode_loop import Player

@@ -11,7 +11,7 @@ from typing import Any
 
 from hearth.agents.agent_registry import MainAgent
 from hearth.agents.protocol import Choice
-from hearth.challenges.agent_output import StandardDescriptors
+from hearth.challenges.agent_standard_streams import StandardDescriptors
 from hearth.challenges.behavior_counts import analysed
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import Lineup

@@ -17,7 +17,7 @@ from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.goals import Progress
 from hearth.simulation.literal_truth import candidates
 from hearth.simulation.motion import positions
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.edit import edit
 from hearth.simulation.world.world import World
@@ -69,7 +69,7 @@ def _undone(world: World, base: Base, literal: Literal[Name], goal: Goal, choose
     movable = world.home.properties["GRABBABLE"]
     for i in indices(things & movable):
         # An agent looks into furniture, and not into every box and basket.
-        must = met >> i & 1 or rows.inside(world, i) & movable
+        must = met >> i & 1 or edge_rows.inside(world, i) & movable
         if must or chooser.random() < MOVED:
             after = _moved(world, base, i, goal, chooser)
             if after is None and must:

@@ -13,8 +13,8 @@ from typing import Any
 from hearth.challenges import household_files, published_tasks
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.household import digest_of, household_tasks
+from hearth.challenges.household_as_challenge import OpenTask, as_task, split_of
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
-from hearth.challenges.household_runs import OpenTask, as_task, split_of
 from hearth.challenges.tasks import Task
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

@@ -18,7 +18,7 @@ from types import FrameType
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.databases import interrupt_all
+from hearth.storage.duckdb_connections import interrupt_all
 from hearth.storage.query_time_limit import checked_seconds
 
 GRACE = 3.0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from hearth.commands import output
-from hearth.commands.program_name import program_name
+from hearth.commands.command_line_name import program_name
 from hearth.kb.language.reading_modes import Fuzzy
 
 if TYPE_CHECKING:
@@ -71,14 +71,14 @@ def build(
       hearth build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
       hearth build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
-    from hearth.pipelines.engine.tiers import STANDARD
+    from hearth.pipelines.engine.option_presets import STANDARD
 
     _run(context, only, _tiered(context, tier or ("" if sources else STANDARD)))
 
 
 def _tiered(context: typer.Context, tier: str = "") -> dict[str, Any]:
     """Return the options of a command, with those that its tier and its strength set."""
-    from hearth.pipelines.engine.tiers import tiered
+    from hearth.pipelines.engine.option_presets import tiered
 
     sources_of = {name: context.get_parameter_source(name) for name in context.params}
     given = [name for name, source in sources_of.items() if source and source.name == "COMMANDLINE"]
@@ -154,10 +154,10 @@ def sample(
                                      param_hint="--nodes, --limit")  # fmt: skip
         _run(context, "sample", {**context.params, "homes": folder})
         return
-    from hearth.commands import sample_in_homes
+    from hearth.commands import programs_in_every_home
 
     settings = _settings({"seed": seed, "home": home, "homes": folder, "kb": kb, "action_set": action_set})
-    sample_in_homes.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
+    programs_in_every_home.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
 
 
 def augment(
@@ -241,8 +241,8 @@ def _run(context: typer.Context, only: str | None, chosen: Mapping[str, Any] | N
 def _built(only: str | None, chosen: Mapping[str, Any]) -> Funnel:
     from hearth.pipelines.build import FIRST, corpus
     from hearth.pipelines.build import build as run
+    from hearth.pipelines.engine.option_presets import FIRST as FIRST_TIER
     from hearth.pipelines.engine.progress import JsonLines, for_terminal
-    from hearth.pipelines.engine.tiers import FIRST as FIRST_TIER
 
     paths = [str(path) for path in chosen.get("sources") or ()]
     if not paths and chosen.get("tier") == FIRST_TIER:

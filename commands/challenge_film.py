@@ -24,13 +24,13 @@ def film(
       hearth challenge film hp.jsonl wah-test-1-0003 --out film
       hearth challenge film episode.jsonl wah-test-1-0003 --view first --out film
     """
-    from hearth.analysis.episode_drawing import episode_of, ticks_of
+    from hearth.analysis.episode_figure import episode_of, ticks_of
     from hearth.challenges.episode_films import execution_of
     from hearth.challenges.verification import read_whole
     from hearth.homes.library import load_graph
     from hearth.kb.loading.load import default
+    from hearth.rendering.film.execution_keyframes import trajectory_of
     from hearth.rendering.film.player import page
-    from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record as filmed
 
     known, found = default(), read_whole(results)

@@ -74,7 +74,7 @@ def draw_beliefs(
     out: Path, task: Task, record: Record, helper: str, actions: Sequence[tuple[int, int, str, str]]
 ) -> None:
     """Draw a helper's beliefs (figure 7-4); errors as of `helper_beliefs.beliefs`."""
-    from hearth.analysis.goal_belief_drawing import drawn
+    from hearth.analysis.goal_belief_figure import drawn
     from hearth.challenges.helper_beliefs import beliefs
     from hearth.kb.loading.load import default
 

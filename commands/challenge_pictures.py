@@ -12,8 +12,8 @@ def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None
     Example:
       hearth challenge stats test-1.json --out figures
     """
-    from hearth.analysis.challenge_starts import starts
     from hearth.analysis.object_distribution import heat_map
+    from hearth.analysis.start_place_distributions import starts
     from hearth.challenges.task_files import read
     from hearth.kb.loading.load import default
     from hearth.storage.names import inside
@@ -63,10 +63,10 @@ def show(
       hearth challenge show hp.jsonl wah-test-1-0003 --out figure.png
       hearth challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
     """
-    from hearth.analysis import belief_drawing
-    from hearth.analysis.episode_drawing import episode_of, furniture, narrated, panels_of, ticks_of
+    from hearth.analysis import location_belief_figure
+    from hearth.analysis.episode_figure import episode_of, furniture, narrated, panels_of, ticks_of
     from hearth.challenges.verification import read_whole
-    from hearth.homes import plan_panels
+    from hearth.homes import side_by_side_floor_plans
     from hearth.homes.library import load_layout
     from hearth.kb.loading.load import default
 
@@ -74,14 +74,14 @@ def show(
     one, record = episode_of(found, str(results), task, episode, alone)
     start, ticks = ticks_of(one, record, known)
     if belief:
-        beliefs = belief_drawing.followed(one, start, ticks)
+        beliefs = location_belief_figure.followed(one, start, ticks)
         if out is not None:
-            out.write_text(belief_drawing.drawn(beliefs), encoding="utf-8")
+            out.write_text(location_belief_figure.drawn(beliefs), encoding="utf-8")
         output.emit(beliefs) if as_json else output.records([each.row() for each in beliefs])
         return
     if out is not None:
         panels = panels_of(found, one, record, known)
-        plan_panels.write(load_layout(one.home, known), out, panels, furniture(one, start))
+        side_by_side_floor_plans.write(load_layout(one.home, known), out, panels, furniture(one, start))
     if goal_beliefs is not None:
         challenge_online.draw_beliefs(goal_beliefs, one, record, found.header.lineup.helper, list(narrated(ticks)))
     rows = [dict(zip(("tick", "agent", "instruction", "failure"), row, strict=True)) for row in narrated(ticks)]

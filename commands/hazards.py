@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
+from hearth.commands.home_changes_before_run import Additions, additions, names_of
 from hearth.commands.inputs import of_rules
-from hearth.commands.run_additions import Additions, additions, names_of
 from hearth.commands.shared_options import HomeOptions, ProgramOptions
 
 if TYPE_CHECKING:

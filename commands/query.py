@@ -50,7 +50,7 @@ def query(
     from hearth.challenges.challenge_tables import ChallengeData
     from hearth.commands.bounded_process import bounded_memory, ended_within
     from hearth.datasets.dataset import Dataset
-    from hearth.storage.databases import memory_limit
+    from hearth.storage.duckdb_connections import memory_limit
     from hearth.storage.query_time_limit import checked_seconds
 
     if (csv and tsv) or (as_json and (csv or tsv)):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from hearth.kb.knowledge import Knowledge
     from hearth.rendering.cameras.visibility import TickVisibility
-    from hearth.rendering.film.snapshots import Snapshot
+    from hearth.rendering.film.execution_pictures import Snapshot
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.schemas.program import Program
     from hearth.simulation.engine import Execution
@@ -130,7 +130,7 @@ def _split(names: str) -> list[str]:
 
 def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[str, Any]:
     from hearth.rendering.film.contact_sheet import caption
-    from hearth.rendering.film.snapshots import TOP, snapshots
+    from hearth.rendering.film.execution_pictures import TOP, snapshots
 
     frames, files, seen = [], [], []
     how = {"size": shooting.size, "quality": quality, "seed": shooting.seed, "hour": shooting.hour}
@@ -167,8 +167,8 @@ def videos(
     """Film an execution by some cameras, and return files, pages and steps."""
 
     from hearth.rendering.film.contact_sheet import caption
+    from hearth.rendering.film.execution_keyframes import trajectory_of
     from hearth.rendering.film.player import page
-    from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.film_variation import drawn
     from hearth.storage.names import inside
@@ -307,7 +307,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
     """Yield executable programs drawn by the seed, each in the next of our homes, with its objects' visibility."""
     from hearth.analysis.random_program_home_pairs import pairs
     from hearth.rendering.cameras.visibility import tick_visibilities
-    from hearth.rendering.film.snapshots import trajectory_of
+    from hearth.rendering.film.execution_keyframes import trajectory_of
 
     known = inputs.read_knowledge(None)
     for execution, _, graph in islice(pairs(inputs.paths(sources), known, seed), count):
@@ -328,8 +328,8 @@ def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, 
 def _write(out: Path, shot: Snapshot, modalities: list[str]) -> list[str]:
     import orjson
 
+    from hearth.rendering.film.execution_pictures import TOP
     from hearth.rendering.film.png import encode
-    from hearth.rendering.film.snapshots import TOP
     from hearth.rendering.modalities import PICTURES
 
     view = TOP if shot.camera.name == TOP else "auto"

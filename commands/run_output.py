@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.commands import output
 from hearth.commands.failure_output import failure_document
-from hearth.commands.run_additions import Additions, additions, names_of
+from hearth.commands.home_changes_before_run import Additions, additions, names_of
 
 if TYPE_CHECKING:
     from hearth.grounding.grounded_run import Trial

@@ -10,7 +10,7 @@ from hearth.datasets.format.catalog import absent_tables, earlier, reading
 from hearth.datasets.format.ids import OURS
 from hearth.datasets.unpacked_sizes import check_unpacked
 from hearth.schemas.tables import KEYS, TABLES
-from hearth.storage.databases import identifier, limited, open_database, quoted, without_patterns
+from hearth.storage.duckdb_connections import identifier, limited, open_database, quoted, without_patterns
 
 MORE = {"repairs": ("parent_id", "home", "perturbations")}
 """Further key columns in format 1, where repairs that led to no program have no environment."""

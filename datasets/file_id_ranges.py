@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from hearth.datasets.consistent_reads import version
 from hearth.schemas.tables import KEYS
-from hearth.storage.databases import limited, open_database, pattern_of, quoted, without_patterns
+from hearth.storage.duckdb_connections import limited, open_database, pattern_of, quoted, without_patterns
 
 _LAST = "\U0010ffff"
 """No id is greater."""

@@ -14,7 +14,7 @@ from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, published
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.databases import limited, open_database
+from hearth.storage.duckdb_connections import limited, open_database
 from hearth.storage.files import read_json, value_digest
 from hearth.storage.input_files import read_input
 from hearth.storage.manifest import NAME, TIMING

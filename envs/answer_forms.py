@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hearth.envs.agent_answers import WAIT, by_text
-from hearth.envs.text_protocols import Protocol
+from hearth.envs.text_protocol_settings import Protocol
 from hearth.kb.language.forms.alfworld_commands import command
 from hearth.kb.language.forms.react_logs import act_of
 from hearth.kb.language.step_understanding import understand_exactly

@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 
 from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, seen_instances
 from hearth.envs.text_agent import USUAL, plain
-from hearth.envs.text_protocols import Protocol
+from hearth.envs.text_protocol_settings import Protocol
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Name
@@ -21,7 +21,7 @@ from hearth.simulation.actions.legal import Legal
 from hearth.simulation.actions.registry import EVERY
 from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation.views import Pose, View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 
@@ -237,7 +237,7 @@ class _Writer:
         self.on: dict[int, int] = {}
         self.inside: dict[int, int] = {}
         for i in indices(shown):
-            inside, on = rows.inside(world, i) & shown, rows.on(world, i) & shown
+            inside, on = edge_rows.inside(world, i) & shown, edge_rows.on(world, i) & shown
             place, bit = inside or on, 1 << i
             if not place:
                 self.top |= bit

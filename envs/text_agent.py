@@ -22,7 +22,7 @@ from hearth.schemas.vocabulary import CHARACTER_CATEGORY
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation.views import LastAction, Pose, View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.nodes import with_states
 
@@ -166,7 +166,7 @@ def _seen(view: View) -> Iterator[str]:
     things = mask_of(i for i in indices(view.mask) if home.node(i).category not in UNTOUCHED)
     for i in indices(things):
         if home.ids[i] not in held:
-            inside, on = rows.inside(world, i) & things, rows.on(world, i) & things
+            inside, on = edge_rows.inside(world, i) & things, edge_rows.on(world, i) & things
             place, how = (inside, "In") if inside else (on, "On") if on else (0, "Here")
             by_place.setdefault(((place & -place).bit_length() - 1, how), []).append(i)
     for (place, how), found in sorted(by_place.items()):

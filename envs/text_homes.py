@@ -17,7 +17,7 @@ from hearth.envs.compact_text import said_step
 from hearth.envs.rewards import USUAL_REWARDS, Reward, checked_reward
 from hearth.envs.session import MOST_TICKS, Opening, opening
 from hearth.envs.text_agent import plain
-from hearth.envs.text_protocols import CURRENT, protocol
+from hearth.envs.text_protocol_settings import CURRENT, protocol
 from hearth.envs.text_worlds import Play, Task, TextWorld, begun, commanded, observed, seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -26,7 +26,7 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.world import World
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class TextHomes:
         worlds: how many are played at once.
         group: so many neighbors share a task.
         seed: of the tasks that `reset` draws.
-        protocol: the words of observations (see `text_protocols`).
+        protocol: the words of observations (see `text_protocol_settings`).
         reward: of a tick: `Rewards`, or a function of (progress, world) before and after it and the agent's number.
         travel: whether a walk goes on until one arrives.
         limit: ticks after which a world ends.
@@ -364,8 +364,8 @@ def _towards(step: Step, view: View) -> Step:
         return step
     at = home.index[unseen[0]]
     while not view.mask >> at & 1:
-        inside = rows.inside(world, at)
-        above = rows.on(world, at) | inside & ~home.rooms or inside
+        inside = edge_rows.inside(world, at)
+        above = edge_rows.on(world, at) | inside & ~home.rooms or inside
         if not above:
             break
         at = (above & -above).bit_length() - 1

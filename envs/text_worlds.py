@@ -11,7 +11,7 @@ from hearth.envs.answer_forms import WALK, read_answer
 from hearth.envs.compact_text import compact, printable, wanted_nodes
 from hearth.envs.rewards import USUAL_REWARDS, Reward
 from hearth.envs.session import MOST_TICKS
-from hearth.envs.text_protocols import Protocol as Words
+from hearth.envs.text_protocol_settings import Protocol as Words
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

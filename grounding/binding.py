@@ -17,7 +17,7 @@ from hearth.schemas.program import Program, Step
 from hearth.schemas.short_repr import brief
 from hearth.simulation.engine import act, ready, together, unfit
 from hearth.simulation.rules import DEFAULT, Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
@@ -172,9 +172,9 @@ class _Search:
         if not world.agents:
             return [home.ids[i] for i in indices(mask) if i not in taken]
         agent = world.agents[min(agent_number, len(world.agents) - 1)]
-        room = rows.agent_room(world, agent)
+        room = edge_rows.agent_room(world, agent)
         rank = {
-            i: (not rows.is_close(world, agent, i), rows.room_of(world, i) != room, i)
+            i: (not edge_rows.is_close(world, agent, i), edge_rows.room_of(world, i) != room, i)
             for i in indices(mask)
             if i not in taken and i != agent.index
         }

@@ -22,7 +22,7 @@ from hearth.envs.agent_answers import WAIT
 from hearth.envs.compact_text import said_step
 from hearth.envs.text_agent import plain
 from hearth.envs.text_homes import TextHomes
-from hearth.envs.text_protocols import protocol
+from hearth.envs.text_protocol_settings import protocol
 from hearth.envs.text_worlds import Play, TextWorld, begun, commanded, observed, seen
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError

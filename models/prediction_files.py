@@ -20,7 +20,7 @@ from hearth.models.model_registry import MODELS, restore
 from hearth.models.protocols import Decoded, Trained
 from hearth.models.text_examples import AT_ONCE, requests
 from hearth.models.training_overlap import refuse_seen
-from hearth.repair.completion import complete
+from hearth.repair.runnable_predictions import complete
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hearth.models.interface import Request, Steps
 from hearth.models.protocols import Trained
 from hearth.models.text.text_words import words_of
-from hearth.repair.completion import Completion, complete
+from hearth.repair.runnable_predictions import Completion, complete
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Step
 from hearth.scoring.metrics.lcs import items

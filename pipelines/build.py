@@ -11,11 +11,11 @@ import pyarrow.parquet as pq
 from hearth.pipelines.engine.build_estimates import forecast
 from hearth.pipelines.engine.build_homes import Homes, known_homes
 from hearth.pipelines.engine.engines import engine as make_engine
+from hearth.pipelines.engine.option_presets import tiered
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, record_of, stage
-from hearth.pipelines.engine.tiers import tiered
 from hearth.pipelines.engine.user_overlays import kept_overlays, overlays
 from hearth.pipelines.render import no_pictures
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -26,7 +26,7 @@ from hearth.schemas.stage_rows import RejectedRow
 from hearth.storage.lock import locked
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts
-from hearth.storage.stores import working
+from hearth.storage.remote_build_folders import working
 from hearth.storage.url_fetching import fetched
 
 FIRST = ("crowd/descriptions.csv", "crowd/programs.csv")

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
 
+from hearth.datasets.format.home_inference import write_home
 from hearth.datasets.format.row_conversion import graph_of
-from hearth.datasets.format.shared_homes import write_home
 from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.description_lookup import Described

@@ -14,7 +14,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from hearth.datasets.format.case_rows import rerun
-from hearth.pipelines.engine import clip_cases, demonstration_cases
+from hearth.pipelines.engine import executions_for_clips, executions_for_demonstrations
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.split_assignment import programs_of
@@ -31,7 +31,7 @@ from hearth.storage.partitions import read_rows
 
 if TYPE_CHECKING:
     from hearth.rendering.cameras.camera import Camera
-    from hearth.rendering.film.snapshots import Snapshot
+    from hearth.rendering.film.execution_pictures import Snapshot
     from hearth.rendering.scene.home_geometry import DrawableHome
     from hearth.simulation.engine import Execution
 
@@ -67,8 +67,8 @@ Made = RenderedRow | FilmedRow | ClippedRow | DemonstratedRow
 
 def process(case: CaseRow, context: Context) -> Iterator[tuple[str, Made]]:
     """One row for each picture of a case, its film, its clips and its demonstration, if any."""
+    from hearth.rendering.film.execution_pictures import snapshots
     from hearth.rendering.film.png import encode
-    from hearth.rendering.film.snapshots import snapshots
 
     job, place = context.job, context.home(case["home"])
     home = place.graph
@@ -97,7 +97,7 @@ FILM_SIZE, FILM_RATE = (320, 240), 15.0
 
 def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Context) -> FilmedRow:
     """Write a film as webm, which browsers play; they do not play the mp4 that OpenCV writes."""
-    from hearth.rendering.film.snapshots import trajectory_of
+    from hearth.rendering.film.execution_keyframes import trajectory_of
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.film_variation import drawn
 
@@ -127,12 +127,12 @@ def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Co
     """Write a film's arrays, and give the rows of its clips; no file without clips."""
     from hearth.rendering.film import clips
     from hearth.rendering.film.clip_file import FILE
-    from hearth.rendering.film.snapshots import trajectory_of
+    from hearth.rendering.film.execution_keyframes import trajectory_of
     from hearth.rendering.scene.film_variation import drawn
 
     name, job, known = case["execution_id"], context.job, context.homes.knowledge
     trajectory = trajectory_of(execution, place.graph, known, variation=drawn(job.settings.seed, name))
-    coloured = clip_cases.coloured(name, job.settings.seed)
+    coloured = executions_for_clips.coloured(name, job.settings.seed)
     film = clips.clip_film(trajectory, place.graph, known.class_ids, clips.MODALITIES if coloured else clips.MASKS_ONLY)
     if not film.clips:
         return
@@ -268,8 +268,8 @@ def _chosen(settings: Settings) -> Plan:
                 files[row["execution_id"]] = file
     films = sorted(name for name, _ in list(found.values())[: settings.videos])
     steps = _steps(settings) if settings.clips else {}
-    clips = dict(sorted(clip_cases.chosen(ran, steps, homes.names(), settings.clips, settings.seed).items()))
-    above = demonstration_cases.chosen(ran, homes.names(), settings.demonstrations, settings.seed)
+    clips = dict(sorted(executions_for_clips.chosen(ran, steps, homes.names(), settings.clips, settings.seed).items()))
+    above = executions_for_demonstrations.chosen(ran, homes.names(), settings.demonstrations, settings.seed)
     executions = dict(sorted([*found.values(), *((name, files[name]) for name in clips)]))
     executions |= {name: files[name] for name in above if name not in executions}
     chosen = {"executions": executions, "pictures": sorted(dict(found.values())), "films": films, "clips": clips}

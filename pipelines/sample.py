@@ -8,8 +8,8 @@ from typing import NamedTuple
 import pyarrow.parquet as pq
 
 from hearth.datasets.format.case_rows import difference_of, environment_of, run_row
+from hearth.datasets.format.home_inference import common, write_home
 from hearth.datasets.format.row_conversion import bindings_of, change_of, condition_rows, graph_of, named, program_of
-from hearth.datasets.format.shared_homes import common, write_home
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.precondition_inference import infer

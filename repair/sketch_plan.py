@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hearth.grounding.binding import nearest
-from hearth.repair.completion import complete
+from hearth.repair.runnable_predictions import complete
 from hearth.schemas.program import Program, Step
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World

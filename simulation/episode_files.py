@@ -29,8 +29,8 @@ from hearth.simulation.rules import read as read_rules
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.edit import apply, edit
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.snapshot import private, with_private
 from hearth.simulation.world.world import World
+from hearth.simulation.world.world_json import private, with_private
 from hearth.storage.archives import unpacked
 from hearth.storage.files import replacing
 from hearth.storage.input_files import LARGEST, read_input

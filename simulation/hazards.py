@@ -17,7 +17,7 @@ from hearth.simulation.actions.formula_evaluation import Reading, candidates
 from hearth.simulation.engine import Execution
 from hearth.simulation.processes import widened
 from hearth.simulation.rules import CONSEQUENCES
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import LYING
 from hearth.simulation.world.world import World
@@ -143,8 +143,8 @@ def _matches(reading: Reading, parts: tuple[Formula, ...], variables: tuple[str,
 
 def _attended(world: World, i: int) -> bool:
     """Return whether a character is in the room of a thing."""
-    room = rows.room_of(world, i)
-    return room >= 0 and any(rows.agent_room(world, agent) == room for agent in world.agents)
+    room = edge_rows.room_of(world, i)
+    return room >= 0 and any(edge_rows.agent_room(world, agent) == room for agent in world.agents)
 
 
 def _everybody_lies(world: World) -> bool:

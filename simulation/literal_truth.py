@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, RELATION_OF, STATE_OF, Key, Literal, Name
 from hearth.schemas.vocabulary import CHARACTER_CLASS, EVERY_STATE_ID, STATE_ID, STATES
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
@@ -181,7 +181,7 @@ def _mirrored(row: Callable[[World, int], int], out: Callable[[Agent], int], int
     def related(world: World, i: int, targets: int) -> int:
         characters = world.home.characters
         if characters >> i & 1:
-            return out(rows.character(world, i)) & targets
+            return out(edge_rows.character(world, i)) & targets
         found = row(world, i) & targets
         if targets & characters:
             for agent in world.agents:
@@ -195,7 +195,7 @@ def _mirrored(row: Callable[[World, int], int], out: Callable[[Agent], int], int
 def _held(hand: Callable[[Agent], int], *relations: str) -> Binary:
     def related(world: World, i: int, targets: int) -> int:
         if world.home.characters >> i & 1:
-            return hand(rows.character(world, i)) & targets
+            return hand(edge_rows.character(world, i)) & targets
         return _stored(world, i, *relations) & targets if world.home.others else 0
 
     return related
@@ -214,7 +214,7 @@ def _free(world: World, i: int) -> bool:
     """One more fits on the seat or bed, which may be made: bedding does not count."""
     home = world.home
     limit = max(home.limit(i), home.limit(i, lying=True))
-    return rows.taking_room(world, i).bit_count() < limit
+    return edge_rows.taking_room(world, i).bit_count() < limit
 
 
 def _occupied(world: World, i: int) -> bool:
@@ -227,7 +227,7 @@ def _full_hands(world: World, i: int) -> bool:
 
 def _doors_closed(world: World, i: int) -> bool:
     """Return a way into its room leads through a closed door."""
-    room = rows.room_of(world, i)
+    room = edge_rows.room_of(world, i)
     closed = world.home.doors & world.states[STATE_ID["CLOSED"]]
     return room >= 0 and any(world.home.between[door] >> room & 1 for door in indices(closed))
 
@@ -235,11 +235,11 @@ def _doors_closed(world: World, i: int) -> bool:
 def _pet(world: World, i: int) -> bool:
     """Return a pet is on it."""
     pets = (world.home.by_class.get(name, 0) for name in PETS)
-    return any(mask & rows.bearing(world, i) for mask in pets)
+    return any(mask & edge_rows.bearing(world, i) for mask in pets)
 
 
 def _in_room(world: World, i: int, targets: int) -> int:
-    room = rows.room_of(world, i)
+    room = edge_rows.room_of(world, i)
     return targets & 1 << room if room >= 0 else 0
 
 
@@ -250,8 +250,8 @@ def _other_room(world: World, i: int, targets: int) -> int:
 
 def _together(world: World, i: int, targets: int) -> int:
     """Both are in one room."""
-    room = rows.room_of(world, i)
-    return mask_of(j for j in indices(targets) if rows.room_of(world, j) == room)
+    room = edge_rows.room_of(world, i)
+    return mask_of(j for j in indices(targets) if edge_rows.room_of(world, j) == room)
 
 
 def _is_held(world: World, i: int, targets: int) -> int:
@@ -262,13 +262,13 @@ def _is_held(world: World, i: int, targets: int) -> int:
 def _not_near(world: World, i: int, targets: int) -> int:
     """Return a character that has walked to the target is not close to it."""
     home = world.home
-    mine = (1 << i | rows.close(world, i) | rows.on(world, i)) & ~home.properties["BODY_PART"]
+    mine = (1 << i | edge_rows.close(world, i) | edge_rows.on(world, i)) & ~home.properties["BODY_PART"]
     return mask_of(j for j in indices(targets) if not mine & home.reach[j])
 
 
 def _in_closed_container(world: World, i: int, targets: int) -> int:
     """It is in something closed, whatever the target, in or on which it belongs."""
-    return targets if rows.closed_container(world, i) >= 0 else 0
+    return targets if edge_rows.closed_container(world, i) >= 0 else 0
 
 
 def _facing_away(world: World, i: int, targets: int) -> int:
@@ -290,10 +290,10 @@ UNARY: dict[str, Unary] = {
 """The predicates of one term: states, and conditions."""
 
 RELATED: dict[str, Binary] = {
-    "ON": _mirrored(rows.on, attrgetter("on"), attrgetter("worn")),
-    "INSIDE": _mirrored(rows.inside, attrgetter("inside"), attrgetter("contents")),
-    "CLOSE": _mirrored(rows.close, attrgetter("close"), attrgetter("close")),
-    "FACING": _mirrored(rows.facing, attrgetter("facing"), attrgetter("faced")),
+    "ON": _mirrored(edge_rows.on, attrgetter("on"), attrgetter("worn")),
+    "INSIDE": _mirrored(edge_rows.inside, attrgetter("inside"), attrgetter("contents")),
+    "CLOSE": _mirrored(edge_rows.close, attrgetter("close"), attrgetter("close")),
+    "FACING": _mirrored(edge_rows.facing, attrgetter("facing"), attrgetter("faced")),
     "BETWEEN": _between,
     HANDS[0]: _held(attrgetter("right"), HANDS[0]),
     HANDS[1]: _held(attrgetter("left"), HANDS[1]),

@@ -15,7 +15,7 @@ from hearth.kb.knowledge_records import Process
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.actions.formula_evaluation import kind_of
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import BEARS, CONTENTS
@@ -76,7 +76,7 @@ class Moment:
         if known is None:
             world, found = self.world, 0
             working = devices.kind.nodes(world, self.here)
-            row = rows.contents if devices.relation == CONTENTS else rows.bears
+            row = edge_rows.contents if devices.relation == CONTENTS else edge_rows.bears
             for i in indices(working):
                 found |= row(world, i)
             known = self.neighbours[devices] = working, found

@@ -10,7 +10,7 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID, STATES
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.nodes import states_of
@@ -42,7 +42,7 @@ class _Cast:
         if index < 0 or not term.function:
             return index
         if term.function == "room":
-            return rows.room_of(self.world, index)
+            return edge_rows.room_of(self.world, index)
         return next((place for thing, place, _ in self.agent.origins if thing == index), -1)
 
     def name(self, index: int) -> str:
@@ -95,16 +95,19 @@ def facts(world: World, agent: int, nodes: Iterable[int]) -> Iterator[str]:
     shown = {"CLOSE": me.close, "FACING": me.facing, "ON": me.on, "holding": me.held}
     posture = " ".join(states_of(me.index, world.states)) or "standing"
     related = (f"{word} {_some(cast, mask)}" for word, mask in shown.items() if mask)
-    yield f"{cast.name(me.index)}: {'; '.join((f'{posture} in {cast.name(rows.agent_room(world, me))}', *related))}"
+    room = cast.name(edge_rows.agent_room(world, me))
+    yield f"{cast.name(me.index)}: {'; '.join((f'{posture} in {room}', *related))}"
 
 
 def _place(cast: _Cast, i: int) -> str:
     world = cast.world
     holders = [cast.name(agent.index) for agent in world.agents if agent.held >> i & 1]
-    around = rows.inside(world, i) & ~world.home.rooms
+    around = edge_rows.inside(world, i) & ~world.home.rooms
     places = [f"held by {name}" for name in holders]
-    places += [f"{word} {_some(cast, mask)}" for word, mask in (("ON", rows.on(world, i)), ("INSIDE", around)) if mask]
-    room = rows.room_of(world, i)
+    places += [
+        f"{word} {_some(cast, mask)}" for word, mask in (("ON", edge_rows.on(world, i)), ("INSIDE", around)) if mask
+    ]
+    room = edge_rows.room_of(world, i)
     return ", ".join((*places, f"in {cast.name(room)}" if room >= 0 else "in no room"))
 
 
@@ -146,7 +149,7 @@ def _witness(formula: Formula, cast: _Cast) -> str:
     if isinstance(formula, Some) and "REMEMBERS" in str(formula):
         return f"it came from {cast.name(cast.index(Term('o', 'origin')))}"
     if isinstance(formula, Some):
-        return ", ".join(map(cast.name, rows.held_indices(cast.agent)))
+        return ", ".join(map(cast.name, edge_rows.held_indices(cast.agent)))
     return ""
 
 
@@ -157,10 +160,10 @@ def _close(atom: Literal[Term], cast: _Cast) -> str:
     if agent.close >> x & 1:
         return f"character CLOSE {cast.name(x)}"
     world = cast.world
-    hop = agent.close & rows.on(world, x)
+    hop = agent.close & edge_rows.on(world, x)
     if hop:
         return f"character CLOSE {cast.name(lowest(hop))}, {cast.name(x)} ON {cast.name(lowest(hop))}"
-    hop = agent.close & rows.close(world, x)
+    hop = agent.close & edge_rows.close(world, x)
     return f"character CLOSE {cast.name(lowest(hop))} CLOSE {cast.name(x)}" if hop else ""
 
 
@@ -168,7 +171,7 @@ def _facing(atom: Literal[Term], cast: _Cast) -> str:
     agent, x = cast.agent, cast.index(atom.terms[1])
     if agent.facing >> x & 1:
         return f"character FACING {cast.name(x)}"
-    hop = agent.facing & rows.faced(cast.world, x)
+    hop = agent.facing & edge_rows.faced(cast.world, x)
     return f"character FACING {cast.name(lowest(hop))} FACING {cast.name(x)}" if hop else ""
 
 
@@ -211,22 +214,25 @@ def _affords(atom: Literal[Term], cast: _Cast) -> str:
 
 def _room(atom: Literal[Term], cast: _Cast) -> str:
     x = cast.index(atom.terms[0])
-    return f"in {cast.name(rows.room_of(cast.world, x))}"
+    return f"in {cast.name(edge_rows.room_of(cast.world, x))}"
 
 
 def _seat(atom: Literal[Term], cast: _Cast) -> str:
     world = cast.world
-    on, aside = rows.taking_room(world, cast.o, cast.made_bed), rows.turned_back(world, cast.o) * cast.made_bed
+    on, aside = (
+        edge_rows.taking_room(world, cast.o, cast.made_bed),
+        edge_rows.turned_back(world, cast.o) * cast.made_bed,
+    )
     bedding = f"; turned back: {', '.join(map(cast.name, indices(aside)))}" if aside else ""
     return f"on it: {', '.join(map(cast.name, indices(on))) or 'nothing'}{bedding}"
 
 
 def _same_room(atom: Literal[Term], cast: _Cast) -> str:
-    return f"both in {cast.name(rows.agent_room(cast.world, cast.agent))}"
+    return f"both in {cast.name(edge_rows.agent_room(cast.world, cast.agent))}"
 
 
 def _open(atom: Literal[Term], cast: _Cast) -> str:
-    around = rows.inside(cast.world, cast.index(atom.terms[0])) & ~cast.world.home.rooms
+    around = edge_rows.inside(cast.world, cast.index(atom.terms[0])) & ~cast.world.home.rooms
     return f"inside {cast.name(lowest(around))}, which is not CLOSED" if around else "inside nothing but its room"
 
 

@@ -8,8 +8,8 @@ from typing import Any
 from hearth.challenges.metrics import Outcomes, by_task, of_tasks, speedups
 from hearth.challenges.result_files import Results
 from hearth.schemas.yaml_limits import packaged
-from hearth.studies.comparisons import Comparison, compare, interval, rank_correlation
 from hearth.studies.films_to_judge import JudgedFilm
+from hearth.studies.statistical_tests import Comparison, compare, interval, rank_correlation
 from hearth.studies.study import Study
 from hearth.studies.study_folder import Collected, references_of
 from hearth.studies.study_tables import Rows

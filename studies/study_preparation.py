@@ -9,7 +9,7 @@ from hearth.schemas.failures import Code
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, spread, unseen
 from hearth.studies.films_to_judge import read_films
-from hearth.studies.judged_film_files import Shoot, shoot
+from hearth.studies.judged_film_recording import Shoot, shoot
 from hearth.studies.study import EPISODES, Study
 from hearth.studies.study_folder import FILMS, Collected, first_records, prepare_films, references
 from hearth.studies.study_trials import tasks_of

@@ -7,7 +7,7 @@ from typing import Any
 from hearth.schemas.optional_libraries import lacking
 from hearth.storage.files import write_bytes
 from hearth.storage.templates import rendered
-from hearth.studies.comparisons import Comparison
+from hearth.studies.statistical_tests import Comparison
 from hearth.studies.study_figures import draw, names_of, own_figure
 from hearth.studies.study_findings import METRICS, PEOPLE, Figure, Findings, scales
 from hearth.version import VERSION

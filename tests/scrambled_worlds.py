@@ -7,8 +7,8 @@ import random
 from hearth.homes.object_shapes import form
 from hearth.schemas.graph import Node
 from hearth.simulation.motion.ground import ground_of
-from hearth.simulation.observation import reach
-from hearth.simulation.world import rows
+from hearth.simulation.observation import containment, visible_nodes
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit, free_id
 from hearth.simulation.world.pose import Pose
@@ -23,7 +23,7 @@ def scrambled(world: World, number: int, chooser: random.Random) -> World:
 
     Rooms, doors, and what stands on the floor stay: they belong to what never changes in a home.
     """
-    mask = reach.visible(world, world.agents[number])
+    mask = visible_nodes.visible(world, world.agents[number])
     world = _states(world, mask, chooser)
     world = _removed(world, mask, chooser)
     world = _moved(world, mask, chooser)
@@ -46,7 +46,7 @@ def _movable(world, mask):
     home = world.home
     for i in indices(home.everything & ~mask & ~home.rooms & ~home.characters & ~home.doors):
         shape = form(home.classes[i], home.knowledge)
-        bare = not (rows.bearing(world, i) | rows.contents(world, i))
+        bare = not (edge_rows.bearing(world, i) | edge_rows.contents(world, i))
         if bare and (shape is None or shape.mount != "floor") and home.properties["GRABBABLE"] >> i & 1:
             yield i
 
@@ -87,7 +87,9 @@ def _added(world, mask, chooser):
 def _others_elsewhere(world, mask, chooser):
     """Characters out of sight stand somewhere else out of sight, with other things in their hands' memory."""
     here = ground_of(world.home)
-    rooms = [i for i in indices(world.home.rooms) if not reach.contained(world, 1 << i) & mask & ~world.home.rooms]
+    rooms = [
+        i for i in indices(world.home.rooms) if not containment.contained(world, 1 << i) & mask & ~world.home.rooms
+    ]
     agents = list(world.agents)
     for n, agent in enumerate(agents):
         if agent.bit & mask or not rooms or agent.held or chooser.random() < 0.3:

@@ -29,7 +29,7 @@ from hearth.schemas.graph import Edge
 from hearth.schemas.graph_change import compose
 from hearth.schemas.vocabulary import EVERY_STATE, STATE_ID
 from hearth.simulation.rules import DEFAULT, RULES, Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.action_set_3_states import rows_with_further
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
@@ -123,10 +123,10 @@ def _objects(world: World, nodes: set[int]) -> list[int]:
         kept |= waiting
         found = 0
         for i in indices(waiting):
-            found |= rows.containers(world, i)
-            room = rows.room_of(world, i)
+            found |= edge_rows.containers(world, i)
+            room = edge_rows.room_of(world, i)
             found |= 1 << room if room >= 0 else 0
-            found |= rows.bearing(world, i) if seats >> i & 1 else 0
+            found |= edge_rows.bearing(world, i) if seats >> i & 1 else 0
         waiting = found & ~kept
     return sorted(home.ids[i] for i in indices(kept))
 
@@ -194,8 +194,8 @@ def _facts(task: Task, names: dict[int, str]) -> Iterator[str]:
     yield from _blocked(task, names)
     for node, name in names.items():
         i = home.index[node]
-        room = rows.room_of(world, i)
-        if room >= 0 and room != i and not rows.containers(world, i) >> room & 1:
+        room = edge_rows.room_of(world, i)
+        if room >= 0 and room != i and not edge_rows.containers(world, i) >> room & 1:
             yield f"(inside {name} {names[home.ids[room]]})"
 
 

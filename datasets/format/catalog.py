@@ -14,7 +14,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.schemas.yaml_limits import packaged
-from hearth.storage.databases import identifier, limited, open_database, pattern_of, quoted, without_patterns
+from hearth.storage.duckdb_connections import identifier, limited, open_database, pattern_of, quoted, without_patterns
 from hearth.storage.files import replacing, write_bytes
 from hearth.storage.manifest import FORMAT
 

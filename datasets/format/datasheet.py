@@ -5,7 +5,7 @@ from pathlib import Path
 from hearth.datasets.format.ids import OURS
 from hearth.repair.perturbation_strengths import MILD, strength
 from hearth.schemas.yaml_limits import packaged
-from hearth.storage.databases import open_database, pattern_of
+from hearth.storage.duckdb_connections import open_database, pattern_of
 
 STRENGTH = "strength"
 """Field of a manifest: the strength by which programs were augmented; missing in earlier datasets, which are mild."""

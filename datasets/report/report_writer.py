@@ -13,10 +13,10 @@ from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import OWN, Dataset
 from hearth.datasets.format.datasheet import STRENGTH, datasheet
 from hearth.datasets.report.copied_pictures import copy_pictures, pictured
-from hearth.datasets.report.drawn_plans import plans
-from hearth.datasets.report.figures import figures
+from hearth.datasets.report.floor_plan_svg import plans
 from hearth.datasets.report.program_pages import DRAWN, Stories
 from hearth.datasets.report.replays import write_replays
+from hearth.datasets.report.report_tables import figures
 from hearth.datasets.unpacked_sizes import check_unpacked
 from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.diagnostics import HearthError

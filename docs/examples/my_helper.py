@@ -1,5 +1,5 @@
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 
 
@@ -18,7 +18,7 @@ class Helper:
             if not isinstance(literal.target, int) or literal.subject == "agent:0":
                 continue  # hers to do
             target, on = home.index[literal.target], literal.name == "ON"
-            there = rows.bears(world, target) if on else rows.contents(world, target)
+            there = edge_rows.bears(world, target) if on else edge_rows.contents(world, target)
             every, mine = home.instances(literal.subject) & observation.mask, world.agents[self.me].held
             for i in indices(every & mine & ~there):
                 put = do("PutBack" if on else "PutIn", i, target) or do("Open", target)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from hearth.grounding.environments import condition_violation
-from hearth.grounding.environments.partial_environment import PartialEnvironment
+from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Edge

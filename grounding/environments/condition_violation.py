@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from hearth.grounding.environments.default_state import Base
-from hearth.grounding.environments.partial_environment import PartialEnvironment
+from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.grounding.preconditions.conditions import Condition
 from hearth.schemas.graph import Edge
 from hearth.schemas.literals import HANDS, Key

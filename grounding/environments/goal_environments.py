@@ -5,8 +5,8 @@ from functools import reduce
 from operator import or_
 
 from hearth.grounding.environments.default_state import Base
+from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.grounding.environments.object_placement import put_where_it_belongs
-from hearth.grounding.environments.partial_environment import PartialEnvironment
 from hearth.grounding.environments.random_objects import fill
 from hearth.grounding.environments.sampling import TRIES, USUAL, Environment, Size, of_partial, settle_character
 from hearth.grounding.environments.soundness import unsound

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from hearth.grounding.binding import Binding, bind
 from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.grounding.environments.goal_environments import provide
-from hearth.grounding.environments.partial_environment import PartialEnvironment
 from hearth.grounding.environments.sampling import TRIES, Environment, of_partial, unplaceable
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.conditions import Preconditions

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import reduce
 from operator import and_
 
-from hearth.grounding.environments.partial_environment import PartialEnvironment
+from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import CHARACTER, Key

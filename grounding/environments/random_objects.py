@@ -2,7 +2,7 @@
 
 from bisect import bisect_right
 
-from hearth.grounding.environments.partial_environment import PartialEnvironment
+from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.schemas.graph import Node
 from hearth.schemas.vocabulary import FIRST_FILLED_ID, OPPOSITE
 from hearth.simulation.world.edit import Movable

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from hearth.grounding.environments.condition_satisfaction import fulfil
 from hearth.grounding.environments.default_state import Base, prepared
+from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.grounding.environments.object_placement import bind, requirements_of
-from hearth.grounding.environments.partial_environment import PartialEnvironment
 from hearth.grounding.environments.random_objects import fill
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for

@@ -3,7 +3,7 @@
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.vocabulary import EVERY_STATE, STATES
 from hearth.simulation.actions.literal_effects import excluded
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.action_set_3_states import WIDTH, is_wide
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
@@ -80,7 +80,7 @@ def _in_places(world: World, touched: int) -> Failure | None:
         here = inside & home.rooms
         if here & (here - 1):
             return _fault(world, Code.BAD_GRAPH, 1 << i, "one room", "several")
-        if not here and not held >> i & 1 and rows.room_of(world, i) < 0 and not home.on[i]:
+        if not here and not held >> i & 1 and edge_rows.room_of(world, i) < 0 and not home.on[i]:
             return _fault(world, Code.NO_ROOM, 1 << i, "a room", "none")
         holders = inside & ~home.rooms
         if holders and (fault := _in_containers(world, i, holders)):
@@ -91,7 +91,7 @@ def _in_places(world: World, touched: int) -> Failure | None:
 def _in_containers(world: World, i: int, holders: int) -> Failure | None:
     outer = 0
     for holder in indices(holders):
-        outer |= rows.containers(world, holder)
+        outer |= edge_rows.containers(world, holder)
     innermost = holders & ~outer
     if innermost & (innermost - 1):
         return _fault(world, Code.BAD_GRAPH, 1 << i, "one container", "several")
@@ -100,5 +100,5 @@ def _in_containers(world: World, i: int, holders: int) -> Failure | None:
         seen |= frontier
         frontier = 0
         for holder in indices(seen):
-            frontier |= rows.containers(world, holder)
+            frontier |= edge_rows.containers(world, holder)
     return _fault(world, Code.LOOP, 1 << i, "a container", "itself") if seen >> i & 1 else None

@@ -11,7 +11,7 @@ from hearth.grounding.preconditions.conditions import Condition
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import CHARACTER, NAME_OF, Key, Literal
 from hearth.schemas.vocabulary import OPPOSITE
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
@@ -82,8 +82,8 @@ def _had_not_left(context: StartContext) -> Iterator[Condition]:
     was near there, and finding it took no walk.
     """
     index = context.index()
-    places = (rows.on(context.world, index) | rows.inside(context.world, index)) & ~context.world.home.rooms
-    start = rows.on(context.start, index) | rows.inside(context.start, index)
+    places = (edge_rows.on(context.world, index) | edge_rows.inside(context.world, index)) & ~context.world.home.rooms
+    start = edge_rows.on(context.start, index) | edge_rows.inside(context.start, index)
     keys = [
         context.keys[context.world.home.ids[i]]
         for i in indices(places & ~start)
@@ -161,7 +161,7 @@ def _facing(context: StartContext) -> Iterator[Condition]:
 
 def _same_room(context: StartContext) -> Iterator[Condition]:
     key = context.key()
-    room = rows.agent_room(context.world, context.agent)
+    room = edge_rows.agent_room(context.world, context.agent)
     named = context.keys.get(context.world.home.ids[room]) if room >= 0 else None
     if key is None:
         return

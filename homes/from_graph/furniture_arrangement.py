@@ -6,11 +6,11 @@ from itertools import product
 import numpy as np
 
 from hearth.homes.from_graph.geometric_relations import NEAR, gap, seen
-from hearth.homes.from_graph.graph_places import Parts
+from hearth.homes.from_graph.rooms_and_supports import Parts
 from hearth.homes.geometry import DIRECTIONS, Rect, bottom, box_over, facing_from, footprint, top
 from hearth.homes.geometry import turned as extents
 from hearth.homes.object_shapes import Form, form
-from hearth.homes.plans import raster
+from hearth.homes.plans import grid_shapes
 from hearth.homes.plans.floor import BODY, CELL, HEAD
 from hearth.homes.plans.home_shell import Shell, Thing, interior, span, strip
 from hearth.homes.plans.object_packing import contents
@@ -225,6 +225,6 @@ def passable(room: Room, standing: list[Rect], doors: list[Rect]) -> bool:
         if min(rect.width, rect.depth) > 0.1:
             free[cells(rect)] = False
     # A cell more than a body needs: the home's own grid may lie half a cell away from this one.
-    regions = raster.regions(raster.eroded(free, round(BODY / CELL) + 1))
+    regions = grid_shapes.regions(grid_shapes.eroded(free, round(BODY / CELL) + 1))
     beyond = [set(np.unique((regions * outside)[cells(door.inset(-MARGIN))]).tolist()) - {0} for door in doors]
     return not doors or bool(set.intersection(*beyond))

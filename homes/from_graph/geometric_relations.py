@@ -5,7 +5,7 @@ from math import cos, hypot, radians, sqrt
 
 import numpy as np
 
-from hearth.homes.from_graph.graph_places import SHELL, Parts
+from hearth.homes.from_graph.rooms_and_supports import SHELL, Parts
 from hearth.homes.geometry import bottom, footprint, top
 from hearth.homes.plans.home_shell import Thing
 from hearth.homes.relations import CLOSE_WITHIN, VIEW, arrays, direction

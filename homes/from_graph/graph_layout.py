@@ -11,9 +11,9 @@ from math import sqrt
 from hearth.homes.from_graph import room_panels
 from hearth.homes.from_graph.furniture_arrangement import Crowd, furnish
 from hearth.homes.from_graph.geometric_relations import missed, unmet
-from hearth.homes.from_graph.graph_places import Parts
 from hearth.homes.from_graph.room_embedding import guessed
 from hearth.homes.from_graph.room_rectangles import RoomPair, packed
+from hearth.homes.from_graph.rooms_and_supports import Parts
 from hearth.homes.geometry import Rect
 from hearth.homes.plans import home_shell
 from hearth.homes.plans.floor import REACH

@@ -9,7 +9,7 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from hearth.homes.from_graph.graph_places import Parts
+from hearth.homes.from_graph.rooms_and_supports import Parts
 from hearth.homes.geometry import Rect
 from hearth.homes.object_shapes import form
 from hearth.homes.plans.home_shell import Thing, interior

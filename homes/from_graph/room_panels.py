@@ -10,7 +10,7 @@ from math import hypot, sqrt
 import numpy as np
 
 from hearth.homes.from_graph.geometric_relations import SHOWS, WEIGHTS
-from hearth.homes.from_graph.graph_places import Parts
+from hearth.homes.from_graph.rooms_and_supports import Parts
 from hearth.homes.geometry import DIRECTIONS, Rect, box_over, facing_from, footprint, front_of, top
 from hearth.homes.plans.home_shell import WALL, Shell, Thing, interior, span, strip
 from hearth.homes.plans.layout import Layout

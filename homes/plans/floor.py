@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from hearth.homes.geometry import Rect, bottom, footprint
-from hearth.homes.plans import raster
+from hearth.homes.plans import grid_shapes
 from hearth.homes.plans.home_shell import WALL, Shell, Thing, interior, strip
 from hearth.homes.plans.plan import Plan
 from hearth.schemas.diagnostics import HearthError
@@ -53,7 +53,7 @@ class Floor:
 
     def regions(self) -> np.ndarray:
         """Int array: walkable cells that reach each other share a number from 1; others are 0."""
-        return raster.regions(self.walkable)
+        return grid_shapes.regions(self.walkable)
 
     @cached_property
     def main(self) -> np.ndarray:
@@ -124,4 +124,4 @@ def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) 
     for thing in things:
         if stands_on_floor(thing):
             free[cells(footprint(thing.box))] = False
-    return Floor((x0, z0), cell, free, raster.eroded(free, round(BODY / cell)), room_of)
+    return Floor((x0, z0), cell, free, grid_shapes.eroded(free, round(BODY / cell)), room_of)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from hearth.homes.geometry import EPSILON, Rect, box_over, facing_from, footprint
 from hearth.homes.object_shapes import form
-from hearth.homes.plans import home_shell, plan_checks, raster
+from hearth.homes.plans import grid_shapes, home_shell, plan_checks
 from hearth.homes.plans.floor import CELL, Floor, grid
 from hearth.homes.plans.furniture import Furnishing, furnish
 from hearth.homes.plans.home_shell import Shell, Thing, interior, span, strip
@@ -187,7 +187,7 @@ def _character(layout: Layout) -> Thing:
     plan, floor = layout.plan, layout.floor
     names = [room.name for room in plan.rooms]
     number = names.index(plan.character) if plan.character in names else 0
-    space = raster.clearance(floor.free) * (floor.main & (floor.room == number))
+    space = grid_shapes.clearance(floor.free) * (floor.main & (floor.room == number))
     i, j = divmod(int(space.argmax()), space.shape[1])
     x, z = floor.center(i, j)
     width, height, depth = PERSON

@@ -9,7 +9,7 @@ from hearth.kb.tools.graph_and_tables import fill, graph
 from hearth.kb.tools.pddl import domain
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.databases import open_database
+from hearth.storage.duckdb_connections import open_database
 
 
 def export(knowledge: Knowledge, form: str, to: Path | None = None) -> str:

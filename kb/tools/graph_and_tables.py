@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.correction_reasons import Reasons
 from hearth.schemas.row_types import Row
-from hearth.storage.databases import open_database
+from hearth.storage.duckdb_connections import open_database
 
 if TYPE_CHECKING:
     import duckdb

@@ -12,7 +12,7 @@ from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.films.step_order import START
 from hearth.models.interface import Steps
 from hearth.rendering.film.clips import FRAMES, RATE
-from hearth.repair.completion import complete
+from hearth.repair.runnable_predictions import complete
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program

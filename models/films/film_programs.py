@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hearth.grounding.binding import nearest
 from hearth.models.films.clip_data import Instruction
 from hearth.models.interface import Steps
-from hearth.repair.completion import complete
+from hearth.repair.runnable_predictions import complete
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import act
 from hearth.simulation.rules import DEFAULT, Rules

@@ -19,7 +19,7 @@ from hearth.models.films.mask_clip_model import TrainedSeenModel
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
 from hearth.models.model_registry import restore
-from hearth.repair.completion import complete
+from hearth.repair.runnable_predictions import complete
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.scoring.bootstrap import Interval

@@ -23,8 +23,8 @@ from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.devices import device
 from hearth.models.films.clip_batches import clip_batch, rows_of, traits_of
 from hearth.models.films.clip_data import OfFilms
+from hearth.models.films.clip_embedding import ClipReader
 from hearth.models.films.clip_probabilities import ClipProbabilities
-from hearth.models.films.clip_reader import ClipReader
 from hearth.models.films.clip_result_tables import classifier
 from hearth.models.films.film_training_examples import FilmExample, film_examples
 from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel

@@ -14,7 +14,7 @@ from hearth.models.interface import Steps
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.node_features import Places
 from hearth.schemas.vocabulary import RELATION_ID
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.world import World
 
@@ -77,9 +77,11 @@ def _chosen(places: Places, world: World, most: int) -> tuple[int, ...]:
     """Return the character, the rooms, then by how much they matter."""
     home = world.home
     meant = [node for nodes in places.candidates.values() for node in nodes]
-    around = [i for node in meant for i in indices(rows.on(world, node) | rows.inside(world, node) & ~home.rooms)]
-    upon = [i for node in meant for i in indices(rows.bearing(world, node))]
-    beside = [i for node in meant for i in indices(rows.close(world, node))]
+    around = [
+        i for node in meant for i in indices(edge_rows.on(world, node) | edge_rows.inside(world, node) & ~home.rooms)
+    ]
+    upon = [i for node in meant for i in indices(edge_rows.bearing(world, node))]
+    beside = [i for node in meant for i in indices(edge_rows.close(world, node))]
     held = list(indices(world.agents[0].held))
     rest = range(len(home)) if most > MOST else ()
     order = [world.agents[0].index, *indices(home.rooms), *held, *meant, *around, *upon, *indices(home.doors), *beside]
@@ -89,7 +91,10 @@ def _chosen(places: Places, world: World, most: int) -> tuple[int, ...]:
 
 def _edges(world: World, place: dict[int, int]) -> list[tuple[int, int, int]]:
     among = mask_of(place)
-    pairs = [*rows.thing_edges(world, among), *(each for agent in world.agents for each in rows.agent_edges(agent))]
+    pairs = [
+        *edge_rows.thing_edges(world, among),
+        *(each for agent in world.agents for each in edge_rows.agent_edges(agent)),
+    ]
     found = set()
     for source, relation, target in pairs:
         if source in place and target in place:

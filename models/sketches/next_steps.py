@@ -16,7 +16,7 @@ from hearth.models.decoding.next_step_options import Options
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.text_features import MOST
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 
 ROLES = 19
@@ -143,9 +143,9 @@ class NextSteps:
         first, second = (*(self.nodes(self.coming) if self.coming else ()), -1, -1)[:2]
         yield (first,)
         yield (second,)
-        yield (rows.room_of(world, first) if first >= 0 else -1,)
-        yield (rows.closed_container(world, first) if first >= 0 else -1,)
-        yield (rows.room_of(world, second) if second >= 0 else -1,)
+        yield (edge_rows.room_of(world, first) if first >= 0 else -1,)
+        yield (edge_rows.closed_container(world, first) if first >= 0 else -1,)
+        yield (edge_rows.room_of(world, second) if second >= 0 else -1,)
         last = progress.steps[-1:]
         yield self.nodes(last[0])[:1] if last else ()
         yield self.nodes(last[0])[1:] if last else ()
@@ -155,12 +155,18 @@ class NextSteps:
         yield list(dict.fromkeys(later))[:SHOWN]
         earlier = [node for step in progress.steps[-2::-1] for node in self.nodes(step)]
         yield [node for node in dict.fromkeys(earlier) if not self.home.rooms >> node & 1][:SHOWN]
-        yield [rows.room_of(world, node) for node in later[:1]]
-        yield list(indices(rows.on(world, first)))[:1] if first >= 0 and not self.home.characters >> first & 1 else ()
+        yield [edge_rows.room_of(world, node) for node in later[:1]]
+        yield (
+            list(indices(edge_rows.on(world, first)))[:1]
+            if first >= 0 and not self.home.characters >> first & 1
+            else ()
+        )
         yield list(indices(self.me.on))[:1]
-        yield [rows.room_of(world, node) for node in later[1:]]
+        yield [edge_rows.room_of(world, node) for node in later[1:]]
         around = (
-            rows.inside(world, node) & ~self.home.rooms | rows.on(world, node) for node in (first, *later) if node >= 0
+            edge_rows.inside(world, node) & ~self.home.rooms | edge_rows.on(world, node)
+            for node in (first, *later)
+            if node >= 0
         )
         yield [found for mask in around for found in list(indices(mask))[:2]]
         yield list(indices(self.home.rooms))
@@ -172,10 +178,10 @@ class NextSteps:
         home, world = self.home, self.world
         names = _named(self.progress.sketch)
         used = dict.fromkeys(other for name in names for other in self.habits.tools.get(name, ()) if other not in names)
-        room = rows.agent_room(world, self.me)
+        room = edge_rows.agent_room(world, self.me)
         found = []
         for name in list(used)[:TOOLS]:
-            nodes = sorted(indices(home.by_class.get(name, 0)), key=lambda i: rows.room_of(world, i) != room)
+            nodes = sorted(indices(home.by_class.get(name, 0)), key=lambda i: edge_rows.room_of(world, i) != room)
             found += nodes[:2]
         return found
 
@@ -184,11 +190,11 @@ class NextSteps:
         home, world, places = self.home, self.world, self.progress.clues.places
         if not places:
             return []
-        room = rows.agent_room(world, self.me)
+        room = edge_rows.agent_room(world, self.me)
         used = [node for step in (*self.progress.steps, *self.progress.sketch) for node in self.nodes(step)]
         own = {home.classes[node]: node for node in reversed(used)}
         found = [own[name] for name in places if name in own]
         for name in [name for name in places if name not in own][:MOST]:
             nodes = indices(next((home.by_class[n] for n in home.knowledge.same_class(name) if n in home.by_class), 0))
-            found += sorted(nodes, key=lambda i: (rows.room_of(world, i) != room, i))[:1]
+            found += sorted(nodes, key=lambda i: (edge_rows.room_of(world, i) != room, i))[:1]
         return found

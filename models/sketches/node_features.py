@@ -12,7 +12,7 @@ from hearth.models.sketches.candidate_choices import Candidate, Choice
 from hearth.models.sketches.name_numbers import Words
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Step
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
@@ -50,12 +50,12 @@ class Places:
     def __init__(self, world: World, sketch: Sequence[Step], words: Words) -> None:
         self.world, self.words, self.home = world, words, world.home
         self.me = world.agents[0]
-        self.room = rows.agent_room(world, self.me)
+        self.room = edge_rows.agent_room(world, self.me)
         self.objects = used(sketch)
         self.candidates = {use.key: self._candidates(use) for use in self.objects}
         self._nodes: dict[int, tuple[list[int], list[float]]] = {}
         self._rooms = {
-            key: frozenset(rows.room_of(world, node) for node in nodes) for key, nodes in self.candidates.items()
+            key: frozenset(edge_rows.room_of(world, node) for node in nodes) for key, nodes in self.candidates.items()
         }
 
     def _candidates(self, use: Use) -> list[int]:
@@ -72,7 +72,8 @@ class Places:
         names = home.knowledge.same_class(use.key[0])
         mask = next((found for name in names if (found := home.by_class.get(name, 0) & able)), 0)
         rank = {
-            i: (not rows.is_close(world, self.me, i), rows.room_of(world, i) != self.room, i) for i in indices(mask)
+            i: (not edge_rows.is_close(world, self.me, i), edge_rows.room_of(world, i) != self.room, i)
+            for i in indices(mask)
         }
         return sorted(rank, key=rank.__getitem__)[:MOST]
 
@@ -86,27 +87,27 @@ class Places:
         """
         names, own = self._node(node)
         world, chosen = self.world, list(bound.values())
-        room = rows.room_of(world, node)
+        room = edge_rows.room_of(world, node)
         nodes = self.candidates[use.key]
         others = [rooms for key, rooms in self._rooms.items() if key != use.key]
         here = 1 << node
-        rooms = [rows.room_of(world, other) for other in chosen]
+        rooms = [edge_rows.room_of(world, other) for other in chosen]
         beside = [
             float(node in chosen),
             rooms.count(room) / max(1, len(rooms)),
             float(bool(rooms) and rooms[-1] == room),
             float(not rooms),
             sum(room in each for each in others) / max(1, len(others)),
-            float(any(rows.on(world, node) >> o & 1 or rows.inside(world, node) >> o & 1 for o in chosen)),
+            float(any(edge_rows.on(world, node) >> o & 1 or edge_rows.inside(world, node) >> o & 1 for o in chosen)),
             float(any(self._holds(o, here) for o in chosen)),
-            float(any(rows.close(world, node) >> o & 1 for o in chosen)),
+            float(any(edge_rows.close(world, node) >> o & 1 for o in chosen)),
             1 / len(nodes),
-            1 / sum(rows.room_of(world, other) == room for other in nodes),
+            1 / sum(edge_rows.room_of(world, other) == room for other in nodes),
         ]
         return names, own + beside
 
     def _holds(self, node: int, here: int) -> bool:
-        return bool((rows.on(self.world, node) | rows.inside(self.world, node)) & here)
+        return bool((edge_rows.on(self.world, node) | edge_rows.inside(self.world, node)) & here)
 
     def _node(self, node: int) -> tuple[list[int], list[float]]:
         """Return the names and numbers of a node that do not depend on other choices."""
@@ -117,23 +118,30 @@ class Places:
 
     def _names(self, node: int) -> list[int]:
         world, home, word = self.world, self.home, self.words.thing
-        room = rows.room_of(world, node)
-        on, inside = (list(indices(mask)) for mask in (rows.on(world, node), rows.inside(world, node) & ~home.rooms))
-        close = list(indices(rows.close(world, node) & ~home.rooms & ~home.characters))
+        room = edge_rows.room_of(world, node)
+        on, inside = (
+            list(indices(mask)) for mask in (edge_rows.on(world, node), edge_rows.inside(world, node) & ~home.rooms)
+        )
+        close = list(indices(edge_rows.close(world, node) & ~home.rooms & ~home.characters))
         near = sorted({word(home.classes[i]) for i in close})
         names = [node, room, on[0] if on else -1, inside[0] if inside else -1]
         return [word(home.classes[i]) if i >= 0 else 0 for i in names] + [*near[:1], *near[-1:], 0, 0][:2]
 
     def _numbers(self, node: int) -> list[float]:
-        world, room = self.world, rows.room_of(self.world, node)
-        counts = (rows.close(world, node), rows.on(world, node), rows.inside(world, node), rows.bearing(world, node))
+        world, room = self.world, edge_rows.room_of(self.world, node)
+        counts = (
+            edge_rows.close(world, node),
+            edge_rows.on(world, node),
+            edge_rows.inside(world, node),
+            edge_rows.bearing(world, node),
+        )
         return [
             *[float(state >> node & 1) for state in world.states],
             float(room == self.room),
-            float(rows.is_close(world, self.me, node)),
-            float(rows.closed_container(world, node) >= 0),
+            float(edge_rows.is_close(world, self.me, node)),
+            float(edge_rows.closed_container(world, node) >= 0),
             *[float(np.log1p(mask.bit_count())) / 3 for mask in counts],
-            float(bool(rows.facing(world, node))),
+            float(bool(edge_rows.facing(world, node))),
         ]
 
 

@@ -16,7 +16,7 @@ from hearth.models.sketches.sketch_progress import Progress, plain
 from hearth.models.sketches.text_features import AROUND, TextState
 from hearth.schemas.program import Step
 from hearth.simulation.observation import reach
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.states import LYING, SITTING
 
 
@@ -79,7 +79,7 @@ class Offer:
         prepared = [each.step for each in progress.plan[:2]] + [Step(""), Step("")]
         about = [ref.name for ref in prepared[0].objects] + [""]
         done = progress.sketch[progress.next - 1 : progress.next] if progress.next else ()
-        room = rows.agent_room(self.world, self.me)
+        room = edge_rows.agent_room(self.world, self.me)
         return [
             *(word.action(name) for name in before[:3]),
             word.action(self.coming.action if self.coming else ""),
@@ -126,12 +126,12 @@ class Offer:
 
     def _here(self, node: int) -> list[float]:
         bit = 1 << node
-        room = rows.agent_room(self.world, self.me)
+        room = edge_rows.agent_room(self.world, self.me)
         return [
             float(bool(self._close & bit)),
             float(bool(self._faced & bit)),
             float(bool(self.me.held & bit)),
-            float(rows.room_of(self.world, node) == room),
+            float(edge_rows.room_of(self.world, node) == room),
             float(bool(self.home.rooms & bit)),
         ]
 

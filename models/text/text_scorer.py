@@ -16,7 +16,7 @@ from hearth.models.text.text_batches import InputBatch
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.world import World
 
 STAND_IN = 0.5
@@ -114,7 +114,9 @@ class TextScorer:
         agent = world.agents[0]
         for node, name in enumerate(home.classes):
             if best[name] > NEVER / 2:
-                away = 0 if node in used else AWAY * (2 if name in names else not rows.is_close(world, agent, node))
+                away = (
+                    0 if node in used else AWAY * (2 if name in names else not edge_rows.is_close(world, agent, node))
+                )
                 found[node] = best[name] - away
         return found
 

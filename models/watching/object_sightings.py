@@ -13,7 +13,7 @@ from typing import NamedTuple
 from hearth.schemas.literals import AGENT, HOLDS, Literal, Name
 from hearth.simulation.env import Tick
 from hearth.simulation.literal_truth import nodes
-from hearth.simulation.observation import reach
+from hearth.simulation.observation import containment, visible_nodes
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
@@ -102,7 +102,7 @@ def sightings(ticks: Sequence[Tick], predicates: Sequence[Predicate], agent: int
     found: dict[int, list[tuple[int, float]]] = {}
     for number, world in enumerate((ticks[0].before, *(tick.world for tick in ticks))):
         me = world.agents[agent]
-        rest = seen = reach.visible(world, me) & things
+        rest = seen = visible_nodes.visible(world, me) & things
         for place in reversed(range(len(sites))):
             here = sites[place](world, me) & rest
             rest &= ~here
@@ -138,5 +138,5 @@ def _used(world: World, me: Agent) -> int:
 
 
 def _site(relation: str, targets: int) -> Site:
-    at = reach.upon if relation == "ON" else reach.contained
+    at = containment.upon if relation == "ON" else containment.contained
     return lambda world, me: at(world, targets)

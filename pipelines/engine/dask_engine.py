@@ -1,7 +1,7 @@
 """The dask engine: partitions as tasks of a cluster, started on this machine or already running.
 
 The partitions of a lost worker are run again by another. All workers must see the same files: one machine, a shared
-folder, or a dataset in a store (see `stores`).
+folder, or a dataset in a store (see `storage.remote_build_folders`).
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from hearth.storage.folder_exchange import put_in_place, recover, start_from, ti
 from hearth.storage.lock import locked
 from hearth.storage.manifest import NAME, TIMING, Manifest, describe, read_manifest
 from hearth.storage.partitions import Counts, part_path, part_state, rejects_path, write_table
-from hearth.storage.stores import store
+from hearth.storage.remote_build_folders import store
 
 REJECTS = "rejects.parquet"
 

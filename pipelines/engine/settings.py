@@ -42,7 +42,7 @@ class Settings:
         demonstrations: number of programs to picture from above with class masks, step by step.
         time_limit: seconds that a record may take in a stage; 0 for no limit. Records that take longer are tried again
             by the next build. Scanning a packed file may take a sixth of it, and half of it for each megabyte.
-        store: URL of the store of which `out` is a local copy (see `stores`), or "".
+        store: URL of the store of which `out` is a local copy (see `storage.remote_build_folders`), or "".
         revision: the state of the store.
     """
 

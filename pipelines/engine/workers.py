@@ -16,7 +16,7 @@ from hearth.schemas.failures import Code
 from hearth.storage.manifest import read_manifest
 from hearth.storage.parallel import begin, context, end, uninterrupted
 from hearth.storage.partitions import Counts, part_path, rejects_path
-from hearth.storage.stores import store
+from hearth.storage.remote_build_folders import store
 
 AHEAD = 2
 """Partitions assigned to each process, so that the next is ready when the first is complete."""

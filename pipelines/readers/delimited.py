@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from hearth.pipelines.readers.located_texts import text_at
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, fault_of, lines
 from hearth.pipelines.readers.record_ends import RecordEnds
+from hearth.pipelines.readers.texts_with_positions import text_at
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place

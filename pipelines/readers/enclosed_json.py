@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from hearth.kb.language.plan_lines import plan_line
 from hearth.pipelines.readers import json_records
 from hearth.pipelines.readers.field_columns import Asked
-from hearth.pipelines.readers.found_records import holds_program, named
 from hearth.pipelines.readers.json_documents import located
-from hearth.pipelines.readers.located_texts import Located
 from hearth.pipelines.readers.reader_items import Item, opened
+from hearth.pipelines.readers.records_in_json import holds_program, named
 from hearth.pipelines.readers.step_rows import Entry
+from hearth.pipelines.readers.texts_with_positions import Located
 from hearth.schemas.program_boundaries import TITLE
 from hearth.storage.archives import Place, size_of
 

@@ -10,7 +10,7 @@ from hearth.kb.language.action_keys import ACTIONS, INSTANCE, action_key, bare_k
 from hearth.kb.language.composed_steps import class_of
 from hearth.kb.language.program_names import action_of
 from hearth.kb.language.recognition_knowledge import recognition
-from hearth.pipelines.readers.located_texts import Pairs, Text, composed, pairs_of, pieces_of
+from hearth.pipelines.readers.texts_with_positions import Pairs, Text, composed, pairs_of, pieces_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import normal_name

@@ -7,9 +7,9 @@ from typing import Any
 
 import orjson
 
-from hearth.pipelines.readers.located_texts import Located, Pairs
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, opened
 from hearth.pipelines.readers.relaxed_json import strict
+from hearth.pipelines.readers.texts_with_positions import Located, Pairs
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place, size_of

@@ -6,9 +6,9 @@ from contextlib import suppress
 from typing import Any
 
 from hearth.pipelines.readers.json_documents import located, parsed
-from hearth.pipelines.readers.located_texts import Located
 from hearth.pipelines.readers.reader_items import fault_of, pieces
 from hearth.pipelines.readers.relaxed_json import uncommented
+from hearth.pipelines.readers.texts_with_positions import Located
 from hearth.schemas.failures import Code
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject

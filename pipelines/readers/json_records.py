@@ -12,11 +12,9 @@ from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan, is_unmarked
 from hearth.pipelines.readers import natural_language_plans
 from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, lacks
-from hearth.pipelines.readers.found_records import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.json_actions import is_action, step_of
 from hearth.pipelines.readers.json_documents import located, located_document
 from hearth.pipelines.readers.json_elements import located_entries
-from hearth.pipelines.readers.located_texts import Located, Text, pieces_of, texts_in
 from hearth.pipelines.readers.model_outputs import is_message
 from hearth.pipelines.readers.program_text import header
 from hearth.pipelines.readers.reader_items import (
@@ -29,9 +27,11 @@ from hearth.pipelines.readers.reader_items import (
     suffixless,
     worker_hash,
 )
+from hearth.pipelines.readers.records_in_json import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
 from hearth.pipelines.readers.step_texts import Places, numbered, places_of, steps_of
+from hearth.pipelines.readers.texts_with_positions import Located, Text, pieces_of, texts_in
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored

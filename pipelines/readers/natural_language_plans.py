@@ -13,8 +13,8 @@ from hearth.kb.language.unmarked_lines import are_steps, is_order, names_task
 from hearth.kb.language.wrappings import bare, raw_of
 from hearth.pipelines.readers.document_titles import without_document_titles
 from hearth.pipelines.readers.json_elements import located_entries
-from hearth.pipelines.readers.located_texts import Text
 from hearth.pipelines.readers.reader_items import Item, fault_of, lines, record, refused
+from hearth.pipelines.readers.texts_with_positions import Text
 from hearth.pipelines.readers.unmarked_plans import unmarked_blocks
 from hearth.schemas.failures import Code
 from hearth.schemas.program_boundaries import is_sentence

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 from hearth.pipelines.readers import json_records
 from hearth.pipelines.readers.delimited import Layout, Rows, cells_at, layout_of, row_fault
 from hearth.pipelines.readers.field_columns import FieldColumns, Found, guessed, is_condition, is_formula, lacks, rivals
-from hearth.pipelines.readers.found_records import Converted
 from hearth.pipelines.readers.json_actions import is_action
 from hearth.pipelines.readers.program_columns import column_of_steps, is_one_step, reading_of
 from hearth.pipelines.readers.reader_items import Item, refused
+from hearth.pipelines.readers.records_in_json import Converted
 from hearth.pipelines.readers.step_lists import is_count, is_time, number_of, numbered_names, plain_name
 from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
 from hearth.pipelines.readers.step_texts import SAID

@@ -12,12 +12,12 @@ from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import (
     crowd,
     enclosed_json,
-    found_records,
     json_records,
     natural_language_plans,
     program_tables,
     program_text,
     published_dataset,
+    records_in_json,
     release,
     scene_graphs,
     sketches,
@@ -276,7 +276,7 @@ def _form_of_list(path: Place, place: str) -> str:
 def _form_of(value: Any) -> str:
     if not isinstance(value, dict):
         return ""
-    return scene_graphs.NAME if graph_in(value) is not None and not found_records.is_record(value, {}) else DOCUMENT
+    return scene_graphs.NAME if graph_in(value) is not None and not records_in_json.is_record(value, {}) else DOCUMENT
 
 
 TEXTS = "spoken list"

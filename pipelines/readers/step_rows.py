@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 from hearth.pipelines.readers.field_columns import FieldColumns, guessed
 from hearth.pipelines.readers.json_actions import is_action, is_only_action, is_tool_use, step_of
-from hearth.pipelines.readers.located_texts import Located
 from hearth.pipelines.readers.program_columns import is_one_step
 from hearth.pipelines.readers.step_lists import is_count, number_of, plain_name, text_of
+from hearth.pipelines.readers.texts_with_positions import Located
 from hearth.storage.rejects import Reject
 
 MOST_ROWS = 1_000

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 from hearth.kb.language.plan_lines import plan_line
 from hearth.pipelines.readers.json_actions import looks_like_mapping, mapped_steps
-from hearth.pipelines.readers.located_texts import Text, pieces_of
+from hearth.pipelines.readers.texts_with_positions import Text, pieces_of
 
 Places = list[list[int]] | None
 """Positions of the lines of a program's text in the file, as in `hearth.schemas.text_places`."""

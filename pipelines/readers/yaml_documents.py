@@ -9,11 +9,11 @@ import yaml
 
 from hearth.pipelines.readers import json_records
 from hearth.pipelines.readers.field_columns import Asked
-from hearth.pipelines.readers.found_records import holds_program
-from hearth.pipelines.readers.located_texts import text_at, texts_in
 from hearth.pipelines.readers.program_columns import column_of_steps
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, Item, opened, suffixless
+from hearth.pipelines.readers.records_in_json import holds_program
 from hearth.pipelines.readers.step_rows import Entry
+from hearth.pipelines.readers.texts_with_positions import text_at, texts_in
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_limits import LIMITS, LOADER, too_much

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera, follow, top_view
 from hearth.rendering.cameras.viewpoints import home_box
-from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at, standing
+from hearth.rendering.film.execution_keyframes import advanced, check_geometry, scene_at, standing
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
 from hearth.rendering.people.action_poses import Actor, initial_actors
 from hearth.rendering.people.bedding import turned_back
-from hearth.rendering.people.hand_reach import posed
+from hearth.rendering.people.step_hands_and_gaze import posed
 from hearth.rendering.scene.added_furniture import furnished
 from hearth.rendering.scene.door_sweep import Floors
 from hearth.rendering.scene.object_boxes import Places

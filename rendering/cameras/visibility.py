@@ -8,7 +8,8 @@ import numpy as np
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.recognition import shows
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
-from hearth.rendering.film.snapshots import TOP, Keyframe, Trajectory, named_nodes
+from hearth.rendering.film.execution_keyframes import Keyframe, Trajectory, named_nodes
+from hearth.rendering.film.execution_pictures import TOP
 from hearth.rendering.rays.camera_shot import shoot
 from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.graph import EnvironmentGraph

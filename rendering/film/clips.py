@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera
-from hearth.rendering.film.snapshots import AUTO, Trajectory
+from hearth.rendering.film.execution_keyframes import Trajectory
+from hearth.rendering.film.execution_pictures import AUTO
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.modalities import pictures_of
 from hearth.rendering.people.motion import Frame, frames

@@ -8,7 +8,8 @@ from typing import NamedTuple
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.recognition import in_the_way, shows
 from hearth.rendering.cameras.visibility import objects_of
-from hearth.rendering.film.snapshots import AUTO, Trajectory
+from hearth.rendering.film.execution_keyframes import Trajectory
+from hearth.rendering.film.execution_pictures import AUTO
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.people.motion import frames
 from hearth.rendering.rays.fixed_cameras import StillCameras

@@ -20,8 +20,8 @@ from hearth.rendering.cameras.visibility_estimates import (
     too_near,
     values,
 )
+from hearth.rendering.film.execution_keyframes import Trajectory, named_nodes
 from hearth.rendering.film.shot_sequence import States, Worths
-from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
 from hearth.rendering.rays.fixed_cameras import StillCameras
 from hearth.schemas.graph import Box, EnvironmentGraph, Spot

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import home_box
-from hearth.rendering.film.snapshots import TOP, trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
+from hearth.rendering.film.execution_pictures import TOP
 from hearth.rendering.modalities import pictures_of
 from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
 from hearth.schemas.graph import EnvironmentGraph

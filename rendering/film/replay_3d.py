@@ -3,7 +3,7 @@
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.rendering.film.snapshots import Keyframe, check_geometry, trajectory_of
+from hearth.rendering.film.execution_keyframes import Keyframe, check_geometry, trajectory_of
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.packed_shapes import PackedShapes
 from hearth.rendering.scene.scene_preparation import prepared_scene

@@ -14,6 +14,7 @@ from hearth.rendering.cameras.visibility_estimates import (
     Target,
     person,
 )
+from hearth.rendering.film.execution_keyframes import Trajectory
 from hearth.rendering.film.film_moments import (  # noqa: F401 - all of them were here in 0.2
     IN_THE_WAY,
     JUDGED,
@@ -24,7 +25,6 @@ from hearth.rendering.film.film_moments import (  # noqa: F401 - all of them wer
     room_at,
 )
 from hearth.rendering.film.shot_sequence import Acts, States, Worths, best_cut
-from hearth.rendering.film.snapshots import Trajectory
 from hearth.schemas.graph import EnvironmentGraph
 
 SHORTEST = 6

@@ -13,10 +13,11 @@ from hearth.rendering.annotations import camera_of
 from hearth.rendering.arrays import Image
 from hearth.rendering.cameras.camera import Camera, follow, look_at, top_view
 from hearth.rendering.cameras.viewpoints import home_box, kept_inside, room_views
+from hearth.rendering.film.execution_keyframes import Trajectory
+from hearth.rendering.film.execution_pictures import AUTO, TOP
 from hearth.rendering.film.film_moments import room_at
-from hearth.rendering.film.frame_files import FrameFiles, FrameTime
+from hearth.rendering.film.modality_archives import FrameFiles, FrameTime
 from hearth.rendering.film.shots import Planner, Shots
-from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory
 from hearth.rendering.film.video_file import Writer
 from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.action_poses import Actor
@@ -230,7 +231,7 @@ def record(
 ) -> Recorded:
     """Write the videos of one camera into a folder, as `VIEW.webm` and `VIEW.mp4` (thesis 2.4.1).
 
-    Modalities other than `rgb` become files of their own, see `frame_files`.
+    Modalities other than `rgb` become files of their own, see `modality_archives`.
 
     Args:
         trajectory, home, view, size, fps: as in `film`.

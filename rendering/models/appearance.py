@@ -26,7 +26,7 @@ class Look:
         level: height of its supporting surface (a seat, a mattress), metres; 0 for the recipe's own.
         hole: (x0, x1, z0, z1) cut out of its top for a basin, in its own frame.
         ajar: opening share of its doors and drawers when it is OPEN, from 0 to 1.
-        moment: number of the way in which it looks now, if it changes with time (`scene/effects.yaml`).
+        moment: number of the way in which it looks now, if it changes with time (`scene/visible_state_effects.yaml`).
     """
 
     size: Size

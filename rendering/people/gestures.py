@@ -11,8 +11,8 @@ class Gesture:
     """The gesture of an action.
 
     Attributes:
-        hand: what the hands do (hand_reach.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`, `push`,
-            `wear`, `wave`, or "" (nothing but carrying).
+        hand: what the hands do (step_hands_and_gaze.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`,
+            `push`, `wear`, `wave`, or "" (nothing but carrying).
         grip: form of the hand that touches an object, of `GRIPS`.
         motion: of the hands while they act: `rub`, `keys`, or "" (none).
         seconds: for which they act.

@@ -7,10 +7,10 @@ import numpy as np
 
 from hearth.kb.modifiers import value
 from hearth.rendering.people.action_poses import Actor, reachable
-from hearth.rendering.people.body_places import PLACE_OF, at_body
 from hearth.rendering.people.body_pose import Hand, Held
 from hearth.rendering.people.gestures import Gesture
 from hearth.rendering.people.held_objects import hold_of_node
+from hearth.rendering.people.own_body_targets import PLACE_OF, at_body
 from hearth.rendering.people.palm_targets import (
     OTHER,
     SIDES,

@@ -4,16 +4,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from hearth.rendering.film.snapshots import Keyframe, Trajectory
+from hearth.rendering.film.execution_keyframes import Keyframe, Trajectory
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.bedding import Remade
 from hearth.rendering.people.held_objects import held_things
 from hearth.rendering.people.motion_tracks import HOLD, Track, motionless, track
 from hearth.rendering.people.object_arrivals import Arrivals, arrivals
-from hearth.rendering.scene.effects import at_time
 from hearth.rendering.scene.free_poses import Pose
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.visible_state_effects import at_time
 from hearth.schemas.graph import Node
 from hearth.schemas.program import Step
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hearth.homes.plans import raster
+from hearth.homes.plans import grid_shapes
 from hearth.rendering.scene.door_sweep import Floors
 from hearth.rendering.scene.floor_cells import CELL, cells_of, eroded, is_in_the_way
 from hearth.rendering.scene.free_poses import Pose
@@ -169,7 +169,7 @@ def _leaves_ways(place: Place, free: Cells, origin: Spot, floor: FreeFloor) -> b
     left = free.copy()
     left[_cells(place.spot, place.size, origin)] = False
     walkable, before = eroded(left, NARROW), floor.walkable.regions
-    after = raster.regions(walkable)
+    after = grid_shapes.regions(walkable)
     pairs = np.unique(np.stack((before[walkable], after[walkable]), axis=1), axis=0)
     big = [pair for pair in pairs.tolist() if (after == pair[1]).sum() > SPECK]
     return len({pair[0] for pair in big}) == len(big)

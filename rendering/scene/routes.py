@@ -10,7 +10,7 @@ from math import dist
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.homes.plans import raster
+from hearth.homes.plans import grid_shapes
 from hearth.homes.plans.floor import Floor, check_extent
 from hearth.rendering.arrays import Floats
 from hearth.rendering.scene.floor_cells import BODY, CELL, cells_of, eroded, is_in_the_way
@@ -62,7 +62,7 @@ class WalkableFloor:
     @cached_property
     def regions(self) -> NDArray[np.int32]:
         """(columns, rows): cells of `narrow` that join share a number from 1; others are 0."""
-        return raster.regions(self.narrow.floor.walkable)
+        return grid_shapes.regions(self.narrow.floor.walkable)
 
     def region(self, spot: Spot) -> int:
         """Return the number of the region from which one comes to a spot; 0 for none."""

@@ -12,11 +12,11 @@ from hearth.rendering.models.class_appearance import Model, choice_of, model_of
 from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.models.paint import linear
 from hearth.rendering.people.figure import Figure
-from hearth.rendering.scene.effects import light_point, shining
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import LAMP_COLOR, SPILL, Daylight, Light, LinearColor, daylight, lamp, window
 from hearth.rendering.scene.room_shell import OPENINGS, around_openings, hung_doors, walls_of
 from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.visible_state_effects import light_point, shining
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY

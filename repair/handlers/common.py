@@ -10,7 +10,7 @@ from hearth.repair.step_context import RESTING
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.states import LYING, SITTING
 from hearth.simulation.world.world import World
 
@@ -77,17 +77,17 @@ class RepairContext(FailureContext):
 
     def is_close(self, index: int) -> bool:
         """Return whether the character is close to a node."""
-        return rows.is_near(self.world, self.agent, index, self.rules.near_hands)
+        return edge_rows.is_near(self.world, self.agent, index, self.rules.near_hands)
 
     def by_distance(self, things: Iterable[int]) -> list[int]:
         """Things that are close first, then those in the character's room; among equals by index."""
-        room = rows.agent_room(self.world, self.agent)
-        return sorted(things, key=lambda i: (not self.is_close(i), rows.room_of(self.world, i) != room, i))
+        room = edge_rows.agent_room(self.world, self.agent)
+        return sorted(things, key=lambda i: (not self.is_close(i), edge_rows.room_of(self.world, i) != room, i))
 
     def nearest(self, things: Iterable[int]) -> int | None:
         """Return the nearest of some things, out of something closed only where there is no other; None of none."""
         ordered = self.by_distance(things)
-        return min(ordered, key=lambda i: rows.closed_container(self.world, i) >= 0, default=None)
+        return min(ordered, key=lambda i: edge_rows.closed_container(self.world, i) >= 0, default=None)
 
     def does(self, action: str, *objects: ObjectRef) -> Step:
         """Return a new step of the same character."""

@@ -3,7 +3,7 @@
 from hearth.repair.handlers.common import Edit, RepairContext, around, before, removed, replaced
 from hearth.schemas.literals import HOLDS
 from hearth.schemas.program import ObjectRef
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import OPEN
 
@@ -119,13 +119,13 @@ def _cloth(context: RepairContext) -> int | None:
 def _where_it_belongs(context: RepairContext) -> tuple[str, int] | None:
     """(relation, index) of a place that the knowledge allows: close by if there is one, never one that is closed."""
     world, home = context.world, context.world.home
-    room = rows.agent_room(world, context.agent)
+    room = edge_rows.agent_room(world, context.agent)
     found: list[tuple[tuple[bool, bool, int, int], str, int]] = []
     for placement in context.knowledge.placements(home.classes[context.index()]):
         if placement.edge not in ("ON", "INSIDE"):
             continue
         for i in indices(home.by_class.get(placement.destination, 0)):
             if placement.edge == "ON" or not home.properties["CAN_OPEN"] >> i & 1 or world.states[OPEN] >> i & 1:
-                rank = (not context.is_close(i), rows.room_of(world, i) != room, -placement.weight, i)
+                rank = (not context.is_close(i), edge_rows.room_of(world, i) != room, -placement.weight, i)
                 found.append((rank, placement.edge, i))
     return min(found)[1:] if found else None

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from hearth.repair.handlers.common import Edit, Handler, RepairContext, Splice, before, removed
 from hearth.repair.handlers.seats import done_before_seat, stays
 from hearth.simulation.literal_truth import PETS
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 
 
@@ -84,5 +84,5 @@ def places_to_rest(context: RepairContext) -> Iterator[tuple[str, int]]:
 
 
 def _has_room(context: RepairContext, i: int, action: str) -> bool:
-    taken = rows.taking_room(context.world, i, context.rules.made_bed)
+    taken = edge_rows.taking_room(context.world, i, context.rules.made_bed)
     return taken.bit_count() < context.world.home.limit(i, action == "Lie")

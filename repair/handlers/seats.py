@@ -8,7 +8,7 @@ from hearth.repair.step_context import RESTING
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import run
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
@@ -70,9 +70,9 @@ def _is_put(context: RepairContext, thing: ObjectRef, seat: ObjectRef) -> bool:
 
 def _supports(world: World, i: int) -> int:
     """Return the supports of a thing, and the supports of these."""
-    found = rows.on(world, i)
+    found = edge_rows.on(world, i)
     for j in indices(found):
-        found |= rows.on(world, j)
+        found |= edge_rows.on(world, j)
     return found
 
 
@@ -111,7 +111,7 @@ def _walks(context: RepairContext, number: int) -> bool:
     node = step.objects[0].node
     if step.action in context.group("walks") or node is None:
         return True
-    return not rows.is_close(world, world.agents[step.agent], world.home.index[node])
+    return not edge_rows.is_close(world, world.agents[step.agent], world.home.index[node])
 
 
 def _stands_beside(context: RepairContext, taken: int) -> ObjectRef | None:
@@ -127,7 +127,7 @@ def _stands_beside(context: RepairContext, taken: int) -> ObjectRef | None:
         walk = Program(steps=(context.does("Walk", beside),))
         there = run(context.world_before(taken), walk, context.rules).final
         me = there.agents[context.failure.agent]
-        if all(rows.is_close(there, me, i) for i in wanted):
+        if all(edge_rows.is_close(there, me, i) for i in wanted):
             return beside
     return None
 
@@ -156,6 +156,6 @@ def _put_down(context: RepairContext, thing: ObjectRef, at: int) -> Step:
     world = context.world_before(at)
     home, agent = world.home, world.agents[context.failure.agent]
     named = {ref.node for ref in context.program.objects()}
-    near = [i for i in indices(_bed_for(context, thing) or _tables(world)) if rows.is_close(world, agent, i)]
+    near = [i for i in indices(_bed_for(context, thing) or _tables(world)) if edge_rows.is_close(world, agent, i)]
     place = min(near, key=lambda i: (home.ids[i] not in named, i), default=None)
     return context.does("Release", thing) if place is None else context.does("PutBack", thing, context.ref(place))

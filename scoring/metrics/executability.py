@@ -18,7 +18,7 @@ from hearth.scoring.predicted_nodes import bind
 from hearth.scoring.signature import signature
 from hearth.simulation.engine import act, run
 from hearth.simulation.rules import DEFAULT, Rules, suited
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.world import World
 
 SIGNATURE = signature("executable", 3, level="program", empty=0)
@@ -69,7 +69,7 @@ ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code
 """Failures that imply that the effect of a group of actions already holds."""
 
 
-PLACED: dict[str, Callable[[World, int], int]] = {"ON": rows.on, "INSIDE": rows.inside}
+PLACED: dict[str, Callable[[World, int], int]] = {"ON": edge_rows.on, "INSIDE": edge_rows.inside}
 """Relations in which a thing may be put, each with the row of the result.
 
 A repeated action of this kind is an additional step.

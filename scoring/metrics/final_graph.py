@@ -11,7 +11,7 @@ from functools import cache, lru_cache, partial
 
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.nodes import states_of
@@ -139,14 +139,14 @@ def _of_world(world: World) -> View:
 
 
 _READ: tuple[tuple[Direction, Callable[[World, int], int], str, str], ...] = (
-    (("ON", True), rows.on, "on", "worn"),
-    (("ON", False), rows.bears, "worn", "on"),
-    (("INSIDE", True), rows.inside, "inside", "contents"),
-    (("INSIDE", False), rows.contents, "contents", "inside"),
-    (("CLOSE", True), rows.close, "close", "close"),
-    (("CLOSE", False), rows.close, "close", "close"),
-    (("FACING", True), rows.facing, "facing", "faced"),
-    (("FACING", False), rows.faced, "faced", "facing"),
+    (("ON", True), edge_rows.on, "on", "worn"),
+    (("ON", False), edge_rows.bears, "worn", "on"),
+    (("INSIDE", True), edge_rows.inside, "inside", "contents"),
+    (("INSIDE", False), edge_rows.contents, "contents", "inside"),
+    (("CLOSE", True), edge_rows.close, "close", "close"),
+    (("CLOSE", False), edge_rows.close, "close", "close"),
+    (("FACING", True), edge_rows.facing, "facing", "faced"),
+    (("FACING", False), edge_rows.faced, "faced", "facing"),
 )
 """Readers of edges: of edges between things, of a character's own, and of those of characters with the node."""
 

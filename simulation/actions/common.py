@@ -11,7 +11,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.states import OPEN, with_state
 from hearth.simulation.world.world import World
@@ -132,7 +132,7 @@ def need_able(world: World, agent: Agent, o: int, action: str, position: int = 0
 
 def need_close(world: World, agent: Agent, o: int, action: str = "", near_hands: bool = False) -> Failure | None:
     """Refuse what the character is not close to, by the rule `near_hands` or without it."""
-    if rows.is_near(world, agent, o, near_hands) if near_hands else rows.is_close(world, agent, o):
+    if edge_rows.is_near(world, agent, o, near_hands) if near_hands else edge_rows.is_close(world, agent, o):
         return None
     return refuse(world, Code.NOT_CLOSE, "the character close to it", "no CLOSE edge, direct or by one hop", o)
 
@@ -150,7 +150,9 @@ def need_free_hand(world: World, agent: Agent, o: int, action: str = "") -> Fail
     """Refuse when both hands hold something."""
     if not agent.right or not agent.left:
         return None
-    return refuse(world, Code.NO_FREE_HAND, "a free hand", "both hands hold something", o, *rows.held_indices(agent))
+    return refuse(
+        world, Code.NO_FREE_HAND, "a free hand", "both hands hold something", o, *edge_rows.held_indices(agent)
+    )
 
 
 def need_holding(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
@@ -162,7 +164,7 @@ def need_holding(world: World, agent: Agent, o: int, action: str = "") -> Failur
 
 def need_facing(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
     """Refuse what the character does not face."""
-    if rows.is_facing(world, agent, o):
+    if edge_rows.is_facing(world, agent, o):
         return None
     return refuse(world, Code.NOT_FACING, "the character facing it", "no FACING edge, direct or by one hop", o)
 
@@ -185,7 +187,7 @@ def need_state(world: World, code: Code, state: int, o: int) -> Failure | None:
 
 def need_reachable(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
     """Refuse what is inside something closed, naming the container."""
-    container = rows.closed_container(world, o)
+    container = edge_rows.closed_container(world, o)
     if container < 0:
         return None
     return refuse(world, Code.INSIDE_CLOSED, "its container OPEN", "CLOSED", o, container)

@@ -25,7 +25,7 @@ from hearth.simulation.actions.prepared_effects import bound_to, prepared
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
@@ -130,8 +130,8 @@ class _Check:
         names, tools = tools_of(self.condition.formula, world)
         if not tools:
             return replace(refuse(world, code, expected, actual), names=names[:1])
-        here = rows.agent_room(world, agent)
-        return refuse(world, code, expected, actual, min(tools, key=lambda i: (rows.room_of(world, i) != here, i)))
+        here = edge_rows.agent_room(world, agent)
+        return refuse(world, code, expected, actual, min(tools, key=lambda i: (edge_rows.room_of(world, i) != here, i)))
 
 
 def tools_of(formula: Formula, world: World) -> tuple[tuple[str, ...], tuple[int, ...]]:

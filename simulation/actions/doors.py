@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.states import CLOSED
@@ -25,7 +25,7 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
     nobody: the graph does not have the way. Doorways without a door are always open.
     """
     home = world.home
-    start = rows.agent_room(world, agent)
+    start = edge_rows.agent_room(world, agent)
     closed = home.doors & world.states[CLOSED]
     if start < 0 or start == room or not closed:
         return None
@@ -48,7 +48,7 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
 def open_rooms(world: World, agent: Agent) -> int:
     """Return the rooms that no closed door keeps from a character: those for which `blocking` finds nothing."""
     home = world.home
-    start = rows.agent_room(world, agent)
+    start = edge_rows.agent_room(world, agent)
     closed = home.doors & world.states[CLOSED]
     if start < 0 or not closed:
         return home.rooms
@@ -67,7 +67,7 @@ def side(world: World, agent: Agent, door: int, room: int) -> int:
     """Index of the room from which a character comes to a door: `room`, which it is in, if that can be reached; else
     one that it is BETWEEN and that can be, the character's own before others; else `room` again.
     """
-    start = rows.agent_room(world, agent)
+    start = edge_rows.agent_room(world, agent)
     if start < 0:
         return room
     reached, _ = _flood(world, start, world.home.doors & ~world.states[CLOSED])

@@ -18,7 +18,7 @@ from hearth.simulation.actions.common import (
 )
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.moved_edges import INSIDE, add
@@ -28,7 +28,7 @@ from hearth.simulation.world.world import World
 def _need_food(world: World, agent: Agent, o: int, action: str) -> Failure | None:
     """Refuse what is not eatable and bears nothing eatable."""
     eatable = world.home.properties["EATABLE"]
-    if eatable >> o & 1 or rows.bearing(world, o) & eatable:
+    if eatable >> o & 1 or edge_rows.bearing(world, o) & eatable:
         return None
     return refuse(world, Code.NOTHING_TO_EAT, "EATABLE, or something EATABLE on it", "neither", o)
 
@@ -36,7 +36,7 @@ def _need_food(world: World, agent: Agent, o: int, action: str) -> Failure | Non
 def _with_food(s: Situation, action: str) -> int:
     """Food, and the close things that bear some."""
     food = s.home.properties["EATABLE"]
-    return food | mask_of(i for i in indices(s.close & ~food) if rows.bearing(s.world, i) & food)
+    return food | mask_of(i for i in indices(s.close & ~food) if edge_rows.bearing(s.world, i) & food)
 
 
 def _need_knife(world: World, agent: Agent, o: int, action: str) -> Failure | None:
@@ -46,7 +46,7 @@ def _need_knife(world: World, agent: Agent, o: int, action: str) -> Failure | No
 
 
 def _knives(world: World, agent: Agent) -> bool:
-    return any("knife" in world.home.classes[i] for i in rows.held_indices(agent))
+    return any("knife" in world.home.classes[i] for i in edge_rows.held_indices(agent))
 
 
 def pour(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:

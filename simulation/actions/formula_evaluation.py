@@ -14,7 +14,7 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID, RELATIONS
 from hearth.simulation.literal_truth import RELATED
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.affordance import of_kind
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
@@ -41,7 +41,7 @@ class Reading(NamedTuple):
         if not term.function:
             return index
         if term.function == "room":
-            return rows.room_of(self.world, index)
+            return edge_rows.room_of(self.world, index)
         return next((place for thing, place, _ in self.agent.origins if thing == index), -1)
 
     def holds(self, formula: Formula, bound: Bound) -> bool:
@@ -150,15 +150,15 @@ _ASKED: dict[str, Callable[[Reading, int, str], bool]] = {
 
 
 def _same_room(reading: Reading, i: int) -> bool:
-    room = rows.room_of(reading.world, i)
-    return room >= 0 and room == rows.agent_room(reading.world, reading.agent)
+    room = edge_rows.room_of(reading.world, i)
+    return room >= 0 and room == edge_rows.agent_room(reading.world, reading.agent)
 
 
 _FAST: dict[str, Callable[[Reading, int], bool]] = {
-    "close": lambda r, i: rows.is_near(r.world, r.agent, i, r.rules.near_hands),
-    "facing": lambda r, i: rows.is_facing(r.world, r.agent, i),
+    "close": lambda r, i: edge_rows.is_near(r.world, r.agent, i, r.rules.near_hands),
+    "facing": lambda r, i: edge_rows.is_facing(r.world, r.agent, i),
     "free_hand": lambda r, i: not (r.agent.right and r.agent.left),
-    "hidden": lambda r, i: rows.closed_container(r.world, i) >= 0,
+    "hidden": lambda r, i: edge_rows.closed_container(r.world, i) >= 0,
     "holds": lambda r, i: bool(r.agent.held >> i & 1),
     "same_room": _same_room,
 }
@@ -172,10 +172,10 @@ def _held(reading: Reading, part: Literal[Term], variable: str, bound: Bound) ->
 _Row = Callable[[World, int], int]
 
 _ROWS: dict[str, tuple[_Row, _Row, str]] = {
-    "ON": (rows.on, rows.bearing, "on"),
-    "INSIDE": (rows.inside, rows.contents, "inside"),
-    "CLOSE": (rows.close, rows.close, "close"),
-    "FACING": (rows.facing, rows.faced, "facing"),
+    "ON": (edge_rows.on, edge_rows.bearing, "on"),
+    "INSIDE": (edge_rows.inside, edge_rows.contents, "inside"),
+    "CLOSE": (edge_rows.close, edge_rows.close, "close"),
+    "FACING": (edge_rows.facing, edge_rows.faced, "facing"),
 }
 """Readers of a relation: the targets of a thing, its sources, and the field of a character's own targets."""
 
@@ -190,7 +190,7 @@ def _related(reading: Reading, part: Literal[Term], variable: str, bound: Bound)
     i = bound[known.name]
     to, of, field = _ROWS[part.name]
     if world.home.characters >> i & 1:
-        return int(getattr(rows.character(world, i), field)) if outwards else -1
+        return int(getattr(edge_rows.character(world, i), field)) if outwards else -1
     return (to if outwards else of)(world, i) | world.home.characters
 
 

@@ -23,8 +23,8 @@ from hearth.simulation.actions.common import (
 )
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world import moved_edges as kinds
-from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.moved_edges import add, lift
 from hearth.simulation.world.states import LYING, OPEN, SITTING
@@ -45,7 +45,7 @@ def _grab(world: World, number: int, o: int, rules: Rules) -> World:
     agent = world.agents[number]
     place, kind = origins.remembered(world, agent, o, rules)
     bit = 1 << o
-    room = rows.agent_room(world, agent)
+    room = edge_rows.agent_room(world, agent)
     close = agent.close | bit
     memory = agent.origins
     if place >= 0:
@@ -113,7 +113,7 @@ def put_obj_back(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
 def _drop(world: World, number: int, o: int, rules: Rules) -> World:
     """Let go of o where the character stands."""
     agent = world.agents[number]
-    room = rows.agent_room(world, agent)
+    room = edge_rows.agent_room(world, agent)
     after = add(world.moved, (o, kinds.INSIDE, room)) if room >= 0 else world.moved
     freed = _freed(agent, o, agent.close, agent.worn, _forgotten(agent, o))
     return World(world.home, world.states, world.with_agent(number, freed).agents, after)

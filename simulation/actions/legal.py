@@ -13,7 +13,7 @@ from hearth.simulation.actions.common import Action
 from hearth.simulation.actions.consequences import actions as consequent
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
-from hearth.simulation.observation import reach
+from hearth.simulation.observation import reach, visible_nodes
 from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.processes import widened
 from hearth.simulation.rules import DEFAULT, Rules
@@ -102,7 +102,7 @@ def legal(
         world: now.
         agent: number of the agent.
         rules: of the engine.
-        only_visible: answer from the agent's view alone (see `reach.visible` and `as_seen`).
+        only_visible: answer from the agent's view alone (see `visible_nodes.visible` and `as_seen`).
         only_reachable: leave out instructions about nodes behind closed doors or in closed containers, even where the
             action itself would not mind.
         actions: only these; all where None.
@@ -114,7 +114,7 @@ def legal(
         world = widened(world)
     me, keep = world.agent(agent), -1
     if only_visible:
-        keep = reach.visible(world, me)
+        keep = visible_nodes.visible(world, me)
         world = as_seen(world, keep)
     situation = Situation(world, agent, rules)
     if only_reachable:

@@ -10,9 +10,9 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
 from hearth.simulation.world import moved_edges as kinds
+from hearth.simulation.world.edge_rows import Numbered
 from hearth.simulation.world.moved_edges import Moved, unlink_all
-from hearth.simulation.world.overlay import linked, unlinked
-from hearth.simulation.world.rows import Numbered
+from hearth.simulation.world.single_edge_changes import linked, unlinked
 from hearth.simulation.world.world import World
 
 Change = tuple[Literal[Term], tuple[int, ...]]

@@ -6,7 +6,7 @@ from hearth.simulation.actions.common import Action, Masks, need_close, refuse, 
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.motion import positions
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import NOTHING, carry
@@ -39,7 +39,7 @@ def destination(world: World, agent: Agent, o: int, rules: Rules) -> int | Failu
     failure = need_legs(world, agent, o)
     if failure is not None:
         return failure
-    room = rows.room_of(world, o)
+    room = edge_rows.room_of(world, o)
     if rules.doors and world.home.between[o]:
         room = doors.side(world, agent, o, room)
     if room < 0:
@@ -54,7 +54,9 @@ def destination(world: World, agent: Agent, o: int, rules: Rules) -> int | Failu
 def find(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
     """Notice o; a walk to it comes first, and is all there is to it, unless it is near or the character can't walk."""
     agent = world.agents[number]
-    near = (world.home.properties["BODY_PART"] | agent.worn) >> o & 1 or rows.is_near(world, agent, o, rules.near_hands)
+    near = (world.home.properties["BODY_PART"] | agent.worn) >> o & 1 or edge_rows.is_near(
+        world, agent, o, rules.near_hands
+    )
     if not near and not (world.states[SITTING] | world.states[LYING]) & agent.bit:
         return walk(world, number, o, -1, rules)
     failure = need_close(world, agent, o, near_hands=rules.near_hands)
@@ -93,9 +95,9 @@ def arrived(world: World, number: int, o: int, room: int, pose: Pose | None, rul
     elif moved is NOTHING:
         near = home.reach[o]
     else:
-        near = 1 << o | home.properties["BODY_PART"] | (rows.inside(world, o) & ~home.rooms)
+        near = 1 << o | home.properties["BODY_PART"] | (edge_rows.inside(world, o) & ~home.rooms)
         if home.properties["SURFACES"] >> o & 1:
-            near |= rows.bears(world, o)
+            near |= edge_rows.bears(world, o)
     if rules.near != "evolving_graph":
         near |= _characters_near(world, o)
     if pose is not None:
@@ -109,9 +111,9 @@ def _near_today(world: World, o: int) -> int:
     if home.rooms & bit:
         return 0
     opens = home.properties["CAN_OPEN"] & bit
-    near = bit | home.properties["BODY_PART"] | (rows.inside(world, o) & ~home.rooms) | rows.on(world, o)
+    near = bit | home.properties["BODY_PART"] | (edge_rows.inside(world, o) & ~home.rooms) | edge_rows.on(world, o)
     if opens:
-        near |= rows.contents(world, o)
+        near |= edge_rows.contents(world, o)
     for other in world.agents:
         if (other.contents | other.worn) & bit or (opens and other.inside & bit):
             near |= other.bit

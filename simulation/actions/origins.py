@@ -6,8 +6,8 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from hearth.simulation.rules import Rules
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world import moved_edges as kinds
-from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, lowest
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 _RELATIONS = (
-    (kinds.ON, rows.on, attrgetter("worn")),
-    (kinds.INSIDE, rows.inside, attrgetter("contents")),
-    (kinds.CLOSE, rows.close, attrgetter("close")),
+    (kinds.ON, edge_rows.on, attrgetter("worn")),
+    (kinds.INSIDE, edge_rows.inside, attrgetter("contents")),
+    (kinds.CLOSE, edge_rows.close, attrgetter("close")),
 )
 """Relations of an origin in the order of search: ON, INSIDE, CLOSE; among things, then among characters."""
 

@@ -4,7 +4,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Action, Check, Effect, Masks, able, by_rule, checked, close, refuse
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.states import LYING, SITTING, with_state
@@ -13,7 +13,7 @@ from hearth.simulation.world.world import World
 
 def _sit(world: World, number: int, o: int, rules: Rules) -> World:
     """Return the character then faces what the seat faces."""
-    ahead = rows.facing(world, o)
+    ahead = edge_rows.facing(world, o)
     for other in world.agents:
         if other.faced >> o & 1:
             ahead |= other.bit
@@ -35,7 +35,7 @@ def stand_up(world: World, number: int, o: int, _: int, rules: Rules) -> World |
     states[LYING] &= ~agent.bit
     agents = world.agents
     if rules.leaves_seat:
-        left = agent.on & ~rows.seats(world.home)
+        left = agent.on & ~edge_rows.seats(world.home)
         agents = world.with_agent(number, made((*agent[:7], left, *agent[8:]))).agents
     return World(world.home, tuple(states), agents, world.moved)
 
@@ -69,16 +69,18 @@ def _unoccupied(lying: bool, made_bed: bool) -> Check:
     """Fewer things are on the seat or bed than its limit; by the rule `made_bed`, bedding of a bed aside."""
 
     def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
-        taken = rows.taking_room(world, o, made_bed)
+        taken = edge_rows.taking_room(world, o, made_bed)
         limit = world.home.limit(o, lying)
         if taken.bit_count() < limit:
             return None
-        fewer = f"fewer than {limit} on it{' besides bedding' if made_bed and rows.turned_back(world, o) else ''}"
+        fewer = f"fewer than {limit} on it{' besides bedding' if made_bed and edge_rows.turned_back(world, o) else ''}"
         return refuse(world, Code.OCCUPIED, fewer, str(taken.bit_count()), o, *indices(taken))
 
     def mask(s: Situation, action: str) -> int:
         places = indices(s.able(action) & s.close)
-        return mask_of(i for i in places if rows.taking_room(s.world, i, made_bed).bit_count() < s.home.limit(i, lying))
+        return mask_of(
+            i for i in places if edge_rows.taking_room(s.world, i, made_bed).bit_count() < s.home.limit(i, lying)
+        )
 
     return Check(refusal, mask)
 
@@ -93,7 +95,7 @@ def _resting_on(name: str, lying: bool, already: Check, effect: Effect) -> Actio
 
 def _settle(world: World, number: int, o: int, state: int, facing: int, rules: Rules) -> World:
     agent = world.agents[number]
-    before = agent.on & ~rows.seats(world.home) if rules.leaves_seat else agent.on
+    before = agent.on & ~edge_rows.seats(world.home) if rules.leaves_seat else agent.on
     on = before | 1 << o
     settled = made((*agent[:3], facing, *agent[4:7], on, *agent[8:]))
     agents = (settled,) if len(world.agents) == 1 else world.with_agent(number, settled).agents

@@ -17,7 +17,7 @@ from hearth.simulation.actions.common import (
 )
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.states import LYING, ON, SITTING
@@ -28,7 +28,7 @@ def watch(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fa
     """Watch what is in the room and faced; by `rules.watch_needs_on`, what has a switch must be on."""
     agent = world.agents[number]
     failure = need_able(world, agent, o, "Watch")
-    if failure is None and rows.room_of(world, o) != rows.agent_room(world, agent):
+    if failure is None and edge_rows.room_of(world, o) != edge_rows.agent_room(world, agent):
         failure = refuse(world, Code.NOT_IN_ROOM, "in the character's room", "in another", o)
     if failure is None:
         failure = _need_view(world, agent, o)
@@ -54,8 +54,8 @@ def _watchable(s: Situation) -> Masks:
     if s.rules.watch_needs_on:
         mask &= ~s.home.properties["HAS_SWITCH"] | s.states[ON]
     if mask:
-        room = rows.agent_room(s.world, s.me)
-        mask = mask_of(i for i in indices(mask) if rows.room_of(s.world, i) == room)
+        room = edge_rows.agent_room(s.world, s.me)
+        mask = mask_of(i for i in indices(mask) if edge_rows.room_of(s.world, i) == room)
     return some(mask)
 
 

@@ -2,7 +2,7 @@
 
 from functools import cached_property
 
-from hearth.simulation.observation import reach
+from hearth.simulation.observation import reach, visible_nodes
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import mask_of
@@ -35,7 +35,7 @@ class Situation:
     @cached_property
     def hidden(self) -> int:
         """Things inside closed containers."""
-        return reach.hidden(self.world)
+        return visible_nodes.hidden(self.world)
 
     @cached_property
     def walkable(self) -> int:

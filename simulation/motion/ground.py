@@ -10,7 +10,7 @@ import numpy as np
 from hearth.homes.from_graph.layout_from_boxes import measured
 from hearth.homes.geometry import Rect, bottom
 from hearth.homes.object_shapes import form
-from hearth.homes.plans import raster
+from hearth.homes.plans import grid_shapes
 from hearth.homes.plans.floor import HEAD, REACH, Floor, gaps
 from hearth.homes.plans.home_shell import WALL, interior, strip
 from hearth.homes.plans.layout import Layout
@@ -18,7 +18,7 @@ from hearth.schemas.graph import Box, Spot
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 from hearth.simulation.motion.navigation import BODY_RADIUS, Ways, digest_of
 from hearth.simulation.motion.stored_distance_fields import StoredWays
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home, Memo
 from hearth.simulation.world.moved_edges import INSIDE, NOTHING, ON, Moved
@@ -53,7 +53,7 @@ class Ground:
         numbers = [home.index[room.line] for room in layout.plan.rooms]
         here = self.floor.room[self.floor.walkable]
         self.rooms: list[int] = np.where(here < 0, -1, np.asarray(numbers)[here]).tolist()
-        self._room_of = [rows.room_of(start, i) for i in range(len(home))]
+        self._room_of = [edge_rows.room_of(start, i) for i in range(len(home))]
         self._doorways = dict(_doorways(layout, home, self.ways))
         self._stands: dict[int, tuple[int, ...]] = {}
         self._shut: dict[int, tuple[int, ...]] = {0: ()}
@@ -141,7 +141,7 @@ class Ground:
         if doors not in self._numbered:
             free = self.floor.walkable.copy()
             free[tuple(self.ways.cells[list(self.shut(doors))].T)] = False
-            found = raster.regions(free)[self.floor.walkable]
+            found = grid_shapes.regions(free)[self.floor.walkable]
             found[found == 0] = -1 - np.flatnonzero(found == 0)
             self._numbered[doors] = found.tolist()
         return self._numbered[doors]
@@ -229,7 +229,7 @@ class Here:
             found = self.elsewhere
             base = self.ground.home
             for i in indices(_touched(world.moved) & (1 << len(base)) - 1):
-                there = base.on[i] == rows.on(world, i) and base.inside[i] == rows.inside(world, i)
+                there = base.on[i] == edge_rows.on(world, i) and base.inside[i] == edge_rows.inside(world, i)
                 found = found & ~(1 << i) if there and self.ground.box(i) else found | 1 << i
             self._last = world.moved, found
         return found

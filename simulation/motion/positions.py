@@ -11,7 +11,7 @@ from hearth.homes.plans.floor import REACH
 from hearth.schemas.graph import Spot
 from hearth.simulation.motion.ground import Here, ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.pose import Pose
@@ -41,7 +41,7 @@ def placed(world: World, chooser: Random | None = None) -> World:
 
 def _first(world: World, agent: Agent, here: Here, others: list[Spot], chooser: Random | None) -> Pose:
     ground = here.ground
-    room = rows.agent_room(world, agent)
+    room = edge_rows.agent_room(world, agent)
     node = world.home.node(agent.index)
     ways = ground.ways
     in_room = ways.main & (np.asarray(ground.rooms) == room)
@@ -93,11 +93,11 @@ def _place(world: World, moved: int, node: int) -> tuple[int, bool]:
     for _ in range(8):
         if not moved >> node & 1:
             return node, True
-        around = (rows.on(world, node) | rows.inside(world, node)) & ~world.home.rooms & ~(1 << node)
+        around = (edge_rows.on(world, node) | edge_rows.inside(world, node)) & ~world.home.rooms & ~(1 << node)
         if not around:
             break
         node = lowest(around)
-    return rows.room_of(world, node), False
+    return edge_rows.room_of(world, node), False
 
 
 def ends(world: World, here: Here, node: int) -> tuple[int, ...]:

@@ -14,7 +14,7 @@ def as_seen(world: World, mask: int) -> World:
 
     Args:
         world: now.
-        mask: the nodes that are seen, by index (see `reach.visible`).
+        mask: the nodes that are seen, by index (see `visible_nodes.visible`).
     """
     states = tuple([row & mask for row in world.states])
     return World(world.home, states, tuple([_seen(agent, mask) for agent in world.agents]), world.moved)

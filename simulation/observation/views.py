@@ -11,9 +11,9 @@ from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATE_ID
-from hearth.simulation.observation import reach
+from hearth.simulation.observation import visible_nodes
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world import pose as world_pose
-from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 
@@ -119,7 +119,7 @@ def view(
         world: now.
         agent: its number.
         partial: only the things in its room and not inside something closed, and those that it holds or wears (see
-            `reach.visible`); otherwise everything.
+            `visible_nodes.visible`); otherwise everything.
         last_actions: what each agent last tried.
         tick: how many ticks have passed.
 
@@ -127,7 +127,7 @@ def view(
         HearthError: UNKNOWN_AGENT, if the world has no character of that number.
     """
     me = world.agent(agent)
-    mask = reach.visible(world, me) if partial else world.home.everything
+    mask = visible_nodes.visible(world, me) if partial else world.home.everything
     others = tuple(
         pose(world, number, last_actions.get(number), mask)
         for number, other in enumerate(world.agents)
@@ -140,7 +140,7 @@ def pose(world: World, number: int, last: LastAction | None = None, among: int =
     """Return a character's posture, with the faced nodes and supports that are in a set."""
     agent = world.agents[number]
     ids = world.home.ids
-    room = rows.agent_room(world, agent)
+    room = edge_rows.agent_room(world, agent)
 
     def named(mask: int) -> tuple[int, ...]:
         return tuple(ids[i] for i in indices(mask & among))
@@ -152,7 +152,7 @@ def pose(world: World, number: int, last: LastAction | None = None, among: int =
         posture=_posture(world, agent.bit),
         on=named(agent.on),
         facing=named(agent.facing),
-        holding=tuple(ids[i] for i in rows.held_indices(agent)),
+        holding=tuple(ids[i] for i in edge_rows.held_indices(agent)),
         wearing=named(agent.worn),
         place=agent.pose,
         stride=agent.stride,

@@ -10,7 +10,7 @@ from hashlib import blake2b
 from weakref import WeakKeyDictionary
 
 from hearth.schemas.vocabulary import FURTHER_STATES, STATES
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.action_set_3_states import counts_of, is_wide
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
@@ -29,7 +29,7 @@ def digest(world: World) -> str:
     ids = home.ids
     came: set[tuple[object, ...]] = set()
     went: set[tuple[object, ...]] = set()
-    for i, kind, now in rows.difference(world):
+    for i, kind, now in edge_rows.difference(world):
         before = home.rows[kind][i]
         relation, _, outwards = KINDS[kind]
         for found, mask in ((came, now & ~before), (went, before & ~now)):
@@ -69,7 +69,7 @@ def _of_characters(world: World) -> Iterator[tuple[object, ...]]:
     ids = world.home.ids
     for agent in world.agents:
         me = ids[agent.index]
-        for i, relation, j in set(rows.agent_edges(agent)):
+        for i, relation, j in set(edge_rows.agent_edges(agent)):
             # Two characters that are CLOSE each have the edge; it counts once.
             if world.home.characters >> i & 1 and i != agent.index and relation == "CLOSE":
                 continue

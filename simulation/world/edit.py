@@ -11,8 +11,8 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.graph_change import Change
 from hearth.schemas.vocabulary import EVERY_STATE_ID, FIRST_ADDED_ID, OPPOSITE, STATE_ID
+from hearth.simulation.world import edge_rows, placement_fit, single_edge_changes
 from hearth.simulation.world import moved_edges as kinds
-from hearth.simulation.world import overlay, placement_fit, rows
 from hearth.simulation.world.action_set_3_states import counts_of, is_wide, rows_at_start, wide_start, without_node
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
@@ -80,7 +80,7 @@ def edit(
         linked = _linked(world, link, check)
         if isinstance(linked, Failure):
             return linked
-        world = overlay.unlinked(linked, _numbered(linked.home, unlink))
+        world = single_edge_changes.unlinked(linked, _numbered(linked.home, unlink))
         return _with_states(world, set, clear, check)
     except KeyError as error:
         raise _no_node(error) from None
@@ -93,7 +93,7 @@ def apply(world: World, change: Change) -> World:
         HearthError: BAD_GRAPH, when it names a node that there is not.
     """
     try:
-        world = overlay.unlinked(world, _numbered(world.home, change.removed))
+        world = single_edge_changes.unlinked(world, _numbered(world.home, change.removed))
     except KeyError as error:
         raise _no_node(error) from None
     after = edit(world, link=change.added, clear=change.cleared_states, set=change.set_states, check=False)
@@ -154,7 +154,7 @@ def _without_node(world: World, i: int) -> World:
 def _placed(world: World, i: int, relation: str, j: int) -> World:
     """Take i out of where it is and put it there, without asking whether it fits."""
     bit = 1 << i
-    room = rows.room_of(world, j)
+    room = edge_rows.room_of(world, j)
     moved = world.moved
     agents = list(world.agents)
     for number, agent in enumerate(agents):
@@ -171,7 +171,7 @@ def _placed(world: World, i: int, relation: str, j: int) -> World:
         moved = _come_along(agents, i, moved, room)
     else:
         moved = kinds.lift(moved, i, -1)
-    return overlay.linked(World(world.home, world.states, tuple(agents), moved), edges)
+    return single_edge_changes.linked(World(world.home, world.states, tuple(agents), moved), edges)
 
 
 def _come_along(agents: list[Agent], i: int, moved: Moved, room: int) -> Moved:
@@ -194,7 +194,7 @@ def _linked(world: World, edges: Iterable[Edge], check: bool) -> World | Failure
         failure = placement_fit.unfit(world, i, relation, j) if check and relation in ("ON", "INSIDE") else None
         if failure is not None:
             return failure
-        world = overlay.linked(world, [(i, relation, j)])
+        world = single_edge_changes.linked(world, [(i, relation, j)])
     return world
 
 

@@ -8,7 +8,7 @@ from hearth.kb.action_sets import LATEST
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.vocabulary import EVERY_STATE_ID, STATE_ID
 from hearth.simulation.actions.common import refuse
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 
 if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
@@ -75,7 +75,7 @@ def _full(world: World, i: int, j: int) -> Failure | None:
     if not (properties["SITTABLE"] | properties["LIEABLE"]) >> j & 1:
         return None
     limit = max(home.limit(j), home.limit(j, lying=True))
-    taken = (rows.bearing(world, j) & ~(1 << i)).bit_count()
+    taken = (edge_rows.bearing(world, j) & ~(1 << i)).bit_count()
     if taken < limit:
         return None
     return refuse(world, Code.OCCUPIED, f"fewer than {limit} on it", str(taken), j, i)

@@ -1,4 +1,4 @@
-"""The state of a world: all that reading its rows needs (see `rows`)."""
+"""The state of a world: all that reading its rows needs (see `edge_rows`)."""
 
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.home import Home

@@ -10,7 +10,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.graph_change import Change
 from hearth.schemas.vocabulary import EVERY_STATE_ID
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.action_set_3_states import canonical_states, rows_with_further
 from hearth.simulation.world.agent import Agent, replaced
 from hearth.simulation.world.bits import indices
@@ -85,7 +85,7 @@ class World(WorldState):
     @explained
     def edges(self, among: int = -1) -> list[Edge]:
         """Every edge (among these nodes), each once, in no particular order."""
-        return list(rows.edges(self, among))
+        return list(edge_rows.edges(self, among))
 
     @explained
     def changes(self, since: World) -> Change:
@@ -99,7 +99,7 @@ class World(WorldState):
         except AttributeError:
             pass
         memories = tuple((frozenset(agent.origins), agent.pose, agent.stride) for agent in self.agents)
-        self._key = (canonical_states(self), rows.difference(self), tuple(a[:11] for a in self.agents), memories)
+        self._key = (canonical_states(self), edge_rows.difference(self), tuple(a[:11] for a in self.agents), memories)
         return self._key
 
     def __copy__(self) -> World:
@@ -123,4 +123,6 @@ class World(WorldState):
     def holding(self) -> Mapping[int, tuple[int, ...]]:
         """Return the objects that each agent holds, by agent number: node ids, right hand first."""
         ids = self.home.ids
-        return {number: tuple(ids[i] for i in rows.held_indices(agent)) for number, agent in enumerate(self.agents)}
+        return {
+            number: tuple(ids[i] for i in edge_rows.held_indices(agent)) for number, agent in enumerate(self.agents)
+        }

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Set
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.graph_change import Change, Parts, State, difference
 from hearth.schemas.vocabulary import EVERY_STATE
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
@@ -55,7 +55,7 @@ def encode_whole(before: WorldState, after: WorldState, edges: Set[Edge] | None 
 def _parts(world: WorldState, edges: Set[Edge] | None = None) -> Parts:
     ids = world.home.ids
     states = {(ids[i], name) for name, row in zip(EVERY_STATE, world.states, strict=False) for i in indices(row)}
-    return Parts(rows.edges(world) if edges is None else edges, states)
+    return Parts(edge_rows.edges(world) if edges is None else edges, states)
 
 
 def _nodes(home: Home) -> dict[int, Node]:
@@ -118,13 +118,13 @@ def _agent_changes(old: Agent, new: Agent) -> Iterator[EdgeTurn]:
 
 
 KINDS: tuple[tuple[str, Callable[[WorldState, int], int], bool], ...] = (
-    ("ON", rows.on, True),
-    ("ON", rows.bears, False),
-    ("INSIDE", rows.inside, True),
-    ("INSIDE", rows.contents, False),
-    ("CLOSE", rows.close, True),
-    ("FACING", rows.facing, True),
-    ("FACING", rows.faced, False),
+    ("ON", edge_rows.on, True),
+    ("ON", edge_rows.bears, False),
+    ("INSIDE", edge_rows.inside, True),
+    ("INSIDE", edge_rows.contents, False),
+    ("CLOSE", edge_rows.close, True),
+    ("FACING", edge_rows.facing, True),
+    ("FACING", edge_rows.faced, False),
 )
 """Readers of each kind of row (see `moved`), and whether its edges go out from the row's node."""
 

@@ -16,7 +16,7 @@ from hearth.challenges.episode_loop import play as played_by
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.simulation.env import Env
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
 from hearth.simulation.world.states import OPEN
@@ -103,7 +103,7 @@ def test_it_closes_what_it_opened_and_opens_nothing_for_ever(kitchen, seed):
     end = played.ticks[-1].world
     left = list(indices(end.states[OPEN] & ~kitchen.states[OPEN]))
     things = end.home.instances("plate") | end.home.instances("fork")
-    assert sum(not rows.contents(end, i) & things for i in left) <= 1
+    assert sum(not edge_rows.contents(end, i) & things for i in left) <= 1
 
 
 def test_it_leaves_a_container_open_while_more_is_to_go_in(kitchen):

@@ -24,7 +24,7 @@ from hearth.models.watching.goal_inference import GoalInference, TrainedGoalInfe
 from hearth.models.watching.object_sightings import HELD, Layout, Seen, sightings
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.literals import Literal
-from hearth.simulation.observation import reach
+from hearth.simulation.observation import visible_nodes
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
 
@@ -81,7 +81,7 @@ def test_what_is_out_of_sight_is_not_read(knowledge):
     def change(tick):
         """Puts a thing that goals are about and that nobody sees somewhere else, where nobody sees it."""
         world = tick.world
-        mask = reach.visible(world, world.agents[0])
+        mask = visible_nodes.visible(world, world.agents[0])
         unseen = [i for i in indices(world.home.instances("plate") | world.home.instances("wine")) if not mask >> i & 1]
         places = list(hiding_places(world, mask))
         if not unseen or not places:

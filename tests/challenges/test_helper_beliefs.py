@@ -11,7 +11,7 @@ from hearth.agents.goal_space import GoalSpace
 from hearth.agents.human_population import PEOPLE
 from hearth.agents.network_proposals import NetworkProposals
 from hearth.agents.predicate_count_changes import StateChanges
-from hearth.analysis.goal_belief_drawing import drawn
+from hearth.analysis.goal_belief_figure import drawn
 from hearth.analysis.online_inference import calibration, inference
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.challenge_tables import ChallengeData, publish

@@ -11,7 +11,7 @@ import orjson
 import pytest
 
 from hearth.challenges.agent_guard import AgentError, Guarded, refusing
-from hearth.challenges.agent_output import StandardDescriptors, check_descriptors
+from hearth.challenges.agent_standard_streams import StandardDescriptors, check_descriptors
 from hearth.challenges.agent_stderr import MOST_SAID
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.suite_runs import run
@@ -75,7 +75,7 @@ PLAYED = """
 import json, sys
 from pathlib import Path
 from hearth.challenges.agent_guard import AgentError, Guarded
-from hearth.challenges.agent_output import StandardDescriptors
+from hearth.challenges.agent_standard_streams import StandardDescriptors
 from hearth.challenges.episode_agents import load
 
 def played(file):

@@ -19,9 +19,9 @@ from hearth.challenges.household_definition import (
     share_of_goal,
     split_named,
 )
-from hearth.challenges.household_drawing import attempts, drawn_tasks
 from hearth.challenges.household_files import read_tasks, write_tasks
 from hearth.challenges.instruction_reader import read_instruction
+from hearth.challenges.parallel_household_tasks import attempts, drawn_tasks
 from hearth.commands import challenge_household, play
 from hearth.envs.compact_text import IN_SHORT
 from hearth.kb.loading.load import default
@@ -31,7 +31,7 @@ from hearth.schemas.goals import Goal
 from hearth.simulation.env import Env
 from hearth.simulation.goals import Progress
 from hearth.simulation.literal_truth import candidates
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.digest import digest
 
@@ -75,7 +75,7 @@ def test_nothing_that_is_wanted_is_shut_in_a_box_or_basket(every, knowledge):
         for literal, _ in () if task.activity else task.goal:
             some = candidates(literal, world.home)
             for i in indices((some.targets if some.by_target else some.subjects) & movable):
-                assert not rows.inside(world, i) & movable, task.id
+                assert not edge_rows.inside(world, i) & movable, task.id
 
 
 def test_a_start_is_the_same_every_time(every, knowledge):

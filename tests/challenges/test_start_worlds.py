@@ -14,7 +14,7 @@ from hearth.schemas.failures import Code
 from hearth.simulation.goals import Progress
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.positions import ends
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.digest import digest
 
@@ -55,7 +55,7 @@ def test_all_things_are_at_furniture_that_can_be_walked_to(tasks):
         home, here = world.home, ground_of(world.home)
         for name in WAH.grammar.most_of:
             for i in indices(home.instances(name) & home.everything):
-                places = (rows.on(world, i) | rows.inside(world, i)) & ~home.rooms
+                places = (edge_rows.on(world, i) | edge_rows.inside(world, i)) & ~home.rooms
                 assert places.bit_count() == 1
                 (place,) = indices(places)
                 assert home.classes[place] not in WAH.never_at
@@ -66,7 +66,7 @@ def test_agents_stand_at_places_in_different_rooms(tasks):
     for _, world in tasks:
         assert [agent.stride for agent in world.agents] == list(WAH.strides)
         assert all(agent.pose is not None and not agent.held for agent in world.agents)
-        assert len({rows.agent_room(world, agent) for agent in world.agents}) == len(world.agents)
+        assert len({edge_rows.agent_room(world, agent) for agent in world.agents}) == len(world.agents)
 
 
 def test_equal_seeds_give_equal_worlds_and_others_differ(knowledge):

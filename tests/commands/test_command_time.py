@@ -69,7 +69,7 @@ from contextlib import suppress
 
 from hearth.commands.bounded_process import in_time
 from hearth.schemas.diagnostics import HearthError
-from hearth.storage.databases import open_database
+from hearth.storage.duckdb_connections import open_database
 from hearth.storage.parallel import spread
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from hearth.cli import app
-from hearth.commands.run_additions import additions, names_of
+from hearth.commands.home_changes_before_run import additions, names_of
 from hearth.grounding.grounded_run import LEAST, as_given, attempt
 from hearth.repair.remedies import stop_reason
 from hearth.schemas.failures import Code

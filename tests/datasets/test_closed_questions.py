@@ -17,7 +17,7 @@ import pytest
 from hearth.datasets.dataset import Dataset
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.databases import open_database
+from hearth.storage.duckdb_connections import open_database
 
 SECRET = "kept from strangers"
 

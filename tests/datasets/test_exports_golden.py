@@ -14,7 +14,7 @@ from golden_files import compare, short
 
 import hearth
 from hearth.datasets.export.formats import FORMATS, export
-from hearth.datasets.report.drawn_plans import draw
+from hearth.datasets.report.floor_plan_svg import draw
 from hearth.datasets.report.report_writer import write_report
 from hearth.homes import library
 

@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 import pytest
 
 import hearth
-from hearth.datasets.report.drawn_plans import draw
-from hearth.datasets.report.figures import figures
+from hearth.datasets.report.floor_plan_svg import draw
+from hearth.datasets.report.report_tables import figures
 from hearth.datasets.report.report_writer import write_report
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Node

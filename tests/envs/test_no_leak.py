@@ -17,7 +17,7 @@ from hearth.envs.answer_forms import read_answer
 from hearth.envs.compact_text import compact, wanted_nodes
 from hearth.envs.json_observations import observation
 from hearth.envs.text_agent import description, menu, plain
-from hearth.envs.text_protocols import protocol
+from hearth.envs.text_protocol_settings import protocol
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

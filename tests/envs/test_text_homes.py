@@ -13,7 +13,7 @@ from hearth.envs.answer_forms import command_line, read_answer
 from hearth.envs.rewards import Rewards
 from hearth.envs.session import opening
 from hearth.envs.text_homes import SeededTask, TextHome, TextHomes
-from hearth.envs.text_protocols import PROTOCOLS, protocol
+from hearth.envs.text_protocol_settings import PROTOCOLS, protocol
 from hearth.homes import library
 from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene

@@ -11,7 +11,7 @@ from hearth.repair.step_context import circumstances
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import DEFAULT
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 
 BED = ("bed", 1)
@@ -24,7 +24,7 @@ def program(*steps):
 
 def on_bed(world, bound):
     seat = next(ref.node for ref in bound.objects() if ref.name == "bed")
-    return sorted(world.home.classes[i] for i in indices(rows.bearing(world, world.home.index[seat])))
+    return sorted(world.home.classes[i] for i in indices(edge_rows.bearing(world, world.home.index[seat])))
 
 
 @pytest.mark.parametrize("action", ["Lie", "Sit"])

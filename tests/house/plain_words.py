@@ -72,7 +72,7 @@ _CHECKOUT = "the name that a reader in a checkout can type"
 ALLOWED: dict[tuple[str, str], str] = {
     ("README.md", "python cli.py"): _CHECKOUT,
     ("cli.py", "python cli.py"): _CHECKOUT,
-    ("commands/program_name.py", "python cli.py"): _CHECKOUT,
+    ("commands/command_line_name.py", "python cli.py"): _CHECKOUT,
     ("analysis/synthesis.py", "told"): "a key of grammars of 0.1",
     ("analysis/synthesis.yaml", "what as a noun"): _PHRASE,
     ("commands/film_output.py", "beside"): "the name of a published file",

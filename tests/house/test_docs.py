@@ -71,7 +71,7 @@ def test_every_module_has_a_page_and_a_line(pages):
 def test_pages_for_all_installations_name_the_command_that_all_have():
     pages = [*(ROOT / "docs").rglob("*.md"), *(ROOT / "web/templates").rglob("*.html")]
     pages += [*(ROOT / "commands").glob("*.py"), ROOT / "kb/README.md", *(ROOT / "data_raw").rglob("README.md")]
-    checked = [page for page in pages if page.name != "program_name.py"]
+    checked = [page for page in pages if page.name != "command_line_name.py"]
     assert not [page for page in checked if "python cli.py" in page.read_text("utf-8")]
 
 

@@ -19,7 +19,7 @@ APART = shutil.ignore_patterns(".*", "*.egg-info", "__pycache__", "build", "dist
 
 @pytest.fixture(scope="module")
 def followed(module):
-    return module("docs/hooks/followed.py")
+    return module("docs/hooks/documentation_commands.py")
 
 
 @pytest.mark.slow
@@ -44,7 +44,7 @@ def test_a_chapter_of_the_tutorial_ends_in_a_picture_of_its_commands(followed):
         shown = followed.pictures(page)
         assert shown and page.read_text("utf-8").rstrip().endswith(f'"{shown[-1][1]}")'), page.stem
         assert all(file.is_file() for file, _ in shown), (
-            "make it with: python docs/hooks/followed.py docs/tutorial/*.md"
+            "make it with: python docs/hooks/documentation_commands.py docs/tutorial/*.md"
         )
         assert len(page.read_text("utf-8").split()) < 350, page.stem
 

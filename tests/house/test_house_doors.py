@@ -6,7 +6,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 APART = {".venv", "tests", "benchmarks", "docs", "node_modules", "site"}
-DOOR = "storage/databases.py"
+DOOR = "storage/duckdb_connections.py"
 
 SOURCES = sorted(path for path in ROOT.rglob("*.py") if not APART & {*path.relative_to(ROOT).parts})
 

@@ -25,7 +25,7 @@ RECOGNISES = {
 
 NAMED = {
     "challenges/household.py": "tasks that are named by their ids alone",
-    "challenges/household_runs.py": "published tasks, which are defined with our knowledge",
+    "challenges/household_as_challenge.py": "published tasks, which are defined with our knowledge",
     "challenges/task_files.py": "published tasks, which are defined with our knowledge",
     "kb/language/plans_in_words.py": "an entry point that works without a knowledge",
     "challenges/named_task_envs.py": "tasks that `gym.make` names",

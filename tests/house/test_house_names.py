@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 OURS = {
     "storage/partitions.py": 2,  # numbers of parts
     "storage/url_fetching.py": 1,  # the user's number, and a digest
-    "storage/stores.py": 1,  # the user's number
-    "storage/databases.py": 1,  # numbers of a process and its databases
+    "storage/remote_build_folders.py": 1,  # the user's number
+    "storage/duckdb_connections.py": 1,  # numbers of a process and its databases
 }
 """The number of joins of a path and a made-up name in each file whose made-up names are numbers and digests of ours."""
 

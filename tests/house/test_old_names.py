@@ -25,7 +25,7 @@ NAMES = {
 }
 GONE = {
     "kb.language.plan_lines": {"header"},  # `header_of(lines)`, of lines that are read already
-    "pipelines.readers.ours": {"is_record"},  # in `found_records`
+    "pipelines.readers.ours": {"is_record"},  # in `records_in_json`
     "rendering.cameras.sight": {"unobstructed"},
     "schemas.libraries": {"SET_UP"},
     "scoring.dataset_scores": {"read_line"},  # `scoring.line_reader`

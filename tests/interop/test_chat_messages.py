@@ -15,7 +15,7 @@ from hearth.challenges.task_files import suite, write
 from hearth.commands.challenge_export import export as command
 from hearth.envs.action_codes import played
 from hearth.envs.text_homes import TextHome
-from hearth.envs.text_protocols import protocol
+from hearth.envs.text_protocol_settings import protocol
 from hearth.envs.text_worlds import Play, begun, commanded, observed, seen
 from hearth.interop import chat_messages
 from hearth.interop.chat_messages import TWO, UNSEEN, messages

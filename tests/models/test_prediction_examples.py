@@ -12,7 +12,7 @@ from hearth import cli
 from hearth.analysis.prediction_examples import examples_page, prediction_examples, spread_over
 from hearth.models.prediction_files import write
 from hearth.models.text_examples import examples
-from hearth.rendering.film import snapshots
+from hearth.rendering.film import execution_keyframes
 from hearth.scoring.dataset_scores import score_given
 from hearth.scoring.line_sequences import steps_of
 from hearth.scoring.metrics.lcs import LcsScore
@@ -59,8 +59,8 @@ def test_pictures_are_of_the_home_as_built_and_what_its_environment_moves(parted
     """Things that an environment moves are found by comparing its graph with the home's own."""
     pytest.importorskip("open3d")
     asked = []
-    whole = snapshots.trajectory_of
-    monkeypatch.setattr(snapshots, "trajectory_of", lambda *given: asked.append(given) or whole(*given))
+    whole = execution_keyframes.trajectory_of
+    monkeypatch.setattr(execution_keyframes, "trajectory_of", lambda *given: asked.append(given) or whole(*given))
     list(prediction_examples(parted, score_given(parted, given), 2, pictures=1))
     ((ran, graph, _),) = asked
     home = parted.home(ran.worlds[0].home.name)

@@ -11,8 +11,8 @@ import pytest
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers import delimited
-from hearth.pipelines.readers.located_texts import pieces_of, text_at
 from hearth.pipelines.readers.record_ends import RecordEnds
+from hearth.pipelines.readers.texts_with_positions import pieces_of, text_at
 from hearth.schemas.diagnostics import HearthError
 
 MOST_GROWTH = 2.6

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from hearth.commands import inputs
 from hearth.kb.loading.load import default
-from hearth.pipelines.readers.located_texts import Text, text_at
+from hearth.pipelines.readers.texts_with_positions import Text, text_at
 from hearth.storage.rejects import Reject
 
 BAD = ("Fly to moon", "[Fly] <bed> (1)", "[Walk] <piano-forte-x> (1)", "[Walk <bed> (1)", 'Say "qua" to é zzyx\tnow')

@@ -9,8 +9,8 @@ import hearth
 from hearth import cli
 from hearth.analysis.augmentation_results import figures
 from hearth.datasets.report.report_writer import write_report
+from hearth.pipelines.engine.option_presets import tiered
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.tiers import tiered
 from hearth.repair.perturbation_strengths import STRENGTHS_FILE, load_strengths
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.files import read_json

@@ -8,7 +8,7 @@ import pytest
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.models.blanket import EMPTY, drape
 from hearth.rendering.models.paint import Paint
 from hearth.rendering.people.bedding import OPENED, SPREAD, Remade, drawn, edge, turned_back

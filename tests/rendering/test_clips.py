@@ -16,7 +16,7 @@ from hearth.kb.loading.load import default
 pytest.importorskip("open3d", exc_type=ImportError)
 
 from hearth.rendering.film import clips
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.modalities import render
 from hearth.rendering.people.motion import frames

@@ -11,8 +11,9 @@ pytest.importorskip("open3d")
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.rendering.film.frame_files import pictures_in
-from hearth.rendering.film.snapshots import snapshots, trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
+from hearth.rendering.film.execution_pictures import snapshots
+from hearth.rendering.film.modality_archives import pictures_in
 from hearth.rendering.film.video import film, record
 from hearth.rendering.modalities import MODALITIES, PICTURES
 from hearth.schemas.diagnostics import HearthError

@@ -16,10 +16,10 @@ from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.cameras.recognition import in_the_way, recognition, shows
 from hearth.rendering.cameras.viewpoints import room_views
 from hearth.rendering.cameras.visibility import seen_as
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.film.film_measures import film_quality
 from hearth.rendering.film.shot_sequence import Acts, best_cut
 from hearth.rendering.film.shots import Planner, Verified
-from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.rays.camera_shot import shoot

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.people.motion import frames
 from hearth.rendering.people.object_arrivals import FASTEST, LEAST, Arrivals
 from hearth.rendering.scene.scene import Scene

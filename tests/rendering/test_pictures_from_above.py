@@ -15,7 +15,7 @@ from hearth.kb.loading.load import default
 pytest.importorskip("open3d", exc_type=ImportError)
 
 from hearth.rendering.film import pictures_from_above
-from hearth.rendering.film.snapshots import snapshots
+from hearth.rendering.film.execution_pictures import snapshots
 from hearth.rendering.scene.home_geometry import with_geometry
 
 TEXT = "Rest\nSit down.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n[StandUp]\n"

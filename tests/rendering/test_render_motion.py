@@ -11,8 +11,8 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.film.player import page
-from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import film, record, times
 from hearth.rendering.film.video_file import Writer
 from hearth.rendering.people.motion import frames, spans

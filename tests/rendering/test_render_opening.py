@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.model_recipes import RECIPES
 from hearth.rendering.people.motion import OPENING, frames, spans, swinging

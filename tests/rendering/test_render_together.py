@@ -10,7 +10,7 @@ pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.visibility import shares, tick_visibilities
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.film.video import CameraSelector, agent_of
 from hearth.rendering.people.motion import frames, spans
 from hearth.schemas.diagnostics import HearthError

@@ -9,8 +9,8 @@ import pytest
 from hearth.grounding.grounded_run import attempt
 from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default
+from hearth.rendering.film.execution_keyframes import keyframes
 from hearth.rendering.film.replay_3d import home_shapes, run_shapes
-from hearth.rendering.film.snapshots import keyframes
 from hearth.rendering.scene.instances import own_mesh, placed
 from hearth.rendering.scene.packed_shapes import UNIT, PackedShapes
 from hearth.rendering.scene.scene_preparation import prepared_scene

@@ -8,7 +8,7 @@ pytest.importorskip("open3d")
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
 from hearth.rendering.people.action_poses import INTO
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.graph import Box, Node

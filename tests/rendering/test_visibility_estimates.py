@@ -15,8 +15,8 @@ from hearth.rendering.cameras.visibility_estimates import AT_WORK, Obstacles, ah
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model
 from hearth.rendering.people.action_poses import Actor
-from hearth.rendering.people.body_places import at_body
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.own_body_targets import at_body
 from hearth.rendering.people.palm_targets import with_aims
 from hearth.rendering.people.random_people import person as body_of
 from hearth.rendering.scene.instances import Thing

@@ -26,7 +26,7 @@ from hearth.repair.step_context import circumstances, lost
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import Execution, run
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 
@@ -161,7 +161,7 @@ def test_nearly_all_pairs_of_the_corpus_are_repaired():
 def things_on(seat: int, execution: Execution, tick: int, but: set[int]) -> list[str]:
     """Return the classes of things on a seat before a tick that take room and can be carried, some nodes left out."""
     home, world = execution.final.home, execution.worlds[tick]
-    carried = rows.taking_room(world, home.index[seat]) & home.able("Grab") & ~home.characters
+    carried = edge_rows.taking_room(world, home.index[seat]) & home.able("Grab") & ~home.characters
     return [home.classes[i] for i in indices(carried) if home.ids[i] not in but]
 
 

@@ -11,7 +11,7 @@ from hearth.homes import library
 from hearth.kb.action_grammar import check
 from hearth.kb.loading.load import default
 from hearth.repair.augmentation import Augmented, Options, augment
-from hearth.repair.completion import complete
+from hearth.repair.runnable_predictions import complete
 from hearth.repair.sketch import sketch
 from hearth.repair.sketch_features import StepFeatures, features
 from hearth.repair.sketch_model import shipped

@@ -20,7 +20,7 @@ from hearth.simulation.engine import act, run, tick
 from hearth.simulation.process_plan import planned
 from hearth.simulation.processes import advanced, seen, widened
 from hearth.simulation.rules import CONSEQUENCES, DEFAULT
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -347,7 +347,7 @@ def test_what_is_in_what_one_carries_comes_along():
     done = ran(world, ids, "Grab cup", "Walk table", "PutBack cup table").final
     cup, apple = (done.home.index[ids[name]] for name in ("cup", "apple"))
     inside = {e.target for e in done.edges() if e.source == ids["apple"] and e.relation == "INSIDE"}
-    assert inside == {ids["cup"]} and rows.room_of(done, apple) == rows.room_of(done, cup)
+    assert inside == {ids["cup"]} and edge_rows.room_of(done, apple) == edge_rows.room_of(done, cup)
     assert not isinstance(act(done, bound_step("Grab", [world.home.node(apple)]), CONSEQUENCES), Failure)
     by_set_2 = run(world, Program(steps=tuple(bound_step("Grab", [world.home.node(cup)]) for _ in range(1)))).final
     assert not [e for e in by_set_2.edges() if e.target == ids["cup"] and e.relation == "INSIDE"]

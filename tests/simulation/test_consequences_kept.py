@@ -16,8 +16,8 @@ from hearth.simulation.world.action_set_3_states import counts_of
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.edit import edit
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.snapshot import export, restore
 from hearth.simulation.world.world import World
+from hearth.simulation.world.world_json import export, restore
 
 
 def wandered(seed: int, steps: int = 12) -> World:

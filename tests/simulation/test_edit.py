@@ -14,7 +14,7 @@ from hearth.simulation.engine import act
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.observation import reach
 from hearth.simulation.rules import DEFAULT
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.derived_homes import Movable
 from hearth.simulation.world.edit import added_nodes, apply, edit, extended, free_id
 from hearth.simulation.world.home import Home
@@ -189,15 +189,17 @@ def test_edges_and_states_come_and_go_one_by_one(seed):
             world, states = edit(world, clear=[(node_id, state)]), states - {(node_id, state)}
         assert facts(world) == (edges, states), edge
     anew = World.start(Home.from_graph(world.graph(), "", default()))
-    assert [rows.room_of(world, i) for i in range(len(ids))] == [rows.room_of(anew, i) for i in range(len(ids))]
+    assert [edge_rows.room_of(world, i) for i in range(len(ids))] == [
+        edge_rows.room_of(anew, i) for i in range(len(ids))
+    ]
 
 
 def test_what_was_unlinked_from_a_room_is_no_longer_in_it():
     world = World.start(kitchen())
     alone = edit(world, unlink=[Edge(6, "INSIDE", 2)])
-    assert (rows.room_of(alone, 5), rows.room_of(alone, 1)) == (-1, 1)
+    assert (edge_rows.room_of(alone, 5), edge_rows.room_of(alone, 1)) == (-1, 1)
     lower = edit(world, link=[Edge(6, "INSIDE", 1)])
-    assert rows.room_of(lower, 5) == 0
+    assert edge_rows.room_of(lower, 5) == 0
     assert reach.walkable(alone, alone.agents[0], False) >> 5 & 1 == 0
 
 

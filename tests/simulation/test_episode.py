@@ -23,8 +23,8 @@ from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.edit import edit
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.snapshot import export, restore
 from hearth.simulation.world.world import World
+from hearth.simulation.world.world_json import export, restore
 
 TICKS = 60
 

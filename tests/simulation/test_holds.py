@@ -22,7 +22,8 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
 from hearth.simulation.goals import Progress
 from hearth.simulation.literal_truth import BINARY, UNARY, candidates, holds
-from hearth.simulation.observation.reach import in_room, out_of_sight
+from hearth.simulation.observation.containment import in_room
+from hearth.simulation.observation.visible_nodes import out_of_sight
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World

@@ -14,8 +14,8 @@ from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.engine import act, run
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.snapshot import export, restore
 from hearth.simulation.world.world import World
+from hearth.simulation.world.world_json import export, restore
 
 law = settings(derandomize=True, deadline=None, max_examples=60)
 

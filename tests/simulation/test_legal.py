@@ -12,10 +12,10 @@ from hearth.simulation.actions import appliances, cleaning, clothes, food, hands
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
-from hearth.simulation.observation import reach
+from hearth.simulation.observation import reach, visible_nodes
 from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.rules import DEFAULT, REPLAY
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.edit import edit
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -67,7 +67,7 @@ def test_only_visible_and_only_reachable_keep_what_is_seen_and_reached(seed):
     rng = random.Random(seed)
     world, _ = some_world(rng, 2, DEFAULT)
     me = world.agents[0]
-    seen, near = reach.visible(world, me), reach.reachable(world, me)
+    seen, near = visible_nodes.visible(world, me), reach.reachable(world, me)
     index = world.home.index
     limited = (({"only_visible": True}, seen, as_seen(world, seen)), ({"only_reachable": True}, near, world))
     for limits, mask, of in limited:
@@ -100,8 +100,8 @@ def test_masks_agree_with_questions_about_one_node(seed):
     rng = random.Random(seed)
     world, nodes = some_world(rng, 1 + seed % 2, DEFAULT)
     agent = world.agents[0]
-    close, facing, hidden = reach.close_to(world, agent), reach.faced_by(world, agent), reach.hidden(world)
+    close, facing, hidden = reach.close_to(world, agent), reach.faced_by(world, agent), visible_nodes.hidden(world)
     for i in range(len(nodes)):
-        assert bool(close >> i & 1) == rows.is_close(world, agent, i)
-        assert bool(facing >> i & 1) == rows.is_facing(world, agent, i)
-        assert bool(hidden >> i & 1) == (rows.closed_container(world, i) >= 0)
+        assert bool(close >> i & 1) == edge_rows.is_close(world, agent, i)
+        assert bool(facing >> i & 1) == edge_rows.is_facing(world, agent, i)
+        assert bool(hidden >> i & 1) == (edge_rows.closed_container(world, i) >= 0)

@@ -36,8 +36,8 @@ def watched() -> tuple[dict[str, Any], dict[str, Any]]:
 
 def believed(path: Path) -> Any:
     """Return the helper's beliefs, as they are printed and drawn."""
-    from hearth.analysis.episode_drawing import episode_of, narrated, ticks_of
-    from hearth.analysis.goal_belief_drawing import drawn
+    from hearth.analysis.episode_figure import episode_of, narrated, ticks_of
+    from hearth.analysis.goal_belief_figure import drawn
     from hearth.analysis.online_inference import calibration
     from hearth.challenges.helper_beliefs import beliefs
 

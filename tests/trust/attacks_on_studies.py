@@ -20,7 +20,7 @@ from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.names import inside
 from hearth.studies.films_to_judge import JudgedFilm, read_films
-from hearth.studies.judged_film_files import film_path
+from hearth.studies.judged_film_recording import film_path
 from hearth.studies.programs_to_judge import program_of
 from hearth.studies.simulated_study import simulated_study
 from hearth.studies.study_file import read_study, study_of

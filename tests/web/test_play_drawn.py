@@ -8,7 +8,7 @@ from hearth.challenges.published_tasks import tasks
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.world.world import World
-from hearth.web.play.drawn_games import DrawnGame, model_key
+from hearth.web.play.game_scene_3d import DrawnGame, model_key
 from hearth.web.play.games import Game
 from hearth.web.play.play_trials import trial
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 from web.playing import Player, alone, begun
 
-from hearth.analysis.episode_drawing import ticks_of
+from hearth.analysis.episode_figure import ticks_of
 from hearth.challenges.episode_films import execution_of
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify
 from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default
-from hearth.rendering.film.snapshots import keyframes
+from hearth.rendering.film.execution_keyframes import keyframes
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from hearth.kb.loading.load import default
 from hearth.web import sessions
 from hearth.web.annotate.annotate_tables import PROGRAMS, REVIEWS, TEXTS
 from hearth.web.annotate.collected_files import collected
-from hearth.web.play import program_door
+from hearth.web.play import agent_program_port
 from hearth.web.play.game_tables import GAMES, SEATS
 from hearth.web.play.live_games import games
 from hearth.web.play.play_trials import published
@@ -327,7 +327,7 @@ def test_the_port_of_a_game_closes_when_its_time_is_over(server, person, monkeyp
 
 
 def test_the_port_of_a_game_closes_when_no_page_of_it_is_open(server, person, monkeypatch):
-    monkeypatch.setattr(program_door, "UNWATCHED", 1.0, raising=False)
+    monkeypatch.setattr(agent_program_port, "UNWATCHED", 1.0, raising=False)
     game = begun(server, person, published("wah", "test-1", 0), "program")
     with Player(person, game) as player:
         port = player.state["port"]
@@ -335,7 +335,7 @@ def test_the_port_of_a_game_closes_when_no_page_of_it_is_open(server, person, mo
 
 
 def test_a_server_opens_few_ports(server, person, monkeypatch):
-    monkeypatch.setattr(program_door, "MOST_PORTS", 2, raising=False)
+    monkeypatch.setattr(agent_program_port, "MOST_PORTS", 2, raising=False)
     players = [Player(person, begun(server, person, published("wah", "test-1", n), "program")) for n in range(3)]
     ports = []
     for each in players:

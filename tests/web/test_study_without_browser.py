@@ -11,8 +11,8 @@ import pytest
 from hearth.studies.study_file import named
 from hearth.studies.study_progress import DONE, STAGES
 from hearth.web.store import Store, default_url
+from hearth.web.study.expected_posts import TURNS
 from hearth.web.study.study_store import conducted
-from hearth.web.study.study_turns import TURNS
 from hearth.web.web_errors import STATUS
 
 PAGE = Path(__file__).resolve().parents[2] / "docs/studies.md"
@@ -22,7 +22,7 @@ SHOWN = "http://127.0.0.1:8000"
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="no curl here")
 def test_the_blocks_do_what_they_say(serving, module, knowledge, tmp_path):
-    followed, folder = module("docs/hooks/followed.py"), tmp_path / "here"
+    followed, folder = module("docs/hooks/documentation_commands.py"), tmp_path / "here"
     folder.mkdir()
     printed, running = "", None
     for language, title, text in followed.blocks(PAGE):

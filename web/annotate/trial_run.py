@@ -6,7 +6,7 @@ from typing import Any
 
 import orjson
 
-from hearth.datasets.report.drawn_plans import draw
+from hearth.datasets.report.floor_plan_svg import draw
 from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge

@@ -7,7 +7,7 @@ import sqlalchemy as sql
 
 from hearth.challenges.episodes import Record
 from hearth.kb.knowledge import Knowledge
-from hearth.web.play import game_store, play_pages, shared_games
+from hearth.web.play import game_store, game_withdrawal, play_pages
 from hearth.web.play.live_games import games
 from hearth.web.play.play_socket import live
 from hearth.web.play.play_trials import Trial
@@ -31,7 +31,7 @@ ROOM = Room(
     ),
     desk=(get("", play_pages.desk_page), get("/results.jsonl", play_pages.desk_results)),
     needs=("three",),
-    keeps=shared_games.keep,
+    keeps=game_withdrawal.keep,
 )
 """The room."""
 

@@ -15,7 +15,7 @@ from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation import reach
 from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.observation.views import View
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
@@ -110,14 +110,14 @@ def seen_objects(view: View) -> Objects:
     usable = usable_things(home)
     agent = world.agents[view.agent]
     close = reach.close_to(world, agent)
-    held = {i: other for other in world.agents for i in rows.held_indices(other)}
+    held = {i: other for other in world.agents for i in edge_rows.held_indices(other)}
     found: Objects = {}
     for i in indices(usable & view.mask & ~agent.bit):
         relation, holder = _where(view, i, held)
         states = [name for number, name in enumerate(STATES) if world.states[number] >> i & 1]
-        room = i if home.rooms >> i & 1 else rows.room_of(world, i)
+        room = i if home.rooms >> i & 1 else edge_rows.room_of(world, i)
         if home.characters >> i & 1:
-            room = rows.agent_room(world, rows.character(world, i))
+            room = edge_rows.agent_room(world, edge_rows.character(world, i))
         found[home.ids[i]] = [home.ids[room] if room >= 0 else 0, relation, holder, states, close >> i & 1]
     return found
 
@@ -129,10 +129,10 @@ def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
         return "held", home.ids[held[i].index]
     if home.characters >> i & 1:
         return "", 0
-    inside = rows.inside(world, i) & ~home.rooms & view.mask
+    inside = edge_rows.inside(world, i) & ~home.rooms & view.mask
     if inside:
         return "in", home.ids[lowest(inside)]
-    on = rows.on(world, i) & ~home.rooms & view.mask
+    on = edge_rows.on(world, i) & ~home.rooms & view.mask
     return ("on", home.ids[lowest(on)]) if on else ("", 0)
 
 

@@ -17,17 +17,17 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web.deadlines import BoundedLock
 from hearth.web.play import game_store
+from hearth.web.play.agent_program_port import ProgramDoor, program_door
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
 from hearth.web.play.play_trials import PROGRAM
 from hearth.web.play.player_presence import AWAITED, HERE, presence, signs
-from hearth.web.play.program_door import ProgramDoor, program_door
 from hearth.web.sessions import check_tab
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
 
 if TYPE_CHECKING:
-    from hearth.web.play.drawn_games import DrawnGame
+    from hearth.web.play.game_scene_3d import DrawnGame
 
 MOST_GAMES = 300
 """Games that a process keeps; the game unused for longest is forgotten first, and replayed if needed."""
@@ -83,7 +83,7 @@ class LiveGame:
     def drawn(self, knowledge: Knowledge, number: int) -> DrawnGame:
         """Return the game's scene for the eyes of a character. Hold the lock."""
         if number not in self._drawn:
-            from hearth.web.play.drawn_games import DrawnGame
+            from hearth.web.play.game_scene_3d import DrawnGame
 
             self._drawn[number] = DrawnGame(self.game, knowledge, number)
         return self._drawn[number]

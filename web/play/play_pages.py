@@ -134,7 +134,7 @@ def home_file(visit: Visit) -> Response:
     if name not in NAMES:
         raise WebError(Code.UNKNOWN_ID, "challenge", " or ".join(NAMES), name[:40])
     library("trimesh")
-    from hearth.web.play.drawn_games import base_file
+    from hearth.web.play.game_scene_3d import base_file
 
     return _model(base_file(name, home, visit.web.known, visit.web.out / "homes"))
 

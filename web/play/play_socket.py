@@ -21,7 +21,7 @@ from hearth.web.play.player_presence import SIGN_EVERY, give_sign
 from hearth.web.web_errors import WebError
 
 if TYPE_CHECKING:
-    from hearth.web.play.drawn_games import DrawnGame
+    from hearth.web.play.game_scene_3d import DrawnGame
 
 LOOKS_EVERY = {PERSON: 0.3}
 """Seconds between reads of others' decisions from the store, by helper; another server may have received them."""

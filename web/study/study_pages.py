@@ -11,7 +11,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.names import inside
 from hearth.studies.films_to_judge import JudgedFilm, read_films
-from hearth.studies.judged_film_files import film_path
+from hearth.studies.judged_film_recording import film_path
 from hearth.studies.study import FILM, JUDGE, MOST_TEXT, REPLAY, Question, Study
 from hearth.studies.study_file import named
 from hearth.studies.study_folder import FILMS
@@ -30,10 +30,10 @@ from hearth.studies.study_progress import (
 from hearth.web import play
 from hearth.web.room_request import Visit, Web, by_browser
 from hearth.web.sender_addresses import sender_of
-from hearth.web.study.places_held import HELD, is_stranger
+from hearth.web.study.expected_posts import UNASKED, check_answers, in_turn, unasked_line
+from hearth.web.study.places_per_address import HELD, is_stranger
 from hearth.web.study.study_store import FOLDER, conducted
 from hearth.web.study.study_trial_games import begun, gone_on
-from hearth.web.study.study_turns import UNASKED, check_answers, in_turn, unasked_line
 from hearth.web.web_errors import WebError
 
 TEMPLATES = {

@@ -8,7 +8,8 @@ pytest.importorskip("open3d")
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.recognition import PERSON
 from hearth.rendering.film.contact_sheet import caption, contact_sheet
-from hearth.rendering.film.snapshots import _put_down_at, keyframes, snapshots
+from hearth.rendering.film.execution_keyframes import _put_down_at, keyframes
+from hearth.rendering.film.execution_pictures import snapshots
 from hearth.rendering.people.action_poses import moved
 from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.object_locations import locations_of

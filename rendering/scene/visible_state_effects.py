@@ -41,7 +41,7 @@ class Shine:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """The visible effect of a thing's state; the fields of `effects.yaml`."""
+    """The visible effect of a thing's state; the fields of `visible_state_effects.yaml`."""
 
     light: Shine | None = None
     moments: int = 1
@@ -62,9 +62,9 @@ def _effect(fields: dict[str, Any]) -> Effect:
 
 EFFECTS: Mapping[str, Mapping[str, Effect]] = {
     recipe: {state: _effect(fields) for state, fields in states.items()}
-    for recipe, states in packaged("hearth.rendering.scene", "effects.yaml").items()
+    for recipe, states in packaged("hearth.rendering.scene", "visible_state_effects.yaml").items()
 }
-"""Recipe -> state -> effect. To add one: a row of `effects.yaml`."""
+"""Recipe -> state -> effect. To add one: a row of `visible_state_effects.yaml`."""
 
 
 def effects_of(recipe: str, states: frozenset[str]) -> Iterator[Effect]:

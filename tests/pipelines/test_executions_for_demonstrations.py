@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hearth.pipelines.engine.demonstration_cases import chosen
+from hearth.pipelines.engine.executions_for_demonstrations import chosen
 
 RAN = [(f"p{number}", f"p{number}@{home}", home) for number in range(40) for home in ("maple", "birch", "other")]
 HOMES = ("maple", "birch")

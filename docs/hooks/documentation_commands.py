@@ -1,6 +1,6 @@
 """Follows a page of the documentation: writes its files, runs its commands, and checks what they print.
 
-    python docs/hooks/followed.py docs/tutorial/*.md      # follow pages, and store the pictures that they show
+    python docs/hooks/documentation_commands.py docs/tutorial/*.md  # follow pages, and store the pictures in them
 
 A fenced block with a title is a file; `bash` is run; `text` are successive lines of what was printed last, those after
 `...` further below, and numbers of several digits may differ. A picture's title is the file that the commands wrote.

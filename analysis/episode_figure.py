@@ -7,7 +7,7 @@ from hearth.challenges.episodes import Record, replayed, start_of
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
 from hearth.homes.floor_plan_drawing import Trail
-from hearth.homes.plan_panels import Panel
+from hearth.homes.side_by_side_floor_plans import Panel
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -7,8 +7,8 @@ from web.test_study_room import at_trial, finish, judging, ledger_of, playing  #
 
 from hearth.studies.study import JUDGE, PLAY
 from hearth.studies.study_progress import STAGES
+from hearth.web.study.expected_posts import FIRST, TRIALS, TURNS
 from hearth.web.study.study_store import StoreLedger
-from hearth.web.study.study_turns import FIRST, TRIALS, TURNS
 
 BROWSER = {"accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
 UNASKED = "What you sent last is not asked for now, and changed nothing. "

@@ -15,8 +15,8 @@ from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.challenge_tables import ChallengeData, publish
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.household import household_task
+from hearth.challenges.household_as_challenge import SEVERAL, as_task
 from hearth.challenges.household_definition import NAME, RULES, settings
-from hearth.challenges.household_runs import SEVERAL, as_task
 from hearth.challenges.metrics import share_interval
 from hearth.challenges.result_files import read
 from hearth.challenges.suite_runs import run
@@ -69,7 +69,7 @@ def test_a_run_is_the_same_every_time(some, results, tmp_path):
 
 
 def test_figures_are_by_family_and_do_not_make_the_tasks_anew(results, monkeypatch):
-    monkeypatch.setattr("hearth.challenges.household_runs.household_task", None)
+    monkeypatch.setattr("hearth.challenges.household_as_challenge.household_task", None)
     figures = _figures(results["human_like"])
     assert {row["goals"] for row in figures["by_set"]} == {
         task.sets[0] for task in results["oracle"].header.suite.tasks

@@ -8,7 +8,7 @@ from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.goal_grammar import wanted_things
 from hearth.challenges.task_files import Suite
 from hearth.kb.knowledge import Knowledge
-from hearth.simulation.world import rows
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.world import World
 
@@ -48,13 +48,13 @@ def starts(suite: Suite, knowledge: Knowledge) -> Starts:
                 place = place_of(world, i)
                 found.everything[name][place] += 1
                 found.wanted[name][place] += name in goal
-        found.agents.update(world.home.classes[rows.agent_room(world, agent)] for agent in world.agents)
+        found.agents.update(world.home.classes[edge_rows.agent_room(world, agent)] for agent in world.agents)
     return found
 
 
 def place_of(world: World, i: int) -> str:
     """Return the place of a thing, as `ON table` or `INSIDE fridge`."""
-    for relation, places in (("ON", rows.on(world, i)), ("INSIDE", rows.inside(world, i))):
+    for relation, places in (("ON", edge_rows.on(world, i)), ("INSIDE", edge_rows.inside(world, i))):
         furniture = places & ~world.home.rooms
         if furniture:
             return f"{relation} {world.home.classes[lowest(furniture)]}"

@@ -1,4 +1,4 @@
-"""Reading rows of a world: the home's, less what is removed, plus what is extra.
+"""Reading the edges of a world as rows of bit sets: the home's, less those removed, plus those added.
 
 All take and give indices and bit sets. Edges between a character and anything stand in the character's `Agent`.
 """

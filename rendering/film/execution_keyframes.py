@@ -1,31 +1,21 @@
-"""Pictures of a recorded execution: one keyframe per tick, by fixed cameras or by the one that sees the step best."""
+"""Keyframes of a recorded execution: the scene, the characters and the places of things after each tick."""
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Any
-
-import numpy as np
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.modifiers import numbers
-from hearth.rendering.cameras.camera import Camera, top_view
-from hearth.rendering.cameras.recognition import PERSON, recognition
-from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
-from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.action_poses import Actor, elsewhere, initial_actors, moved, outermost
 from hearth.rendering.people.bedding import turned_back
 from hearth.rendering.people.clearance import faults
 from hearth.rendering.people.gestures import gesture_of
-from hearth.rendering.people.hand_reach import posed, reach_for
 from hearth.rendering.people.held_objects import held_things
 from hearth.rendering.people.pushed_objects import slid
 from hearth.rendering.people.skeleton import effort_of
-from hearth.rendering.rays.camera_shot import Shot, shoot
-from hearth.rendering.rays.incremental_pictures import IncrementalFrame, incremental_frame
+from hearth.rendering.people.step_hands_and_gaze import posed, reach_for
 from hearth.rendering.scene.added_furniture import furnished
 from hearth.rendering.scene.door_sweep import Floors
-from hearth.rendering.scene.effects import at_time, changes
 from hearth.rendering.scene.film_variation import PLAIN, Variation, scattered
 from hearth.rendering.scene.graph_history import graphs
 from hearth.rendering.scene.instances import Thing
@@ -34,17 +24,15 @@ from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.scene_preparation import PreparedScene, prepared_scene
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.rendering.scene.triangles import StaticThings
+from hearth.rendering.scene.visible_state_effects import at_time, changes
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import EnvironmentGraph, Point, to_release
+from hearth.schemas.graph import EnvironmentGraph, Point
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.simulation.engine import Execution
 from hearth.simulation.world.world import World
-
-AUTO = "auto"
-TOP = "top"
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,26 +75,6 @@ def named_nodes(steps: Sequence[Step], rooms: Container[int]) -> tuple[int, ...]
     return tuple(
         dict.fromkeys(ref.node for step in steps for ref in step.objects if ref.node and ref.node not in rooms)
     )
-
-
-@dataclass(frozen=True, eq=False)
-class Snapshot:
-    """Pictures of one keyframe by one camera.
-
-    Attributes:
-        tick, steps: the keyframe's.
-        camera: the camera.
-        pictures: modality -> array, as `modalities.render` gives them.
-        seen: visible share of the objects that the steps name; None where they name none.
-        person: whether the acting character can be recognised: it is large enough, and less than half hidden.
-    """
-
-    tick: int
-    steps: tuple[Step, ...]
-    camera: Camera
-    pictures: Mapping[str, Any]
-    seen: float | None = None
-    person: bool = False
 
 
 def keyframes(
@@ -329,67 +297,3 @@ def scene_at(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...])
     scene = prepared.scene(nodes, figures)
     things = (*scene.things, *(thing for things in held.values() for thing in things))
     return replace(scene, things=tuple(now for thing in things for now in at_time(thing, 0.0)))
-
-
-def snapshots(
-    execution: Execution,
-    home: EnvironmentGraph,
-    knowledge: Knowledge,
-    cameras: Sequence[Camera | str] = (TOP, AUTO),
-    modalities: Iterable[str] = ("rgb", "instance_ids"),
-    *,
-    size: tuple[int, int] = (320, 240),
-    quality: str = "draft",
-    seed: int = 0,
-    hour: float = 10.0,
-) -> Iterator[Snapshot]:
-    """Pictures of every keyframe of an execution by every camera.
-
-    Args:
-        execution, home, knowledge, seed, hour: as in `keyframes`.
-        cameras: fixed cameras; `top` is a bird's-eye view of the home, `auto` the camera of the character's room that
-            best shows the step's objects.
-        modalities, quality: as in `modalities.render`; `flow` is towards the next tick, by the same camera; `class_ids`
-            are those of the table `vocabulary`; `graph` is the scene graph.
-        size: width and height for `top` and `auto`.
-
-    Raises:
-        HearthError: the home has no geometry, open3d is missing, or a modality is unknown.
-    """
-    check_geometry(home)
-    wanted = tuple(dict.fromkeys(modalities))
-    drawn = check_modalities([name for name in wanted if name != "graph"], quality)
-    views = room_views(home, *size)
-    rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
-    above = top_view(home_box(home), TOP, *size)
-    last_frames: dict[Camera | str, IncrementalFrame] = {}
-    found = trajectory_of(execution, home, knowledge, seed=seed, hour=hour).keyframes
-    for keyframe, later in zip(found, (*found[1:], found[-1]), strict=True):
-        named = named_nodes(keyframe.steps, rooms)
-        for choice in cameras:
-            camera = choice if isinstance(choice, Camera) else above
-            if choice == AUTO:
-                actor = keyframe.acting
-                camera = best_view(keyframe.scene, views, actor, named, rooms.get(actor.room))
-            if quality == "draft":
-                last_frames[choice] = incremental_frame(keyframe.scene, camera, last_frames.get(choice))
-                shot, known = last_frames[choice].shot, {"rgb": last_frames[choice].picture}
-            else:
-                shot, known = shoot(keyframe.scene, camera, by_rays=True), {}
-            shot = replace(shot, after=later.scene, class_ids=knowledge.class_ids)
-            pictures = known | pictures_of(shot, [name for name in drawn if name not in known], quality)
-            if "graph" in wanted:
-                pictures["graph"] = to_release(keyframe.places.graph)
-            row = {name: pictures[name] for name in wanted}
-            person = recognition(shot, keyframe.acting.node.id).suffices(PERSON) if keyframe.actors else False
-            yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named), person)
-
-
-def _seen(shot: Shot, named: tuple[int, ...]) -> float | None:
-    """Share of the nodes with a pixel; None of no nodes."""
-    if not named:
-        return None
-    numbers = np.flatnonzero(np.bincount(shot.owner + 1, minlength=1)[1:])
-    ids = {shot.geometry.things[number].id for number in numbers.tolist()}
-    found = [node_id in ids for node_id in dict.fromkeys(named)]
-    return sum(found) / len(found)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering.film.snapshots import Keyframe
+from hearth.rendering.film.execution_keyframes import Keyframe
 from hearth.rendering.people.motion import Frame
 from hearth.rendering.scene.floor_cells import HEADROOM, IGNORED
 from hearth.rendering.scene.scene_preparation import PreparedScene

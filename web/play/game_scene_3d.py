@@ -17,7 +17,7 @@ from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.simulation.observation.reach import out_of_sight
+from hearth.simulation.observation.visible_nodes import out_of_sight
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 from hearth.storage.files import write_bytes

@@ -11,10 +11,10 @@ from hearth.rendering.modalities import render
 from hearth.rendering.models.appearance import Look
 from hearth.rendering.models.class_appearance import Model, draw
 from hearth.rendering.models.model_recipes import RECIPES
-from hearth.rendering.scene.effects import EFFECTS, STEAM, at_time, changes, shining
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.scene_preparation import prepared_scene
+from hearth.rendering.scene.visible_state_effects import EFFECTS, STEAM, at_time, changes, shining
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import STATES
 

@@ -3,21 +3,21 @@
 from collections.abc import Callable, Iterable
 from operator import or_
 
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world import moved_edges as kinds
-from hearth.simulation.world import rows
 from hearth.simulation.world.agent import change_characters
 from hearth.simulation.world.bits import cleared, indices
+from hearth.simulation.world.edge_rows import Numbered
 from hearth.simulation.world.moved_edges import Moved, link, unlink
-from hearth.simulation.world.rows import Numbered
 from hearth.simulation.world.world import World
 
 _KINDS = {"ON": kinds.ON, "INSIDE": kinds.INSIDE, "CLOSE": kinds.CLOSE, "FACING": kinds.FACING}
 
 _READ: dict[str, tuple[Callable[[World, int], int], Callable[[World, int], int]]] = {
-    "ON": (rows.on, rows.bears),
-    "INSIDE": (rows.inside, rows.contents),
-    "CLOSE": (rows.close, rows.close),
-    "FACING": (rows.facing, rows.faced),
+    "ON": (edge_rows.on, edge_rows.bears),
+    "INSIDE": (edge_rows.inside, edge_rows.contents),
+    "CLOSE": (edge_rows.close, edge_rows.close),
+    "FACING": (edge_rows.facing, edge_rows.faced),
 }
 
 

@@ -44,12 +44,12 @@ class BodyPlace(NamedTuple):
 
     @classmethod
     def of(cls, joint: str, at: Point, palm: Point, other: Mapping[str, Point] | None = None) -> BodyPlace:
-        """As `body_places.yaml` has it; the other hand mirrors the acting one unless it is said where it is."""
+        """As `own_body_targets.yaml` has it; the other hand mirrors the acting one unless it is said where it is."""
         mirrored = At((-at[0], at[1], at[2]), (-palm[0], palm[1], palm[2]))
         return cls(joint, At(at, palm), At(other["at"], other["palm"]) if other else mirrored)
 
 
-_DATA = packaged("hearth.rendering.people", "body_places.yaml")
+_DATA = packaged("hearth.rendering.people", "own_body_targets.yaml")
 
 PLACES: Mapping[str, BodyPlace] = {name: BodyPlace.of(**fields) for name, fields in _DATA["places"].items()}
 """By name."""

@@ -9,7 +9,7 @@ import pytest
 from hearth.homes.floor_plan_drawing import Trail
 from hearth.homes.geometry import Rect
 from hearth.homes.library import load_layout, names
-from hearth.homes.plan_panels import Panel, labelled, svg, write
+from hearth.homes.side_by_side_floor_plans import Panel, labelled, svg, write
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 

@@ -7,7 +7,16 @@ from collections import Counter
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.pipelines.engine.clip_cases import SEEN, TEST, TRAIN, UNSEEN, VALIDATION, chosen, home_kinds, part_of
+from hearth.pipelines.engine.executions_for_clips import (
+    SEEN,
+    TEST,
+    TRAIN,
+    UNSEEN,
+    VALIDATION,
+    chosen,
+    home_kinds,
+    part_of,
+)
 from hearth.pipelines.render import prepare
 
 HOMES = ("a", "b", "c", "d", "e", "f", "g")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from xml.sax.saxutils import escape
 
-from hearth.analysis.episode_drawing import COLOURS
+from hearth.analysis.episode_figure import COLOURS
 from hearth.challenges.helper_beliefs import Beliefs
 
 LINES = ("#1b4f72", "#d68910", "#196f3d", "#922b21", "#6c3483", "#117a65", "#7b7d7d", "#a04000")

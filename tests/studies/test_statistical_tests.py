@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from hearth.studies.comparisons import compare, effect_interval, interval, normality, rank_correlation
+from hearth.studies.statistical_tests import compare, effect_interval, interval, normality, rank_correlation
 
 ONE = {"a": 5.0, "b": 7.0, "c": 8.0, "d": 6.0, "e": 9.0}
 OTHER = {"a": 4.0, "b": 5.0, "c": 8.0, "d": 3.0, "e": 5.0, "alone": 1.0}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from math import dist
 
-from hearth.analysis.episode_drawing import ticks_of, trails
+from hearth.analysis.episode_figure import ticks_of, trails
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, played
 from hearth.challenges.published_tasks import tasks

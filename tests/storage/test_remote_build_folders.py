@@ -22,7 +22,7 @@ from hearth.schemas.diagnostics import HearthError  # noqa: E402
 from hearth.schemas.failures import Code  # noqa: E402
 from hearth.storage.files import file_digest  # noqa: E402
 from hearth.storage.remote import url_of  # noqa: E402
-from hearth.storage.stores import Store, store, working  # noqa: E402
+from hearth.storage.remote_build_folders import Store, store, working  # noqa: E402
 from hearth.storage.url_fetching import _temporary_folder, fetched  # noqa: E402
 
 URL = "memory://bucket/evening"
@@ -355,7 +355,7 @@ def test_copies_are_closed_to_others_and_removed(tmp_path, monkeypatch):
     (tmp_path / "a.txt").write_text("a")
     asked = """if True:
         from hearth.storage.url_fetching import fetched
-        from hearth.storage.stores import Store
+        from hearth.storage.remote_build_folders import Store
         print(fetched("file://a.txt"))
         print(Store("memory://x").work)"""
     environment = {**os.environ, "TMPDIR": str(tmp_path / "work")}

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from hearth.pipelines.engine.option_presets import TIERS, tiered
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.tiers import TIERS, tiered
 from hearth.schemas.diagnostics import HearthError
 
 PLAIN = {"seed": 0, "limit": None, "homes_each": 0, "variants": 3, "target": 0, "pictures": 3, "videos": 1}

@@ -7,10 +7,10 @@ import pytest
 
 from hearth.kb.loading.load import default
 from hearth.rendering.people.action_poses import Actor
-from hearth.rendering.people.body_places import CHEST, PLACE_OF, PLACES
 from hearth.rendering.people.body_pose import STILL, BodyPose
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.hand_gestures import TEETH, gesturing
+from hearth.rendering.people.own_body_targets import CHEST, PLACE_OF, PLACES
 from hearth.rendering.people.palm_targets import with_aims
 from hearth.rendering.people.random_people import person
 from hearth.rendering.scene.object_boxes import Places

@@ -13,8 +13,8 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.snapshot import export, restore
 from hearth.simulation.world.world import World
+from hearth.simulation.world.world_json import export, restore
 
 GRAPH = EnvironmentGraph(
     (

@@ -1,4 +1,4 @@
-"""The tables of the report, each with its query (`figures.yaml`)."""
+"""The tables of the report, each with its query (`report_tables.yaml`)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -30,7 +30,7 @@ class Figure:
 def figures(dataset: Dataset) -> list[Figure]:
     """Return every figure with a non-empty result."""
     found = []
-    for each in packaged("hearth.datasets.report", "figures.yaml"):
+    for each in packaged("hearth.datasets.report", "report_tables.yaml"):
         columns, rows = dataset.rows(each["query"])
         if rows:
             lengths = [float(row[columns.index(each["bars"])] or 0) for row in rows]

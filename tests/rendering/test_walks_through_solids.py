@@ -7,8 +7,8 @@ pytest.importorskip("open3d")
 from hearth.grounding.grounded_run import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.rendering.film.film_walks import contains, on_the_floor, walks
-from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.execution_keyframes import trajectory_of
+from hearth.rendering.film.walks_through_solids import contains, on_the_floor, walks
 from hearth.rendering.people import motion_tracks
 from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import parse_program

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hearth.analysis.episode_drawing import ticks_of
+from hearth.analysis.episode_figure import ticks_of
 from hearth.challenges.episodes import Known
 from hearth.challenges.tasks import Task
 from hearth.homes.library import load_graph
@@ -89,7 +89,8 @@ def _write_replay(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: P
 
 
 def _record(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: Path) -> None:
-    from hearth.rendering.film.snapshots import AUTO, trajectory_of
+    from hearth.rendering.film.execution_keyframes import trajectory_of
+    from hearth.rendering.film.execution_pictures import AUTO
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.film_variation import PLAIN
 
