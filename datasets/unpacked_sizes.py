@@ -1,4 +1,4 @@
-"""What a stranger's dataset unpacks to, before it is read as a whole: a few bytes may stand for millions of rows."""
+"""Limits on the rows and texts of a stranger's dataset before it is read as a whole: a few bytes may stand for millions."""
 
 from __future__ import annotations
 
