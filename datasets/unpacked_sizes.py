@@ -1,4 +1,4 @@
-"""Limits on the rows and texts of a stranger's dataset before it is read as a whole: a few bytes may stand for millions."""
+"""Limits on rows and texts of a stranger's dataset, before it is read whole: a few bytes may stand for millions."""
 
 from __future__ import annotations
 
