@@ -10,7 +10,7 @@ from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
 from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan, is_unmarked
-from hearth.pipelines.readers import natural_language_plans
+from hearth.pipelines.readers import natural_language_plans, reader_warnings
 from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, lacks
 from hearth.pipelines.readers.found_records import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.json_actions import is_action, step_of
@@ -225,6 +225,7 @@ def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Rejec
         text=text or None,
         line=item.line - 1 if item.line else None,
         places=places,
+        warnings=reader_warnings.rows_of(value.get(reader_warnings.KEY)),
     )
 
 
