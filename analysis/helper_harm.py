@@ -5,10 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from hearth.agents.human_population import PEOPLE
-from hearth.analysis.challenge_table import CONFIDENT
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Known
-from hearth.challenges.metrics import mean, of_tasks, speedups
+from hearth.challenges.metrics import CONFIDENT, mean, of_tasks, speedups
 from hearth.challenges.result_files import Results
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite

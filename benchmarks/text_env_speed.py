@@ -28,7 +28,7 @@ GOALS = ("ON(milk, table)", "INSIDE(apple, fridge)", "HOLDS(agent, book)", "ON(p
 
 
 def homes(generated: int) -> dict[str, str | Home]:
-    """Return our homes, and so many generated ones, by name."""
+    """Return our homes, and a number of generated ones, by name."""
     known = default()
     found: dict[str, str | Home] = {name: name for name in library.names()}
     for number in range(generated):

@@ -70,6 +70,17 @@ def _homes(name: str) -> tuple[str, ...]:
     return (*(ours * (len(generated) // max(1, len(ours)))), *generated)
 
 
+def need_two_agents(name: str) -> None:
+    """Refuse the challenge whose tasks are for one agent.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: the challenge is `household`.
+    """
+    if name == NAME:
+        message = f"tasks of `{NAME}` are for one agent, and nobody helps"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="wah or owah")
+
+
 @lru_cache(maxsize=24)
 def home_named(name: str, knowledge: Knowledge) -> Home:
     """Return a home of ours, or the generated one of a name such as `home_4_17`; built once.

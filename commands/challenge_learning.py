@@ -75,11 +75,13 @@ def learn(
       hearth challenge learn wah --what subgoals --limit 430 --out build/helping-subgoals
       hearth challenge learn owah --what proposals-small --out build/goal-proposals-small
     """
+    from hearth.challenges.household_definition import need_two_agents
     from hearth.challenges.learning import train
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
     with bar("episodes") as seen, bar("epochs") as passed:
+        need_two_agents(name)
         facts = train(name, what, out, default, seed, limit, rate, epochs, workers, seen, passed)
     shown = {"out": out, **{key: value for key, value in facts.items() if not isinstance(value, dict)}}
     if as_json:

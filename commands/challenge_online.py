@@ -55,10 +55,12 @@ def people(
       hearth challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
     """
     from hearth.analysis.helper_harm import helped_people
+    from hearth.challenges.household_definition import need_two_agents
     from hearth.challenges.task_files import suite
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
+    need_two_agents(name)
     chosen = suite(name, split, limit=limit)
     with bar("episodes") as seen:
         rows = list(helped_people(chosen, helper or ["nopa", "expected_time"], seeds, out, default, workers, seen))

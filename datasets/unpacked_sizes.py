@@ -1,4 +1,4 @@
-"""What a stranger's dataset unpacks to, before it is read as a whole: a few bytes may stand for millions of rows."""
+"""Sizes to which a stranger's dataset unpacks, before it is read whole: a few bytes may stand for millions of rows."""
 
 from __future__ import annotations
 

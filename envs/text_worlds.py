@@ -19,8 +19,8 @@ from hearth.schemas.program import Step
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal
 from hearth.simulation.goals import Progress
-from hearth.simulation.observation.reach import visible
 from hearth.simulation.observation.views import LastAction, View, view
+from hearth.simulation.observation.visible_nodes import visible
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 

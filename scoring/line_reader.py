@@ -43,8 +43,20 @@ class LineReader(PlanReader):
 
 
 def in_order(steps: Sequence[Step], lines: Sequence[int], faults: Sequence[Diagnostic]) -> Lines:
-    """Return the steps of a text and its refused lines, each once and with its code, in the order of the text."""
+    """Return the steps of a text as they run, and each refused line once, with its code.
+
+    Steps of a loop repeat their lines, so that the order of steps is not that of lines. A refused line stands before
+    the first step of a later line.
+    """
     refused = {fault.line: fault for fault in reversed(faults) if fault.code != Code.EMPTY}
-    found: list[tuple[int, Line]] = list(zip(lines, steps, strict=True))
-    found += [(line, Refused(fault.source or fault.found, fault.code)) for line, fault in refused.items()]
-    return tuple(line for _, line in sorted(found, key=lambda each: each[0]))
+    waiting = sorted(refused)
+    found: list[Line] = []
+    for line, step in zip(lines, steps, strict=True):
+        while waiting and waiting[0] < line:
+            found.append(_refused(refused[waiting.pop(0)]))
+        found.append(step)
+    return (*found, *(_refused(refused[line]) for line in waiting))
+
+
+def _refused(fault: Diagnostic) -> Refused:
+    return Refused(fault.source or fault.found, fault.code)

@@ -24,7 +24,7 @@ def delimiter_of(line: str) -> str:
 
 
 _RUNS = ("=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠")
-"""What begins a formula; spreadsheets of East Asian languages take the wide forms for the narrow ones."""
+"""Beginnings of formulas; spreadsheets of East Asian languages take the wide forms for the narrow ones."""
 
 _SKIPPED = " \ufeff\u200b\u200c\u200d\u2060\u00a0"
 """Characters in front of a formula that a spreadsheet does not show, or takes for the mark of a file's beginning."""

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from itertools import chain, islice
 from multiprocessing import connection, forkserver, resource_tracker
 from multiprocessing.context import BaseContext
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -150,7 +150,8 @@ def _leave(pool: ProcessPoolExecutor) -> None:
     """End the workers, those too that threads, programs or finalizers of others keep from ending."""
     workers = list((pool._processes or {}).values())
     pool.shutdown(wait=False)
-    left, until = {each.sentinel: each for each in workers}, time.monotonic() + LEAVES
+    left: dict[Any, Any] = {each.sentinel: each for each in workers}
+    until = time.monotonic() + LEAVES
     while left and (ended := connection.wait(list(left), max(0.0, until - time.monotonic()))):
         for each in ended:
             del left[each]

@@ -23,6 +23,8 @@ from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite, read_suite, suite, suite_data
 from hearth.challenges.verification import verify
 from hearth.commands import challenge_household
+from hearth.commands.challenge_learning import learn
+from hearth.commands.challenge_online import people
 from hearth.commands.challenge_output import _figures
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -79,6 +81,16 @@ def test_tasks_are_for_one_agent(some, tmp_path):
     with pytest.raises(HearthError, match="one agent") as caught:
         run(some, Lineup("human_like", "hp"), 1, tmp_path / "x.jsonl", default)
     assert caught.value.diagnostics[0].code is Code.BAD_ARGUMENT and caught.value.diagnostics[0].suggestion
+
+
+def test_nobody_learns_to_help_in_household(tmp_path):
+    for refused in (
+        lambda: learn(NAME, "subgoals", out=tmp_path / "x"),
+        lambda: people(NAME, split="train", out=tmp_path / "y"),
+    ):
+        with pytest.raises(HearthError, match="one agent") as caught:
+            refused()
+        assert caught.value.diagnostics[0].code is Code.BAD_ARGUMENT and caught.value.diagnostics[0].suggestion
 
 
 def test_a_suite_is_read_back_and_is_published(some):

@@ -187,3 +187,29 @@ def test_predictions_for_other_executions_than_those_asked_for(score, tmp_path, 
     rows(tmp_path / "p.jsonl", {"id": augmented, "predicted": []})
     done = score("dataset", str(made.out), "p.jsonl", "--originals", "--only-given")
     assert done.exit_code == 1 and "no prediction is of an execution that is asked for" in done.output
+
+
+LOOPS = {
+    "a count": ("for i in range(2):", ["fridge", "fridge"]),
+    "a list": ('for x in ["fridge", "microwave"]:', ["fridge", "microwave"]),
+}
+
+
+@pytest.mark.parametrize("kind", LOOPS)
+def test_steps_of_a_loop_are_scored_as_they_run(score, tmp_path, kind):
+    head, names_of = LOOPS[kind]
+    thing = "x" if kind == "a list" else '"fridge"'
+    code = f"{head}\n    walk({thing})\n    open({thing})\n    close({thing})\n"
+    steps = [f"[{act}] <{name}> (1)" for name in names_of for act in ("Walk", "Open", "Close")]
+    (tmp_path / "plan.py").write_text(code)
+    rows(tmp_path / "rows.jsonl", {"id": "a", "home": "maple", "predicted": code, "reference": "\n".join(steps)})
+    alone = json.loads(score("program", "plan.py", "--home", "maple", "--json").stdout)
+    assert (alone["codes"], alone["mean"]["executable"]["mean"]) == ({}, 1)
+    with_reference = json.loads(score("program", "rows.jsonl", "--json").stdout)["scores"][0]
+    assert (with_reference["lcs_step"], with_reference["executable"]) == (1, 1)
+
+
+def test_a_refused_line_of_a_loop_stands_once_at_its_place(score, tmp_path):
+    (tmp_path / "plan.py").write_text('for i in range(2):\n    walk("fridge")\n    fly("fridge")\nopen("fridge")\n')
+    found = json.loads(score("program", "plan.py", "--home", "maple", "--json").stdout)
+    assert (found["count"], found["codes"]) == (1, {"UNKNOWN_ACTION": 1})
