@@ -1,4 +1,4 @@
-"""Versions of the code and of published formats."""
+"""Versions of the code and of the action sets; that of the format of datasets is `FORMAT` of `storage/manifest.py`."""
 
 VERSION = "0.2.0"
 

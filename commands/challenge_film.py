@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from hearth.commands import output
+from hearth.rendering.film.film_rate import FILM_RATE
 
 
 def film(
@@ -14,7 +15,7 @@ def film(
     alone: bool = False,
     view: str = "auto",
     width: int = 320,
-    fps: float = 15.0,
+    fps: float = FILM_RATE,
     as_json: bool = False,
 ) -> None:
     """Film an episode of a task, of agents or of people, with a page that plays it step by step.

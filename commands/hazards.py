@@ -11,7 +11,6 @@ from hearth.commands.inputs import of_rules
 from hearth.commands.shared_options import HomeOptions, ProgramOptions
 
 if TYPE_CHECKING:
-    from hearth.schemas.program import Program
     from hearth.simulation.engine import Execution
     from hearth.simulation.hazards import Found
     from hearth.simulation.lasting_changes import Lasting
@@ -38,9 +37,11 @@ def hazards(
       hearth hazards make_soup.txt --home maple --sample
       hearth hazards make_soup.txt --json
     """
+    from hearth.grounding.grounded_run import Trial, as_given_or_sampled
     from hearth.schemas.diagnostics import HearthError
     from hearth.simulation.hazards import hazards as found_in
     from hearth.simulation.lasting_changes import irreversible, left
+    from hearth.simulation.rules import CONSEQUENCES
 
     known = of_rules(place.knowledge(), "consequences")
     given = chosen.given(file, known)
@@ -48,7 +49,9 @@ def hazards(
         raise HearthError(given.faults)
     output.report(given.warnings, kind="warning")
     program, home = place.placed(given, known)
-    execution, is_sampled = _execution(program, home, seed, sample)
+    trial, made = as_given_or_sampled(program, home, seed, sample, CONSEQUENCES)
+    is_sampled = isinstance(made, Trial)
+    execution = (made if isinstance(made, Trial) else trial).execution
     added = _added(home, execution) if is_sampled else None
     found, lost, open_things = found_in(execution), irreversible(execution), left(execution)
     if as_json:
@@ -70,22 +73,6 @@ def hazards(
             output.line(line)
         _show(execution, found, lost, open_things)
     output.status(bool(found) or not execution.executable, strict=True)
-
-
-def _execution(program: Program, place: Home, seed: int, sample: bool) -> tuple[Execution, bool]:
-    """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it.
-
-    The second value is whether a home was made.
-    """
-    from hearth.grounding.grounded_run import LEAST, Trial, as_given, attempt
-    from hearth.simulation.rules import CONSEQUENCES
-
-    trial = as_given(program, place, seed, CONSEQUENCES)
-    if sample and trial.execution.failure is not None:
-        found = attempt(program.unbound(), place, seed, CONSEQUENCES, size=LEAST)
-        if isinstance(found, Trial):
-            return found.execution, True
-    return trial.execution, False
 
 
 def _added(place: Home, execution: Execution) -> Additions:

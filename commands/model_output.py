@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import output
+from hearth.rendering.film.film_rate import FILM_RATE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -176,4 +177,4 @@ def film_of(execution: Execution, home: str, out: Path, homes: Path | None, kb: 
     return videos(shooting, ["auto"], FPS)
 
 
-SIZE, HOUR, FPS = (320, 240), 10.0, 15.0
+SIZE, HOUR, FPS = (320, 240), 10.0, FILM_RATE

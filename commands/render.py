@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import typer
 
 from hearth.commands import inputs, output
+from hearth.rendering.film.film_rate import FILM_RATE
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Failure
 
@@ -34,7 +35,7 @@ def program(
     seed: int = 0,
     hour: float = 10.0,
     width: int = 320,
-    fps: float = 15.0,
+    fps: float = FILM_RATE,
     fine: bool = False,
     vary: bool = False,
     modalities: str = "",
@@ -55,7 +56,8 @@ def program(
     from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.schemas.failure_words import in_program
 
-    _check(mode, width, {"--cameras": cameras != "auto", "--fps": fps != 15, "--vary": vary, "--hour": hour != 10})
+    given = {"--cameras": cameras != "auto", "--fps": fps != FILM_RATE, "--vary": vary, "--hour": hour != 10}
+    _check(mode, width, given)
     known = default()
     home, scene = _scene(home, graph, homes, known)
     execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, scene, seed, known)

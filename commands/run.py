@@ -104,14 +104,13 @@ def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
 
 def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rules) -> Outcome:
     """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
-    from hearth.grounding.grounded_run import LEAST, as_given, attempt
+    from hearth.grounding.grounded_run import as_given_or_sampled
     from hearth.repair.remedies import stop_reason
     from hearth.schemas.failure_words import in_program
 
-    trial = as_given(program, place, seed, rules)
-    if trial.execution.failure is None or not sample:
+    trial, found = as_given_or_sampled(program, place, seed, sample, rules)
+    if found is None:
         return Outcome(program, place, trial, sampling=sample)
-    found = attempt(program.unbound(), place, seed, rules, size=LEAST)
     if isinstance(found, Failure):
         return Outcome(program, place, trial, "", in_program(found, program), found.code, True)
     return Outcome(program, place, found, as_it_is=stop_reason(trial.execution), sampling=True)

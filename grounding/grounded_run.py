@@ -58,6 +58,21 @@ def as_given(program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT
     return Trial(execution)
 
 
+def as_given_or_sampled(
+    program: Program, home: Home, seed: int, sampling: bool, rules: Rules
+) -> tuple[Trial, Trial | Failure | None]:
+    """Run a program in a home as it is; if that stops and `sampling` is True, also in a home made for it.
+
+    Returns:
+        The run in the home as it is. The run in the home made for it: None if there was no need for one, a failure if
+        none could be made.
+    """
+    trial = as_given(program, home, seed, rules)
+    if trial.execution.failure is None or not sampling:
+        return trial, None
+    return trial, attempt(program.unbound(), home, seed, rules, size=LEAST)
+
+
 def bound_far(program: Program, world: World, rules: Rules) -> tuple[Program, Failure | None]:
     """Return a program bound to nodes of a world as far as it runs, and why it goes no further.
 

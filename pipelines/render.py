@@ -20,6 +20,7 @@ from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.split_assignment import programs_of
 from hearth.pipelines.engine.stage import NOTE, Job, Partition, Plan, Stage
 from hearth.pipelines.engine.user_overlays import overlays, overlays_used
+from hearth.rendering.film.film_rate import FILM_RATE
 from hearth.schemas.optional_libraries import lacking
 from hearth.schemas.row_types import PinholeRow, TrackRow
 from hearth.schemas.stage_rows import CaseRow, ClippedRow, DemonstratedRow, FilmedRow, RenderedRow
@@ -91,7 +92,7 @@ def process(case: CaseRow, context: Context) -> Iterator[tuple[str, Made]]:
             yield "", _picture(case, shot, modality, place.made, name)
 
 
-FILM_SIZE, FILM_RATE = (320, 240), 15.0
+FILM_SIZE = (320, 240)
 """Width and height of a film in pixels, and its pictures a second."""
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.plan_lines import PlanLine, plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
 from hearth.schemas.program_boundaries import TITLE
 
 _WORDS = (

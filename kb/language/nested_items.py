@@ -4,8 +4,8 @@ import re
 from collections.abc import Sequence
 
 from hearth.kb.language.plan_lines import PlanLine
+from hearth.kb.language.step_like_lines import is_like_step
 from hearth.kb.language.title_marks import GOES
-from hearth.kb.language.unmarked_lines import is_like_step
 
 _WORD = re.compile(r"[a-z]+")
 _SMALL = frozenset(("the", "a", "an", "my", "your", "to", "of"))

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.mentioned_things import SaidBefore
+from hearth.kb.language.nothing_to_do_sentences import stays
 from hearth.kb.language.number_order import IN_ORDER, NumberOrder
 from hearth.kb.language.plan_lines import (
     BRACKETED,
@@ -21,13 +23,11 @@ from hearth.kb.language.program_lines import Kind, lines_of_program
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
-from hearth.kb.language.said_before import SaidBefore
 from hearth.kb.language.self_corrections import corrects_itself
 from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, nearest_steps, plain_step
 from hearth.kb.language.single_clauses import Asked, unclear
-from hearth.kb.language.staying import stays
 from hearth.kb.language.step_faults import LineFaults, of_language
-from hearth.kb.language.unmarked_lines import is_like_step, is_order, sentences
+from hearth.kb.language.step_like_lines import is_like_step, is_order, sentences
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step

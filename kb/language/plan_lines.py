@@ -5,9 +5,9 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hearth.kb.language.asked_titles import asked_title
 from hearth.kb.language.recognition_knowledge import recognized_cache
 from hearth.kb.language.refusals import Refusal
+from hearth.kb.language.titles_of_requests import asked_title
 from hearth.schemas.program_boundaries import TITLE, is_sentence
 
 _COUNTED = (

@@ -9,22 +9,22 @@ from typing import NamedTuple
 from hearth.kb.language.forms.code_calls import calls_of
 from hearth.kb.language.forms.form import Form, Placed
 from hearth.kb.language.forms.form_registry import form_of, form_of_line
-from hearth.kb.language.line_parts import listed
-from hearth.kb.language.marked_lines import marked
+from hearth.kb.language.line_decorations import Unwrap, unwrapped, unwrapping
 from hearth.kb.language.nested_items import is_head
-from hearth.kb.language.operators import operator_step
+from hearth.kb.language.operator_step_syntax import operator_step
+from hearth.kb.language.plain_lines_as_steps import marked
 from hearth.kb.language.plan_lines import CHAIN, META, Header, PlanLine, header_of, is_step, ordered, plan_line
 from hearth.kb.language.plan_lines import is_plan as is_list
 from hearth.kb.language.recognition_knowledge import recognized_cache
-from hearth.kb.language.title_marks import is_part
-from hearth.kb.language.unmarked_lines import (
+from hearth.kb.language.step_like_lines import (
     are_steps,
     chained,
     chained_strongly,
     is_like_step,
     is_order,
 )
-from hearth.kb.language.wrappings import Unwrap, unwrapped, unwrapping
+from hearth.kb.language.steps_in_a_line import listed
+from hearth.kb.language.title_marks import is_part
 from hearth.schemas.program_boundaries import is_sentence
 
 _JOINT = re.compile(rf"{CHAIN.pattern}|\s*;\s*|\s*>>\s*|\s+>\s+")

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from hearth.kb.language.unmarked_lines import is_like_step, sentences
+from hearth.kb.language.step_like_lines import is_like_step, sentences
 
 _GREETING = re.compile(r"(?:hi|hello|hey|dear|good (?:morning|evening|day))\b[^.!?:]{0,40}[,!]", re.IGNORECASE)
 _FAREWELL = re.compile(

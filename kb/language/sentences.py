@@ -5,18 +5,18 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.carrying import is_carrying
+from hearth.kb.language.carry_sentences import is_carrying
 from hearth.kb.language.counted_things import numbers
-from hearth.kb.language.head_nouns import may_repeat
 from hearth.kb.language.lexicon import is_verb
+from hearth.kb.language.nothing_to_do_sentences import STAYS, stays
 from hearth.kb.language.noun_phrases import thing_of, things_in
 from hearth.kb.language.pronouns import Mentioned, has_pronoun, referred
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.kb.language.refused_words import unread
 from hearth.kb.language.sentence_openings import verb_phrase
+from hearth.kb.language.shortened_nouns import may_repeat
 from hearth.kb.language.single_clauses import BETWEEN, COUNT, Asked, clause_steps, first_act
-from hearth.kb.language.staying import STAYS, stays
 from hearth.kb.language.step_understanding import Candidate, Understood, understand, understand_exactly
+from hearth.kb.language.things_in_refused_lines import unread
 from hearth.kb.language.trailing_words import changes_act, is_subordinate
 
 _JOINTS = re.compile(

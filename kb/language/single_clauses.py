@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.adjectives import without_adjective
-from hearth.kb.language.carrying import carried, is_carrying
+from hearth.kb.language.carry_sentences import carried, is_carrying
 from hearth.kb.language.counted_things import is_some, numbers, plurals, without_all
-from hearth.kb.language.head_nouns import may_repeat, said_before
 from hearth.kb.language.lexicon import noun_lemmas
 from hearth.kb.language.missing_objects import gone_to
 from hearth.kb.language.noun_phrases import thing_of, things_in
@@ -26,6 +25,7 @@ from hearth.kb.language.pronouns import (
 )
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentence_openings import verb_phrase
+from hearth.kb.language.shortened_nouns import may_repeat, said_before
 from hearth.kb.language.step_understanding import Candidate, understand, understand_exactly
 from hearth.kb.language.trailing_words import changes_act, shortened
 from hearth.kb.language.typos import corrected

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action
-from hearth.kb.language.hints import hints
 from hearth.kb.language.idioms import is_exchange, is_idiom
 from hearth.kb.language.lexicon import verb_lemmas
 from hearth.kb.language.noun_phrases import is_taken_from, thing_of
@@ -15,6 +14,7 @@ from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentence_openings import verb_phrase
 from hearth.kb.language.step_phrases import Parse, parses, say
+from hearth.kb.language.suggestions import hints
 from hearth.kb.language.typos import corrected
 from hearth.kb.spelling import key_of
 from hearth.schemas.short_repr import brief

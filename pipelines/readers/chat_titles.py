@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.asked_titles import asked_title
+from hearth.kb.language.titles_of_requests import asked_title
 from hearth.schemas.program_boundaries import TITLE
 
 _LONGEST = 200

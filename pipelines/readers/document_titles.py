@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from hearth.kb.language.plan_lines import is_aside, level_of, plan_line
-from hearth.kb.language.unmarked_lines import chained, is_like_step
+from hearth.kb.language.step_like_lines import chained, is_like_step
 from hearth.schemas.program_boundaries import TITLE
 
 Block = tuple[int, list[str]]

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from hearth.kb.language.action_keys import ACTIONS, INSTANCE, action_key, bare_key, holds_object, last_name
-from hearth.kb.language.composed_steps import class_of
 from hearth.kb.language.program_names import action_of
 from hearth.kb.language.recognition_knowledge import recognition
+from hearth.kb.language.steps_from_calls import class_of
 from hearth.pipelines.readers.texts_with_positions import Pairs, Text, composed, pairs_of, pieces_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code

@@ -7,10 +7,10 @@ from typing import Any
 from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.code_functions import plan_of
 from hearth.kb.language.forms.form import Form
+from hearth.kb.language.line_decorations import bare, raw_of
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
 from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
-from hearth.kb.language.unmarked_lines import are_steps, is_order, names_task
-from hearth.kb.language.wrappings import bare, raw_of
+from hearth.kb.language.step_like_lines import are_steps, is_order, names_task
 from hearth.pipelines.readers.document_titles import without_document_titles
 from hearth.pipelines.readers.json_elements import located_entries
 from hearth.pipelines.readers.reader_items import Item, fault_of, lines, record, refused

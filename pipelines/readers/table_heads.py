@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from hearth.kb.language.operators import names_thing
+from hearth.kb.language.operator_step_syntax import names_thing
 from hearth.pipelines.readers.delimited import Layout, Rows, layout_of
 from hearth.pipelines.readers.field_columns import FieldColumns
 from hearth.pipelines.readers.json_actions import is_known

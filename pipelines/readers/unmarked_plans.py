@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
+from hearth.kb.language.step_like_lines import chained, is_like_step, is_title
 from hearth.kb.language.title_marks import are_titles, is_part
-from hearth.kb.language.unmarked_lines import chained, is_like_step, is_title
 from hearth.schemas.program_boundaries import is_sentence
 
 NumberedLines = list[tuple[int, str]]

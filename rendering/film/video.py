@@ -16,6 +16,7 @@ from hearth.rendering.cameras.viewpoints import home_box, kept_inside, room_view
 from hearth.rendering.film.execution_keyframes import Trajectory
 from hearth.rendering.film.execution_pictures import AUTO, TOP
 from hearth.rendering.film.film_moments import room_at
+from hearth.rendering.film.film_rate import FILM_RATE
 from hearth.rendering.film.modality_archives import FrameFiles, FrameTime
 from hearth.rendering.film.shots import Planner, Shots
 from hearth.rendering.film.video_file import Writer
@@ -67,7 +68,7 @@ def film(
     view: str = AUTO,
     *,
     size: tuple[int, int] = (640, 480),
-    fps: float = 15.0,
+    fps: float = FILM_RATE,
     quality: str = "draft",
 ) -> Iterator[FilmFrame]:
     """Yield the pictures of a video.
@@ -224,7 +225,7 @@ def record(
     view: str = AUTO,
     *,
     size: tuple[int, int] = (640, 480),
-    fps: float = 15.0,
+    fps: float = FILM_RATE,
     suffixes: Sequence[str] = (".webm", ".mp4"),
     modalities: Sequence[str] = ("rgb",),
     quality: str = "draft",

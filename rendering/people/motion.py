@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from hearth.rendering.film.execution_keyframes import Keyframe, Trajectory
+from hearth.rendering.film.film_rate import FILM_RATE
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.bedding import Remade
 from hearth.rendering.people.held_objects import held_things
@@ -50,7 +51,7 @@ class Span(NamedTuple):
     end: float
 
 
-def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Iterator[Frame]:
+def frames(trajectory: Trajectory, fps: float = FILM_RATE, speed: float = 1.0) -> Iterator[Frame]:
     """Yield the frames of a film of an execution.
 
     Args:

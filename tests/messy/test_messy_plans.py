@@ -1,4 +1,4 @@
-"""The 400 messy plans, and 150 more: how much is read rightly, how much as something else, and that nothing is dropped in silence."""
+"""The 400 messy plans, and 150 more: how much is read rightly, and that nothing is dropped in silence."""
 
 import json
 import re

@@ -8,7 +8,7 @@ import pytest
 from hearth.commands.inputs import read_programs
 from hearth.kb.language.counted_lines import counting_of
 from hearth.kb.language.forms.log_heads import head_of
-from hearth.kb.language.operators import operator_step
+from hearth.kb.language.operator_step_syntax import operator_step
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject

@@ -3,11 +3,11 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_names import action_of
 from hearth.kb.language.recognition_knowledge import recognition
+from hearth.kb.language.steps_from_calls import composed_step
 from hearth.schemas.program_boundaries import TITLE
 
 _PAIR = re.compile(

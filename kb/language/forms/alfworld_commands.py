@@ -3,8 +3,8 @@
 import re
 from collections.abc import Callable, Sequence
 
-from hearth.kb.language.composed_steps import written
 from hearth.kb.language.forms.form import Form, Placed, step, title
+from hearth.kb.language.steps_from_calls import written
 
 _THING = r"([a-z]+(?: [a-z]+){0,2} \d{1,3})"
 _COMMANDS: dict[str, tuple[str, ...]] = {

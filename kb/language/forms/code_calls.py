@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from types import MappingProxyType
 
 from hearth.kb.language.action_keys import names_action
-from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.code_functions import Functions, plan_of
 from hearth.kb.language.forms.control_flow import CodeLine, ThingNames, in_order
 from hearth.kb.language.forms.form import Form, Placed, note, refused, step, title
 from hearth.kb.language.refusals import Refusal
+from hearth.kb.language.steps_from_calls import composed_step
 
 _DEF = re.compile(r"\s*(?:async\s+)?def\s+(\w+)\s*\(")
 _CALL = re.compile(r"\s*(?:await\s+)?(?:\w+\s*=\s*)?((?:\w+\.)*(\w+)\((.*)\))\s*[;,]?\s*(?:#.*|//.*)?$")

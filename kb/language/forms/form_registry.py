@@ -21,7 +21,7 @@ from hearth.kb.language.forms.say_can_pay import SAY_CAN_PAY
 from hearth.kb.language.forms.table_rows import TABLES
 from hearth.kb.language.forms.text_games import PROMPTS
 from hearth.kb.language.forms.titled_lines import TITLED_LINES
-from hearth.kb.language.forms.todo_lists import TODO_LISTS
+from hearth.kb.language.forms.todo_txt import TODO_LISTS
 from hearth.kb.language.forms.yaml_lists import YAML
 from hearth.kb.language.recognition_knowledge import recognized_cache
 

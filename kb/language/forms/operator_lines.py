@@ -4,10 +4,10 @@ import re
 from collections.abc import Sequence
 
 from hearth.kb.language.forms.form import Form, Placed, step
-from hearth.kb.language.line_parts import listed
-from hearth.kb.language.operators import operator_step
+from hearth.kb.language.operator_step_syntax import operator_step
 from hearth.kb.language.plan_lines import PlanLine, plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
+from hearth.kb.language.steps_in_a_line import listed
 
 _ITEM = re.compile(r"\s*(?:[-*+•]|(?:step\s*)?\d{1,3}\s*[.):])\s+", re.IGNORECASE)
 _LAYOUT = re.compile(r"[\w ]{0,40}[=:]?\s?[\[({]|[\])};,]{1,9}|[A-Z]{3,8}|</?\w+[^<>]*>|`{3}.*|#.*|")

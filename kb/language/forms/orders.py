@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step
 from hearth.kb.language.forms.robot_logs import ROBOTS, Said, said_of
-from hearth.kb.language.operators import names_thing, operator_step
+from hearth.kb.language.operator_step_syntax import names_thing, operator_step
 from hearth.kb.language.plan_lines import plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
 
 
 class _Talk(NamedTuple):

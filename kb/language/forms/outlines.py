@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.form import Form, Placed, step, title
 from hearth.kb.language.plan_lines import plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
 
 _TITLE = re.compile(r"\d{1,3}[.)]\s+(\S.*)")
 _STEP = re.compile(r"(?:\s{2,}|\t)\s*([A-Za-z][^.:!?]*)")

@@ -3,11 +3,11 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.composed_steps import written
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_names import action_of
 from hearth.kb.language.recognition_knowledge import recognition
+from hearth.kb.language.steps_from_calls import written
 
 _STEP = re.compile(
     r"\s*(?:(?:step\s*)?\d+(?:\.\d+)?\s*[:.)]\s*)?\(\s*([a-z][a-z_-]*)((?:\s+[\w.-]+)*)\s*\)\s*(?:\[[\d.]+\])?\s*(?:;.*)?",

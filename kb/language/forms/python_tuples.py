@@ -3,9 +3,9 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step, title
 from hearth.kb.language.plan_lines import plan_line
+from hearth.kb.language.steps_from_calls import composed_step
 
 _TEXT = r"(?:\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
 _TUPLE = re.compile(rf"\s*[(\[]\s*({_TEXT}(?:\s*,\s*{_TEXT})*)\s*,?\s*[)\]]\s*,?\s*(?:#.*)?")

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.alfworld_commands import command
 from hearth.kb.language.forms.form import Form, Placed, step
-from hearth.kb.language.operators import operator_step
+from hearth.kb.language.operator_step_syntax import operator_step
 from hearth.kb.language.plan_lines import plan_line
 
 _ACT = re.compile(r"\s*(?:>\s*)?\**(?:act|action)\s*\d*\s*:\**\s*(.*)", re.IGNORECASE)

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from hearth.kb.language.forms.form import Form, Placed, remark, step, title
 from hearth.kb.language.forms.log_heads import STAMP, head_of
-from hearth.kb.language.operators import operator_step
+from hearth.kb.language.operator_step_syntax import operator_step
 from hearth.kb.language.plan_lines import PlanLine, is_said_around, plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
 
 _LINE = re.compile(
     r"(?:[-–]\s+)?(?:<(?P<nick>[\w.@+-]{1,20})>\s*:?"

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hearth.kb.language.action_keys import ACTIONS, INSTANCE, holds_object, names_action
-from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
+from hearth.kb.language.steps_from_calls import composed_step
 
 _BAR = r"[|│┃║]"
 _BARS = re.compile(rf"\s*{_BAR}(?P<cells>.*){_BAR}\s*")

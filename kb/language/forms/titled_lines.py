@@ -4,9 +4,9 @@ import re
 from collections.abc import Iterator, Sequence
 
 from hearth.kb.language.forms.form import Form, Placed, step, title
-from hearth.kb.language.line_parts import parts_of
 from hearth.kb.language.plan_lines import META, plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
+from hearth.kb.language.steps_in_a_line import parts_of
 
 _TITLED = re.compile(
     r"\s*(?:[-*+•–▪]\s+)?(?P<title>\**[^\W\d_][^:=;>→\[\]()]{1,70}?\**)\s*(?::\**\s*|=(?!>)\s*|\s[-–—]\s+)(?P<steps>\S.{8,})"

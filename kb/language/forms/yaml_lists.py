@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator, Sequence
 
-from hearth.kb.language.composed_steps import composed_step
 from hearth.kb.language.forms.form import Form, Placed, remark, step, title
+from hearth.kb.language.steps_from_calls import composed_step
 
 _LISTS = r"(?:steps|plan|actions|program|instructions|sequence|script)"
 _LIST = re.compile(rf"\s*(?:-\s+)?[\"']?{_LISTS}[\"']?\s*:\s*(?:#.*)?")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from hearth.kb.language.action_keys import names_action
 from hearth.kb.language.counted_lines import counting_of
 from hearth.kb.language.plan_lines import cleaned
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
 
 _SHARE = 0.6
 _MOST = 1_000

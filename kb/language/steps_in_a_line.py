@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 
 from hearth.kb.language.forms.code_calls import calls_of
-from hearth.kb.language.operators import operator_step
-from hearth.kb.language.unmarked_lines import chained, clauses, is_like_step
+from hearth.kb.language.operator_step_syntax import operator_step
+from hearth.kb.language.step_like_lines import chained, clauses, is_like_step
 
 _BREAK = re.compile(r"\s*<br\s*/?>\s*", re.IGNORECASE)
 _MARK = re.compile(r"(?:[(\[]?\d{1,2}[.):\]]|[-*•])\s+")

@@ -3,10 +3,10 @@
 import re
 
 from hearth.kb.language.action_keys import action_key, bare_key, holds_object, last_name, names_action
-from hearth.kb.language.composed_steps import composed_step, written
 from hearth.kb.language.lexicon import is_verb
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
+from hearth.kb.language.steps_from_calls import composed_step, written
 
 _DOES = r"(?:(?:do|exec(?:ute)?|run|call|perform|invoke)\s+)?"
 _NAME = r"(?P<name>[A-Za-z][A-Za-z0-9]*(?:[_ .-][A-Za-z][A-Za-z0-9]*){0,3})"

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.missing_objects import may_lack_seat
 from hearth.kb.language.pronouns import EARLIER, REMEMBERED, UNREAD, Mentioned, has_pronoun
-from hearth.kb.language.refused_words import unread
+from hearth.kb.language.things_in_refused_lines import unread
 
 _EARLIER = Mentioned(EARLIER, ())
 

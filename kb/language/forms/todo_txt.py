@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.plan_lines import TAGS, plan_line
-from hearth.kb.language.unmarked_lines import is_like_step
+from hearth.kb.language.step_like_lines import is_like_step
 
 _ITEM = re.compile(
     r"\s*(?=x\s|\([A-Z]\)\s|\d{4}-\d\d-\d\d\s)(?:x\s+)?(?:\([A-Z]\)\s+)?(?:\d{4}-\d\d-\d\d\s+){0,2}(?=[^\W\d_])"
