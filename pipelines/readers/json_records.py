@@ -29,7 +29,8 @@ from hearth.pipelines.readers.reader_items import (
 )
 from hearth.pipelines.readers.records_in_json import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.release import graphs_of
-from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
+from hearth.pipelines.readers.step_rows import joined, row_of_json
+from hearth.pipelines.readers.step_rows_by_task import Entry
 from hearth.pipelines.readers.step_texts import Places, numbered, out_of_order, places_of, steps_of
 from hearth.pipelines.readers.texts_with_positions import Located, Text, pieces_of, texts_in
 from hearth.schemas.diagnostics import Diagnostic, HearthError

@@ -13,7 +13,8 @@ from hearth.pipelines.readers.program_columns import column_of_steps, is_one_ste
 from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.pipelines.readers.records_in_json import Converted
 from hearth.pipelines.readers.step_lists import is_count, is_time, number_of, numbered_names, plain_name
-from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
+from hearth.pipelines.readers.step_rows import joined, row_of_table
+from hearth.pipelines.readers.step_rows_by_task import Entry, StepRow
 from hearth.pipelines.readers.step_texts import SAID
 from hearth.pipelines.readers.table_heads import NUMBERED, begun
 from hearth.schemas.failures import Code
