@@ -1,4 +1,4 @@
-"""Rows of a file by their tasks: which rows are the steps of one program, in which order, and what is said of it."""
+"""Rows of a file by their tasks: the rows of one program, their order, and the warnings about both."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
