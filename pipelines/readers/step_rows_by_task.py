@@ -1,4 +1,4 @@
-"""Rows of a file by their tasks: the rows of one program, their order, and the warnings about both."""
+"""Rows of a file by their tasks: the rows that are the steps of one program, in order, with warnings of their order."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
