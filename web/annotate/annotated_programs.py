@@ -68,6 +68,10 @@ def begin(store: Store, person: str, text: str) -> Row:
     return row
 
 
+begun = begin
+"""Its name in 0.2."""
+
+
 def save(store: Store, person: str, text: str, version: int, draft: Draft, state: str | None = None) -> int:
     """Replace the last version of a person's own program, which the first change begins; the number of the new one.
 
