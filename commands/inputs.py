@@ -237,6 +237,7 @@ def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     from hearth.kb import action_grammar
     from hearth.kb.language.numbered_steps import parse_steps
     from hearth.pipelines.readers import natural_language_plans
+    from hearth.pipelines.readers.reader_warnings import diagnostics
     from hearth.schemas.syntax import parse_program
     from hearth.schemas.text_places import TextPlaces
 
@@ -247,6 +248,7 @@ def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
         steps = parse_steps(text, 0, place, known, fuzzy)
         lines = tuple(map(places.line, steps.program.lines))
         faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])
+        warnings = (*diagnostics(row["warnings"], place), *warnings)
         return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own)
     written, syntax = parse_program(text, place)
     program, wrong = action_grammar.check(written, known, place, text.split("\n"))
@@ -254,7 +256,8 @@ def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     kept = [number for number, line in enumerate(program.lines) if line not in bad]
     steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(places.line(program.lines[n]) for n in kept)
     moved = sorted((places.placed(fault) for fault in (*syntax, *wrong)), key=lambda f: f.line)
-    return Given(_titled(replace(program, steps=steps_kept, lines=lines), row), place, tuple(moved), (), own)
+    warned = diagnostics(row["warnings"], place)
+    return Given(_titled(replace(program, steps=steps_kept, lines=lines), row), place, tuple(moved), warned, own)
 
 
 def _titled(program: Program, row: IngestedRow) -> Program:

@@ -42,10 +42,19 @@ def using(place: Path | str) -> Iterator[None]:
 
 def unreadable(error: Exception, place: Path | str) -> HearthError:
     """Return the error for a dataset whose tables cannot be read."""
-    said = str(error).split("\n", 1)[0]
-    message = f"its tables cannot be read: {type(error).__name__} {said}"
+    message = f"its tables cannot be read: {_reason(error)}"
     remedy = "`verify` names the files that are damaged; fetch or publish the dataset again"
     return HearthError.of(Code.DAMAGED_FILE, message, file=str(place), suggestion=remedy)
+
+
+def _reason(error: Exception) -> str:
+    """Return why rows cannot be used; names of Python's errors say nothing to a reader."""
+    said = str(error).split("\n", 1)[0]
+    if isinstance(error, KeyError | IndexError):
+        return f"a row refers to {said}, which is not there" if isinstance(error, KeyError) else "a row is too short"
+    if type(error).__module__ == "builtins":
+        return f"a value is of another kind ({said})"
+    return said
 
 
 _UNKNOWN = re.compile(

@@ -1,5 +1,6 @@
 """The manifest of a published dataset, which may be a stranger's."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,9 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import read_json
 from hearth.storage.manifest import FORMAT, NAME
+
+_VERSION = re.compile(r"[\w.+/-]{1,64}", re.ASCII)
+"""A version is printed, and put into pages and file names: it has no others."""
 
 
 def published_manifest(folder: Path, asked: str) -> dict[str, Any]:
@@ -38,4 +42,5 @@ def _names_its_form(manifest: dict[str, Any]) -> bool:
     form = manifest.get("format")
     texts = [manifest.get(name) for name in ("version", "action_set")]
     numbered = isinstance(form, int) and not isinstance(form, bool) and form > 0
-    return numbered and all(isinstance(text, str) for text in texts) and isinstance(manifest.get("files"), dict)
+    named = all(isinstance(text, str) and _VERSION.fullmatch(text) for text in texts)
+    return numbered and named and isinstance(manifest.get("files"), dict)

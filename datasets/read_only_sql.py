@@ -13,6 +13,11 @@ def check_question(connection: Any, query: str, parameters: dict[str, Any]) -> N
         HearthError: SYNTAX.
         duckdb.Error: the query cannot be parsed or bound.
     """
+    try:
+        query.encode()
+    except UnicodeEncodeError as error:
+        message = f"the question is not text in UTF-8: character {error.start + 1} is half a character or another code"
+        raise HearthError.of(Code.SYNTAX, message, suggestion="save it in UTF-8") from None
     kind, text = _statement(connection, query)
     if kind == "EXPLAIN":
         kind, text = _explained(connection, text)

@@ -1,4 +1,4 @@
-"""Sizes to which a stranger's dataset unpacks, before it is read whole: a few bytes may stand for millions of rows."""
+"""Limits on rows and texts of a stranger's dataset, before it is read whole: a few bytes may stand for millions."""
 
 from __future__ import annotations
 

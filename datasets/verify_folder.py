@@ -1,5 +1,6 @@
 """Checks of a dataset's folder besides its tables: unlisted files, the catalog, the manifest itself."""
 
+import re
 from collections.abc import Iterator
 from hashlib import sha256
 from pathlib import Path
@@ -21,6 +22,9 @@ from hearth.storage.manifest import NAME, TIMING
 from hearth.storage.partitions import Counts
 
 AGAIN = "fetch or publish the dataset again"
+
+_PART = re.compile(r"(?:programs|executions)/[^/]+\.parquet")
+"""Files that a part of the manifest names, in every dataset."""
 
 _ASKED = ("stage", "code", "settings", "plan")
 """Fields of the manifest that its key is the digest of, with the inputs."""
@@ -83,6 +87,12 @@ def _contradictions(dataset: Dataset) -> Iterator[str]:
 
 
 def _other_parts(folder: Path, content: dict[str, Any]) -> Iterator[str]:
+    named = [name for part in content["parts"] for name in part["files"]]
+    tables = {name for name in content["files"] if _PART.fullmatch(name)}
+    if left := sorted(tables - {*named}):
+        yield f"none of its parts names `{left[0]}`"
+    if len({*named}) < len(named):
+        yield "two of its parts name one file"
     for part in content["parts"]:
         if not {*part["files"]} <= content["files"].keys():
             yield "its parts name files that are not listed"

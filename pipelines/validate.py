@@ -14,7 +14,7 @@ from hearth.kb.language.reading_modes import Fuzzy
 from hearth.pipelines.checks import free_text_steps, program_checks
 from hearth.pipelines.engine.build_context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.stage import Stage
-from hearth.pipelines.readers import natural_language_plans
+from hearth.pipelines.readers import natural_language_plans, reader_warnings
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
@@ -65,7 +65,8 @@ def process_as(record: IngestedRow, reading: Reading) -> list[ValidatedRow | Rej
     )
     start = program_checks.met_at_start(program, groundings, record["conditions"] or (), known)
     found = [*program_checks.findings(titled, known), *program_checks.undeclared(titled, record, known), *start]
-    warnings = (*warnings, *(program_checks.diagnostic(each, titled, record["place"]) for each in found))
+    read = reader_warnings.diagnostics(record["warnings"], record["place"])
+    warnings = (*read, *warnings, *(program_checks.diagnostic(each, titled, record["place"]) for each in found))
     row: ValidatedRow = {
         **named(record),
         "title": titled.title,

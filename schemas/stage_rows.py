@@ -78,6 +78,7 @@ class IngestedRow(_Kind, NamedRow):
     places: Annotated[
         list[list[int]] | None, "where each line of the text stands in the file, if not in lines of its own"
     ]
+    warnings: Annotated[list[WarningRow] | None, "what its reader decided, for the warnings of the program"]
 
 
 class GroundingRow(TypedDict):

@@ -10,6 +10,7 @@ import orjson
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.program_batches import Wanted, runs, write
+from hearth.schemas.terminal import escaped
 from hearth.storage.names import file_name, inside
 
 if TYPE_CHECKING:
@@ -41,12 +42,17 @@ def graphml(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     def written(graph: networkx.MultiDiGraph) -> bytes:
         flat: networkx.MultiDiGraph = networkx.MultiDiGraph()
         for node, attributes in graph.nodes(data=True):
-            flat.add_node(node, **{name: _plain(value) for name, value in attributes.items()})
+            flat.add_node(node, **{name: _plain(value).translate(_NOT_XML) for name, value in attributes.items()})
         for source, target, relation in graph.edges(keys=True):
-            flat.add_edge(source, target, key=relation, relation=relation)
+            flat.add_edge(source, target, key=relation, relation=relation.translate(_NOT_XML))
         return "\n".join(networkx.generate_graphml(flat)).encode() + b"\n"
 
     return _each(dataset, to, wanted, "graphml", written)
+
+
+_NO_CHARACTERS = {*range(32), *range(0xD800, 0xE000), 0xFFFE, 0xFFFF} - {*b"\t\n\r"}
+_NOT_XML = {code: escaped(code) for code in _NO_CHARACTERS}
+"""Characters that no XML document has, not even as references; of the others it says what it said."""
 
 
 def _plain(value: object) -> str:

@@ -33,7 +33,8 @@ LEAST_SIDE = 2.6
 SPACE = 2.4
 """Square metres of room for each square metre of furniture."""
 MOST_STANDING = 500
-"""Things that are in a room, and not on or in another thing: each is placed among all others. Ours have 170."""
+"""Things that are in a room, and not on or in another thing: each is placed among all others. Published homes
+have fewer than 100."""
 GOES = 2
 """Number of times that a home is furnished in a series; each time uses the result of the one before."""
 ENLARGED = (1.0, 1.2, 1.45, 1.75, 2.1)

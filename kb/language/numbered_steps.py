@@ -8,6 +8,7 @@ from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.mentioned_things import SaidBefore
 from hearth.kb.language.nothing_to_do_sentences import stays
+from hearth.kb.language.number_order import IN_ORDER, NumberOrder
 from hearth.kb.language.plan_lines import (
     BRACKETED,
     LOOSE,
@@ -118,10 +119,13 @@ class _StepParser:
         self._notes: list[tuple[str, str, int]] = []
         self._is_open = self._is_heading = False
         self._indent = 0
+        self._order = NumberOrder()
 
     def take(self, line: PlanLine, kind: Kind, raw: str, number: int) -> None:
         """Take a line; items below a step that is not understood are its steps, and the step is their heading."""
         sure = _sure_step(self.known, line.text) if kind is Kind.STEP else None
+        if line.numbered and (reason := self._order.fault_of(line)):
+            self.warnings.append(self._writer.at(Code.AMBIGUOUS, reason, raw, line.text, number, IN_ORDER))
         if line.why:
             (self.warnings if line.why.is_warning else self.refused).append(self._writer.refused(line.why, raw, number))
         if line.why and not line.why.is_warning:

@@ -10,7 +10,7 @@ from hearth.pipelines.readers.field_columns import Asked
 from hearth.pipelines.readers.json_documents import located
 from hearth.pipelines.readers.reader_items import Item, opened
 from hearth.pipelines.readers.records_in_json import holds_program, named
-from hearth.pipelines.readers.step_rows import Entry
+from hearth.pipelines.readers.step_rows_by_task import Entry
 from hearth.pipelines.readers.texts_with_positions import Located
 from hearth.schemas.program_boundaries import TITLE
 from hearth.storage.archives import Place, size_of

@@ -10,7 +10,7 @@ from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
 from hearth.kb.language.program_lines import header as plan_header
 from hearth.kb.language.program_lines import is_plan, is_unmarked
-from hearth.pipelines.readers import natural_language_plans
+from hearth.pipelines.readers import natural_language_plans, reader_warnings
 from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, lacks
 from hearth.pipelines.readers.json_actions import is_action, step_of
 from hearth.pipelines.readers.json_documents import located, located_document
@@ -29,8 +29,9 @@ from hearth.pipelines.readers.reader_items import (
 )
 from hearth.pipelines.readers.records_in_json import FIELDS, Converted, named, records_in
 from hearth.pipelines.readers.release import graphs_of
-from hearth.pipelines.readers.step_rows import Entry, joined, row_of_json
-from hearth.pipelines.readers.step_texts import Places, numbered, places_of, steps_of
+from hearth.pipelines.readers.step_rows import joined, row_of_json
+from hearth.pipelines.readers.step_rows_by_task import Entry
+from hearth.pipelines.readers.step_texts import Places, numbered, out_of_order, places_of, steps_of
 from hearth.pipelines.readers.texts_with_positions import Located, Text, pieces_of, texts_in
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -196,7 +197,7 @@ def read(item: Item, salt: str = "") -> list[IngestedRow | Reject]:
 
 def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Reject:
     words = {name: _word(value, name) for name in _WORDS}
-    text, in_sentences, places = _text(value, words)
+    text, in_sentences, places, order = _text(value, words)
     kind = "program" if text else "description"
     if not text and not words["description"]:
         names = [as_text(key) for key in value.get(_KEYS, value)]
@@ -225,6 +226,7 @@ def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Rejec
         text=text or None,
         line=item.line - 1 if item.line else None,
         places=places,
+        warnings=reader_warnings.rows_of(reader_warnings.warned(value, order).get(reader_warnings.KEY)),
     )
 
 
@@ -283,8 +285,12 @@ def _word(value: Mapping[str, Any], name: str) -> str | None:
 _TEXTS = ("steps", "text", "program")
 
 
-def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool, Places]:
-    """Return the program's text, whether it has natural-language steps, and the places of its lines."""
+Order = list[tuple[int, str, str]]
+"""Warnings of the numbers before steps."""
+
+
+def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool, Places, Order]:
+    """Return the program's text, whether it has steps in words, the places of its lines, and faults of numbers."""
     steps = next((value[key] for key in ("steps", "program") if isinstance(value.get(key), list)), None)
     text = "" if steps is not None else next((word for key in _TEXTS if (word := _word(value, key))), "")
     listed: Any = steps_of(text) if steps is None else steps
@@ -292,18 +298,19 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
     listed = [step_of(step) if is_action(step) else step for step in listed]
     if not all(isinstance(step, str) for step in listed):
         program = Program(steps=tuple(_step(step) for step in listed))
-        return "".join(f"{line}\n" for line in print_lines(program)), False, None
+        return "".join(f"{line}\n" for line in print_lines(program)), False, None, []
     text = text if listed == text.split("\n") else "\n".join(listed)
     is_mixed = (
         steps is not None and (has_actions or "steps" in value) and not all(map(STEP.match, filter(None, listed)))
     )
     in_sentences = bool(text.strip()) and (is_mixed or is_plan(listed) or not any(map(STEP.match, listed)))
-    places = None
+    places, order = None, []
     if in_sentences and (steps is not None or not is_plan(listed) or is_unmarked(listed)):
         text, places = numbered(listed, words)
+        order = out_of_order(listed)
     elif any(isinstance(step, Text) for step in listed):
         places = [place for step in listed for place in places_of(step, 0)]
-    return (text.rstrip("\n") + "\n" if text.strip() else ""), in_sentences, places
+    return (text.rstrip("\n") + "\n" if text.strip() else ""), in_sentences, places, order
 
 
 def _step(value: Mapping[str, Any]) -> Step:

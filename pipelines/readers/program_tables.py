@@ -2,7 +2,7 @@
 
 import itertools
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from hearth.pipelines.readers import json_records
@@ -13,7 +13,8 @@ from hearth.pipelines.readers.program_columns import column_of_steps, is_one_ste
 from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.pipelines.readers.records_in_json import Converted
 from hearth.pipelines.readers.step_lists import is_count, is_time, number_of, numbered_names, plain_name
-from hearth.pipelines.readers.step_rows import Entry, StepRow, joined, row_of_table
+from hearth.pipelines.readers.step_rows import joined, row_of_table
+from hearth.pipelines.readers.step_rows_by_task import Entry, StepRow
 from hearth.pipelines.readers.step_texts import SAID
 from hearth.pipelines.readers.table_heads import NUMBERED, begun
 from hearth.schemas.failures import Code
@@ -59,7 +60,7 @@ class Row(dict[str, str]):
 
 
 _SAMPLE = 40
-_ROWS_ARE_STEPS = "A row is a step: rows of one task in order are one program."
+_ROWS_ARE_STEPS = "A row is a step: rows of one task are one program."
 _BY_CELLS = "No name says which column holds the programs: its cells read as steps."
 
 
@@ -126,7 +127,7 @@ _FEW = 12
 def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns, counts: Sequence[str]) -> str:
     """Return the column that counts steps.
 
-    One whose name says so, else one that goes up by one while the task stays.
+    One whose name says so, else one that counts the rows of each task from 0 or 1.
     """
     names = dict.fromkeys(counts, "1")
     sure, may = number_of(names), number_of(names, any_number=True)
@@ -134,10 +135,23 @@ def _number(sample: Sequence[Sequence[str]], layout: Layout, found: FieldColumns
         return sure
     title, number, program = (layout.columns.index(found.get(each, may)) for each in ("title", "", "program"))
     rows = [("title" in found and row[title], row[number], row[program]) for row in sample if is_count(row[number])]
-    follows = [one[0] == two[0] and int(two[1]) == int(one[1]) + 1 for one, two in itertools.pairwise(rows)]
-    begins = all(goes_on or row[1].strip() in ("0", "1") for goes_on, row in zip([False, *follows], rows, strict=True))
+    counts_of = _by_task(rows)
+    begins = all(min(counts) in (0, 1) for counts in counts_of)
+    follows = any(len(counts) > 1 for counts in counts_of)
     single = "program" not in found or all(is_one_step(step) for _, _, step in rows if step.strip())
-    return may if any(follows) and begins and single else ""
+    return may if follows and begins and single else ""
+
+
+def _by_task(rows: Iterable[tuple[Any, str, str]]) -> list[set[int]]:
+    """Return the numbers of each task's rows; a number that is there already begins another program of the task."""
+    found: list[set[int]] = []
+    last: dict[Any, set[int]] = {}
+    for task, number, _ in rows:
+        if task not in last or int(number) in last[task]:
+            last[task] = set()
+            found.append(last[task])
+        last[task].add(int(number))
+    return found
 
 
 def _are_single(sample: Sequence[Sequence[str]], number: str, layout: Layout) -> bool:
@@ -157,7 +171,10 @@ def _is_action(layout: Layout, found: FieldColumns) -> bool:
 
 
 def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: Found) -> bool:
-    """Return whether most rows hold one step and are next to another row of their title, which is nowhere else."""
+    """Return whether most rows hold one step and are next to another row of their title.
+
+    Where titles begin again, the column of programs must be called `step` or `action`.
+    """
     if "title" not in found and "program" in found and (_row_is_step(layout, found) or found.note == _ROWS_ARE_STEPS):
         program = layout.columns.index(found["program"])
         return len(sample) > 1 and all(is_one_step(row[program]) for row in sample if row[program])
@@ -166,8 +183,11 @@ def _is_by_title(sample: Sequence[Sequence[str]], layout: Layout, found: Found) 
     title, program = (layout.columns.index(found[field]) for field in ("title", "program"))
     runs = [(name, len(list(rows))) for name, rows in itertools.groupby(sample, key=lambda row: row[title])]
     beside = sum(count for name, count in runs if count > 1 and name)
-    are_apart = len({name for name, _ in runs}) == len(runs)
-    return are_apart and 2 * beside > len(sample) and all(is_one_step(row[program]) for row in sample if row[program])
+    if len({name for name, _ in runs}) < len(runs):  # a title begins again: only a column `step` says what a row is
+        are_steps = _row_is_step(layout, found)
+    else:
+        are_steps = 2 * beside > len(sample)
+    return are_steps and all(is_one_step(row[program]) for row in sample if row[program])
 
 
 def _guess_program(table: Table, cells: Mapping[str, Sequence[str]]) -> None:

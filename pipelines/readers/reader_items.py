@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import ConditionRow, QuantityRow
+from hearth.schemas.row_types import ConditionRow, QuantityRow, WarningRow
 from hearth.schemas.stage_rows import IngestedRow, PartRow, WrittenGroundingRow
 from hearth.schemas.text_decoding import LOOKED_AT, encoding_of, western
 from hearth.storage.archives import Place, raw
@@ -98,6 +98,7 @@ def record(
     keep: list[bool] | None = None,
     parts: list[PartRow] | None = None,
     places: list[list[int]] | None = None,
+    warnings: list[WarningRow] | None = None,
 ) -> IngestedRow:
     """Return the row of an item; id and, unless given, origin, place and description id are those of the item."""
     return {
@@ -122,6 +123,7 @@ def record(
         "keep": keep,
         "parts": parts,
         "places": places,
+        "warnings": warnings or None,
     }
 
 

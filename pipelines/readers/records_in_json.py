@@ -1,5 +1,6 @@
 """The records in a JSON value, with their fields by our names, whatever their keys are."""
 
+import itertools
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -8,8 +9,10 @@ from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed,
 from hearth.pipelines.readers.json_actions import is_action, looks_like_mapping, of_planner
 from hearth.pipelines.readers.model_outputs import chat_of, of_others
 from hearth.pipelines.readers.program_columns import column_of_steps, reading_of
-from hearth.pipelines.readers.step_lists import is_line, plain_name, with_step_lists
+from hearth.pipelines.readers.reader_warnings import IN_ORDER, ORDERED, warned
+from hearth.pipelines.readers.step_lists import is_line, numbers_of, plain_name, with_step_lists
 from hearth.pipelines.readers.step_texts import IN_LINE
+from hearth.pipelines.readers.texts_with_positions import texts_in
 from hearth.schemas.failures import Code
 from hearth.schemas.program_boundaries import STEP
 from hearth.storage.rejects import Reject, as_text
@@ -145,7 +148,7 @@ def _is_steps(value: Any) -> bool:
 
 def named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
     """Return a record with its fields by our names; those of others are guessed where ours are missing."""
-    value = with_step_lists(value)
+    value = warned(with_step_lists(value), [*_out_of_order(value)])
     inside = {name: value_at(value, name) for name in given.values() if "." in name and name not in value}
     value = {**value, **{name: part for name, part in inside.items() if part is not None}}
     texts = [key for key, part in value.items() if isinstance(part, str) or (part and _is_steps(part))]
@@ -171,6 +174,17 @@ def named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
     if "program" in named and not _is_steps(value["text"]):
         return {**{key: part for key, part in value.items() if key != "text"}, **named}
     return {**value, **{field: part for field, part in named.items() if field != "program" and found[field] != "text"}}
+
+
+def _out_of_order(value: Mapping[str, Any]) -> Iterator[tuple[int, str, str]]:
+    """Yield a warning for the first step of a record's list whose number is lower than the one above."""
+    for part in value.values():
+        numbers = numbers_of(part)
+        for at, (before, number) in enumerate(itertools.pairwise(numbers), 1):
+            if number < before:
+                line = next((text.line for text in texts_in(part[at])), 0)
+                yield line, f"step {number} stands below step {before}: {ORDERED}", IN_ORDER
+                break
 
 
 _PROGRAMS = frozenset({"steps", "program"})

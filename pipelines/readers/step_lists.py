@@ -1,7 +1,7 @@
 """Steps that JSON holds in another way than as a list of texts: under numbered keys, or as objects with a text."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from hearth.pipelines.readers.json_actions import is_action, is_known
@@ -162,6 +162,7 @@ def _of_objects(parts: list[Any], is_named: bool) -> list[Any] | None:
     """Return steps that are texts, actions, or objects with a text each; None if any of them is something else."""
     found = []
     are_pairs = _are_pairs(parts)
+    parts = [part for _, part in sorted(enumerate(parts), key=_at(parts))]
     for part in parts:
         if isinstance(part, str) or is_action(part):
             found.append(part)
@@ -174,6 +175,21 @@ def _of_objects(parts: list[Any], is_named: bool) -> list[Any] | None:
         else:
             return None
     return found
+
+
+def _at(parts: list[Any]) -> Callable[[tuple[int, Any]], int]:
+    """Return the place of each step: by its number where all have one of their own, else as in the list."""
+    numbers = numbers_of(parts)
+    return (lambda each: numbers[each[0]]) if numbers else (lambda each: each[0])
+
+
+def numbers_of(parts: Any) -> list[int]:
+    """Return the numbers of steps that are objects, in the order of a list; empty unless each has one of its own."""
+    if not isinstance(parts, list) or not all(isinstance(part, dict) for part in parts):
+        return []
+    names = [number_of(part) for part in parts]
+    numbers = [int(part[name]) for part, name in zip(parts, names, strict=True) if name]
+    return numbers if len({*numbers}) == len(parts) else []
 
 
 def _are_pairs(parts: Iterable[Any]) -> bool:

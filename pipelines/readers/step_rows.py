@@ -1,41 +1,15 @@
-"""Rows, or lines of JSON, that hold a step each: those of one task in order are one program."""
+"""Rows, or lines of JSON, that hold a step each: those of one task are one program."""
 
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from hearth.pipelines.readers.field_columns import FieldColumns, guessed
 from hearth.pipelines.readers.json_actions import is_action, is_only_action, is_tool_use, step_of
 from hearth.pipelines.readers.program_columns import is_one_step
 from hearth.pipelines.readers.step_lists import is_count, number_of, plain_name, text_of
+from hearth.pipelines.readers.step_rows_by_task import Entry, StepRow, Tasks
 from hearth.pipelines.readers.texts_with_positions import Located
 from hearth.storage.rejects import Reject
-
-MOST_ROWS = 1_000
-"""Rows of one program, at most; a further row begins another."""
-
-
-class StepRow(NamedTuple):
-    """A row that is a step.
-
-    Attributes:
-        key: of its task; "" where the row says nothing of it.
-        number: of the step; None where rows are not numbered.
-        is_sure: whether it is a step also where no row next to it has its task.
-        value: the record so far, with `steps`.
-    """
-
-    key: str
-    number: int | None
-    is_sure: bool
-    value: dict[str, Any]
-
-
-class Entry(NamedTuple):
-    """A value with its first line and its name in ids."""
-
-    value: Any
-    line: int
-    name: str
 
 
 def joined(entries: Iterable[Entry], row_of: Callable[[Any], StepRow | None]) -> Iterator[Entry]:
@@ -43,39 +17,10 @@ def joined(entries: Iterable[Entry], row_of: Callable[[Any], StepRow | None]) ->
 
     A row that is refused costs the program no more than its step.
     """
-    rows: list[tuple[Entry, StepRow]] = []
-    are_steps = False
+    tasks = Tasks()
     for entry in entries:
-        if isinstance(entry.value, Reject):
-            yield entry
-            continue
-        row = row_of(entry.value)
-        if rows and not (row and _follows(rows, row)):
-            are_steps = are_steps or len(rows) > 1
-            yield _program(rows, are_steps)
-            rows = []
-        if row:
-            rows.append((entry, row))
-        else:
-            yield entry
-    if rows:
-        yield _program(rows, are_steps)
-
-
-def _follows(rows: list[tuple[Entry, StepRow]], row: StepRow) -> bool:
-    first, last = rows[0][1], rows[-1][1]
-    if len(rows) >= MOST_ROWS or row.key not in ("", first.key):
-        return False
-    if row.number is None or last.number is None:
-        return row.number is last.number and row.is_sure
-    return row.number > last.number and (row.is_sure or first.number in (0, 1))
-
-
-def _program(rows: list[tuple[Entry, StepRow]], are_steps: bool) -> Entry:
-    entry, row = rows[0]
-    if len(rows) == 1 and not (row.is_sure or are_steps):
-        return entry
-    return entry._replace(value={**row.value, "steps": [step for _, each in rows for step in each.value["steps"]]})
+        yield from tasks.take(entry, None if isinstance(entry.value, Reject) else row_of(entry.value))
+    yield from tasks.end()
 
 
 def row_of_json(found: Any, given: FieldColumns) -> StepRow | None:

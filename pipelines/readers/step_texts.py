@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 
+from hearth.kb.language.number_order import IN_ORDER, NumberOrder
 from hearth.kb.language.plan_lines import plan_line
 from hearth.pipelines.readers.json_actions import looks_like_mapping, mapped_steps
 from hearth.pipelines.readers.texts_with_positions import Text, pieces_of
@@ -81,6 +82,14 @@ def numbered(listed: Sequence[str], words: Mapping[str, str | None]) -> tuple[st
     return "\n".join([*top, *found]), [*first * len(top), *places] if any(
         isinstance(step, Text) for step in listed
     ) else None
+
+
+def out_of_order(listed: Sequence[str]) -> list[tuple[int, str, str]]:
+    """Return a warning for each step whose number does not follow the one above."""
+    order = NumberOrder()
+    numbered_lines = ((step, line) for step in listed if (line := plan_line(step)).numbered)
+    faults = ((step, order.fault_of(line)) for step, line in numbered_lines)
+    return [(step.line if isinstance(step, Text) else 0, fault, IN_ORDER) for step, fault in faults if fault]
 
 
 def _heading(listed: Sequence[str]) -> str:

@@ -12,7 +12,7 @@ from hearth.pipelines.readers.field_columns import Asked
 from hearth.pipelines.readers.program_columns import column_of_steps
 from hearth.pipelines.readers.reader_items import LARGEST_FILE, Item, opened, suffixless
 from hearth.pipelines.readers.records_in_json import holds_program
-from hearth.pipelines.readers.step_rows import Entry
+from hearth.pipelines.readers.step_rows_by_task import Entry
 from hearth.pipelines.readers.texts_with_positions import text_at, texts_in
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code

@@ -1,4 +1,4 @@
-"""The 400 messy plans: how much is read rightly, how much as something else, and that nothing is dropped in silence."""
+"""The 400 messy plans, and 150 more: how much is read rightly, and that nothing is dropped in silence."""
 
 import json
 import re
@@ -14,11 +14,12 @@ from hearth.schemas.syntax import print_step
 from hearth.storage.rejects import Reject
 
 PLANS = Path(__file__).with_name("plans.jsonl")
-RIGHT = 0.927
-WRONG = 0
+UNSEEN = Path(__file__).with_name("unseen_plans.jsonl")
+RIGHT = {PLANS: 0.997, UNSEEN: 0.955}
+WRONG = {PLANS: 0, UNSEEN: 0.0012}
 WITHOUT_FAULT = {
     "CSV": 45, "CSV multi-line cells": 26, "tables": 12, "brackets": 4, "JSON lists and objects": 7, "PDDL": 16,
-    "JSON actions and tool calls": 1,
+    "JSON actions and tool calls": 1, "shell script": 5, "questions": 3, "bullets star": 1, "email": 1, "whatsapp": 1,
 }  # fmt: skip
 """Steps at most, by form, that are neither read nor refused on their line: tables and JSON refused as a whole."""
 
@@ -36,6 +37,7 @@ class Read(NamedTuple):
 class Score(NamedTuple):
     """Counts by form, and the faulty outcomes in words."""
 
+    plans: Path
     counts: dict[str, Counter[str]]
     found: list[str]
 
@@ -95,11 +97,11 @@ def judged(row: dict[str, Any], steps: list[Read], faults: set[int]) -> list[tup
     return outcomes
 
 
-@pytest.fixture(scope="module")
-def score(tmp_path_factory, knowledge) -> Score:
+@pytest.fixture(scope="module", params=[PLANS, UNSEEN], ids=lambda path: path.stem)
+def score(request, tmp_path_factory, knowledge) -> Score:
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     found = []
-    for row in map(json.loads, PLANS.read_text(encoding="utf-8").splitlines()):
+    for row in map(json.loads, request.param.read_text(encoding="utf-8").splitlines()):
         file = tmp_path_factory.mktemp("plan") / row["file"]
         file.write_bytes(row["text"].encode())
         for name, what in judged(row, *read(file, knowledge)):
@@ -107,14 +109,14 @@ def score(tmp_path_factory, knowledge) -> Score:
             found += [f"{name}: {row['id']}: {what}"] if name != "right" else []
     for form in sorted(counts, key=lambda form: -counts[form]["missed"]):
         print(f"{form:32}", dict(counts[form]))
-    return Score(counts, found)
+    return Score(request.param, counts, found)
 
 
 def test_most_steps_are_read_as_meant_and_hardly_one_as_another(score):
     right, wrong = score.total("right"), score.total("wrong")
     meant = right + score.total("missed")
-    assert right >= RIGHT * meant
-    assert wrong <= WRONG * meant, [each for each in score.found if each.startswith("wrong")]
+    assert right >= RIGHT[score.plans] * meant
+    assert wrong <= WRONG[score.plans] * meant, [each for each in score.found if each.startswith("wrong")]
 
 
 def test_no_record_takes_the_title_of_another(score):
