@@ -88,6 +88,10 @@ def stands_on_floor(thing: Thing) -> bool:
     )  # fmt: skip
 
 
+LONGEST = LONGEST_HOME
+"""Metres of a home at most; the name in 0.2."""
+
+
 def check_extent(width: float, depth: float) -> None:
     """Refuse a home whose floor is larger than any, before a grid of it takes the memory.
 

@@ -26,7 +26,7 @@ from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
 from hearth.kb.language.self_corrections import corrects_itself
 from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, nearest_steps, plain_step
 from hearth.kb.language.single_clauses import Asked, unclear
-from hearth.kb.language.step_faults import LineFaults, of_language, phrase  # noqa: F401 - the last was here in 0.2
+from hearth.kb.language.step_faults import LineFaults, of_language, phrase  # noqa: F401 - phrase was here in 0.2
 from hearth.kb.language.step_like_lines import is_like_step, is_order, sentences
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code

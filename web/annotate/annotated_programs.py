@@ -69,7 +69,7 @@ def begin(store: Store, person: str, text: str) -> Row:
 
 
 begun = begin
-"""The name of 0.2."""
+"""Its name in 0.2."""
 
 
 def save(store: Store, person: str, text: str, version: int, draft: Draft, state: str | None = None) -> int:
