@@ -12,11 +12,11 @@ from hearth.grounding.preconditions.precondition_inference import infer as infer
 from hearth.homes.library import load_graph as load_graph
 from hearth.homes.procedural.home_generator import generate as generate
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.plans_in_words import parse_steps as parse_steps
 from hearth.kb.language.step_understanding import understand as understand
 from hearth.kb.tools.find import Query as Query
 from hearth.kb.tools.find import find as find
 from hearth.pipelines.build import build as build
+from hearth.pipelines.readers.plans_in_words import parse_steps as parse_steps
 from hearth.rendering.film.execution_keyframes import trajectory_of as trajectory_of
 from hearth.rendering.film.video import record as record
 from hearth.rendering.modalities import render as render

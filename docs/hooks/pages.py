@@ -28,7 +28,9 @@ ENTRY_POINTS = {
     "Homes": (
         "hearth:home", "hearth:load_graph", "hearth:Home.from_graph", "hearth:generate", "hearth.homes.lint:lint",
     ),
-    "Programs in a home": ("hearth:parse_program", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit"),
+    "Programs in a home": (
+        "hearth:parse_program", "hearth:parse_steps", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit",
+    ),
     "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
     "Environments of learning libraries": (
         "hearth:TextHome", "hearth:TextHomes",

@@ -15,9 +15,6 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box
 from hearth.schemas.numbers import LONGEST_HOME
 
-LONGEST = LONGEST_HOME
-"""The name of 0.2."""
-
 CELL = 0.1
 """Metres a cell."""
 BODY = 0.2

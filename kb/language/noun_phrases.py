@@ -28,7 +28,7 @@ _OWNER = re.compile(
 """People to whom things belong; a dog's bed is not a person's."""
 
 _POSSESSIVE = re.compile(r"(?<=s)['’](?=\s)|['’](?=s\s)")
-_SOURCE = re.compile(r"\s+(?:out of|out from|off of|off|from|from inside|from under|from behind)\s+")
+SOURCE = re.compile(r"\s+(?:out of|out from|off of|off|from|from inside|from under|from behind)\s+")
 """Before the place from which a thing is taken; a step has no such place, as its world says where the thing is."""
 _VESSEL = re.compile(r"(?:the|a|an|its|their) (?:bag|bottle|box|can|carton|jar|jug|pack|packet|pitcher|tin|tub|tube)")
 """Packages, which are the thing in them: the milk from the carton is a carton of milk."""
@@ -50,7 +50,7 @@ def thing_of(known: Knowledge, words: str) -> str | None:
     name = _named(known, words)
     if name is not None:
         return name
-    for place in _SOURCE.finditer(words):
+    for place in SOURCE.finditer(words):
         name = _named(known, words[: place.start()])
         if name is not None and thing_of(known, words[place.end() :]) is not None:
             return name
@@ -59,12 +59,12 @@ def thing_of(known: Knowledge, words: str) -> str | None:
 
 def is_taken_from(known: Knowledge, words: str) -> bool:
     """Return whether a noun phrase says from where its thing is taken, `water from the tap`."""
-    return _SOURCE.search(words) is not None and _named(known, words) is None
+    return SOURCE.search(words) is not None and _named(known, words) is None
 
 
 def without_source(known: Knowledge, words: str) -> tuple[str, str, str] | None:
     """Return words without the known place from which a thing is taken, that place, and the words behind it."""
-    for place in reversed(list(_SOURCE.finditer(words))):
+    for place in reversed(list(SOURCE.finditer(words))):
         end = _NEXT_PLACE.search(words, place.end())
         at = end.start() if end else len(words)
         source = words[place.end() : at]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.mentioned_things import SaidBefore
+from hearth.kb.language.named_sources import left_out
 from hearth.kb.language.nothing_to_do_sentences import stays
 from hearth.kb.language.number_order import IN_ORDER, NumberOrder
 from hearth.kb.language.plan_lines import (
@@ -28,6 +29,7 @@ from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, ne
 from hearth.kb.language.single_clauses import Asked, unclear
 from hearth.kb.language.step_faults import LineFaults, of_language, phrase  # noqa: F401 - phrase was here in 0.2
 from hearth.kb.language.step_like_lines import is_like_step, is_order, sentences
+from hearth.kb.language.step_phrases import say
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -140,6 +142,7 @@ class _StepParser:
             self.steps.append(sure[0])
             self.lines.append(number)
             self._before.mentions.append(sure[1])
+            self._say_source(line.text, raw, number, len(self.steps) - 1)
         elif kind is Kind.STEP:
             before = len(self.steps)
             found = self._read(line, raw, number)
@@ -247,9 +250,22 @@ class _StepParser:
                 asked = asked_steps(self.known, words, said, self.fuzzy)
             if not asked and shorter not in ("", words):
                 asked = self._asked(shorter, said, self.fuzzy)
+        first = len(self.steps)
         for each in asked:
             self._take_asked(each, raw, words, number)
+        if not any(each.left_out for each in asked):
+            self._say_source(words, raw, number, first)
         return [] if asked else self._read_in_part(words, raw, number, said)
+
+    def _say_source(self, words: str, raw: str, number: int, first: int) -> None:
+        """Warn of a place from which a step of the line takes a thing, and at which the plan is not."""
+        takes = self.known.group("takes")
+        at = max((n for n in range(first, len(self.steps)) if self.steps[n].action in takes), default=None)
+        names = tuple(ref.name for ref in self.steps[at].objects) if at is not None else ()
+        if at is not None and names and (out := left_out(self.known, words, names[0], self.steps[:at])):
+            step = say(self.known.actions[self.steps[at].action], names)
+            message = f"taken for `{step}`; left out: {out}, as the plan has not gone there"
+            self.warnings.append(self._writer.at(Code.FUZZY_MATCH, message, raw, words, number))
 
     def _take_back(self, number: int) -> None:
         """Leave out the steps that sentences before this one on the same line asked for."""

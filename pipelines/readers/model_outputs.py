@@ -4,8 +4,10 @@ from typing import Any
 
 from hearth.kb.language.forms.orders import orders_in
 from hearth.kb.language.program_lines import is_plan
-from hearth.pipelines.readers.chat_titles import accepts, titled
+from hearth.pipelines.readers.chat_titles import accepts, rejects, titled
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
+from hearth.pipelines.readers.reader_warnings import warned
+from hearth.pipelines.readers.texts_with_positions import Text
 
 
 def of_others(value: dict[str, Any]) -> dict[str, Any] | None:
@@ -40,7 +42,19 @@ def _chat(messages: list[dict[str, Any]]) -> dict[str, Any]:
     last = _last_answer(messages)
     asked = [_said(each.get("content")) for each in messages[:last] if each["role"] == "user"]
     answer = _answer(messages[last]) if last is not None else {}
-    return {**titled(asked if answer else asked[-1:]), **answer}
+    found = {**titled(asked if answer else asked[-1:]), **answer}
+    return warned(found, _unanswered(messages[last:])) if answer else found
+
+
+def _unanswered(messages: list[dict[str, Any]]) -> list[tuple[int, str, str]]:
+    """Return a warning for the request that corrects the last answer, and has no answer."""
+    asked = [each.get("content") for each in messages if each["role"] == "user"]
+    text = next((text for text in asked if rejects(_said(text))), None)
+    if text is None:
+        return []
+    line = text.line if isinstance(text, Text) else 0
+    message = f"`{_said(text).strip()[:60]}` corrects the answer above and has no answer: the steps are those above"
+    return [(line, message, "add the corrected answer, or leave the chat out")]
 
 
 def _last_answer(messages: list[dict[str, Any]]) -> int | None:

@@ -38,6 +38,11 @@ def scan(path: Place, place: str) -> Iterator[Item]:
         yield checked(text, number, record_id, place)
 
 
+def starts_of(text: str) -> list[int]:
+    """Return the first line of each program of a text."""
+    return [number for number, _ in without_document_titles(_programs(enumerate(text.split("\n"), 1)))]
+
+
 def scan_list(path: Place, place: str) -> Iterator[Item]:
     """One item for each text of a JSON list of texts."""
     for number, (line, found) in enumerate(located_entries(path, place), 1):

@@ -4,7 +4,7 @@ They are read as chats in JSON are, by the same rules. A text in which no reques
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from hearth.kb.language.plan_lines import RULE, plan_line
@@ -74,33 +74,48 @@ class _Turn(NamedTuple):
 
 
 def is_chat(path: Place, first: Sequence[str]) -> bool:
-    """Return whether a text is a chat in which a request corrects an answer.
+    """Return whether a text is a chat in which a request corrects an answer, or whose answers begin with a number.
 
     Args:
         path: the text.
         first: its first lines, by which most texts are known to be none.
     """
-    said = {_role(found) for line in first if (found := _LABEL.match(line))}
-    if not {"user", "assistant"} <= said or size_of(path) > LARGEST:
+    return _may_be_chat(first) and size_of(path) <= LARGEST and _is_chat(_turns(line for line, _ in lines(path)))
+
+
+def _may_be_chat(first: Sequence[str]) -> bool:
+    return {"user", "assistant"} <= {_role(found) for line in first if (found := _LABEL.match(line))}
+
+
+def _is_chat(turns: Iterable[_Turn]) -> bool:
+    told = [turn for turn in turns if turn.role not in ("system", "above")]
+    messages = [turn.message() for turn in told]
+    if [turn.role for turn in told[:2]] != ["user", "assistant"] or holds_orders(messages):
         return False
-    messages = [turn.message() for turn in _turns(path)]
-    spoken = [each for each in messages if each["role"] not in ("system", "above")]
-    roles = [each["role"] for each in spoken]
-    if roles[:2] != ["user", "assistant"]:
-        return False
-    asked = [each["content"] for at, each in enumerate(spoken) if each["role"] == "user" and 0 < at < len(roles) - 1]
-    return any(map(rejects, asked)) and not holds_orders(messages)
+    asked = [str(each["content"]) for at, each in enumerate(messages) if each["role"] == "user" and at]
+    numbered = [turn for turn in told if turn.role == "assistant" and plan_line(turn.rows[0].text).numbered]
+    return any(map(rejects, asked)) or len(numbered) > 1
 
 
 def scan(path: Place, place: str) -> Iterator[Item]:
     """Yield the item of each chat: one begins with a request that is about no answer before it."""
-    for line, chat in _chats(path):
+    yield from _items((line for line, _ in lines(path)), place)
+
+
+def items_in(text: str) -> list[Item]:
+    """Return the items of the chats in a text; empty where the text is no chat in which an answer is corrected."""
+    rows = text.split("\n")
+    return [*_items(rows, "")] if _may_be_chat(rows) and _is_chat(_turns(rows)) else []
+
+
+def _items(rows: Iterable[str], place: str) -> Iterator[Item]:
+    for line, chat in _chats(rows):
         yield from json_records.items(chat, place, line, f"{place}:{line}", {})
 
 
-def _chats(path: Place) -> Iterator[tuple[int, dict[str, Any]]]:
+def _chats(rows: Iterable[str]) -> Iterator[tuple[int, dict[str, Any]]]:
     chat: list[_Turn] = []
-    for turn in _turns(path):
+    for turn in _turns(rows):
         is_answered = any(each.role == "assistant" for each in chat)
         if turn.role == "user" and is_answered and not corrects(str(turn.message()["content"])):
             yield chat[0].line, _record(chat)
@@ -118,10 +133,10 @@ def _record(chat: Sequence[_Turn]) -> dict[str, Any]:
     return {"title": title, "messages": messages} if title else {"messages": messages}
 
 
-def _turns(path: Place) -> Iterator[_Turn]:
+def _turns(rows: Iterable[str]) -> Iterator[_Turn]:
     """Yield the turns of a text; the lines above the first are one, too."""
     turn = _Turn("above", [])
-    for number, (line, _) in enumerate(lines(path), 1):
+    for number, line in enumerate(rows, 1):
         found = _LABEL.match(line)
         role = _role(found) if found else turn.role
         if role != turn.role:

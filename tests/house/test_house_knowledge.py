@@ -27,7 +27,7 @@ NAMED = {
     "challenges/household.py": "tasks that are named by their ids alone",
     "challenges/household_as_challenge.py": "published tasks, which are defined with our knowledge",
     "challenges/task_files.py": "published tasks, which are defined with our knowledge",
-    "kb/language/plans_in_words.py": "an entry point that works without a knowledge",
+    "pipelines/readers/plans_in_words.py": "an entry point that works without a knowledge",
     "challenges/named_task_envs.py": "tasks that `gym.make` names",
     "challenges/tasks.py": "the instruction of a published task",
     "envs/session.py": "homes that `gym.make` names",
@@ -37,7 +37,7 @@ NAMED = {
 
 OPTIONAL = {
     ("simulation/env.py", "knowledge"): "without it, a home is refused that is only named",
-    ("kb/language/plans_in_words.py", "knowledge"): "the entry point `hearth.parse_steps` reads with ours",
+    ("pipelines/readers/plans_in_words.py", "knowledge"): "the entry point `hearth.parse_steps` reads with ours",
     ("challenges/household.py", "knowledge"): "a published task has ours",
     ("envs/text_homes.py", "knowledge"): "a published task has ours",
 }
