@@ -35,6 +35,6 @@ def _row(line: int, message: str, remedy: str) -> WarningRow:
 def diagnostics(rows: Sequence[WarningRow] | None, place: str) -> tuple[Diagnostic, ...]:
     """Return the warnings of an ingested row."""
     return tuple(
-        Diagnostic(Code(row["code"]), row["message"], place, row["line"], suggestion=row["suggestion"])
+        Diagnostic(Code[row["code"]], row["message"], place, row["line"], suggestion=row["suggestion"])
         for row in rows or ()
     )
