@@ -1,5 +1,6 @@
 """Faults of steps in words: messages, places and remedies of lines that are not understood, or only nearly."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -56,6 +57,8 @@ class LineFaults:
         if not whole.ambiguous and not whole.unknown and (lacking := missing(self._known, words)):
             message, remedy = f"an object is missing: {lacking.question}", f"`{lacking.example(self._known, said)}`"
             return self.at(Code.NOT_UNDERSTOOD, message, line, words, number, f"name it, as in {remedy}")
+        if remedy := _of_whole_line(words):
+            return self.at(Code.NOT_UNDERSTOOD, "could not read this line as a step", line, words, number, remedy)
         code = Code.AMBIGUOUS if whole.ambiguous else Code.NOT_UNDERSTOOD
         message = "words that may mean several things" if whole.ambiguous else "could not read this line as a step"
         return self.at(code, message, line, words, number, _remedy(whole))
@@ -81,6 +84,20 @@ class LineFaults:
             fault = replace(fault, column=1, length=len(found), found=found)
         source, before = excerpt(raw, fault.column + at)
         return replace(fault, file=self._place, line=number, column=fault.column + at, source=source, before=before)
+
+
+_NEGATED = re.compile(
+    r"(?:please |also |then |but |and )*(?:(?:you )?(?:do|must|should|shall|can) ?not|do ?n['’]?t|never|avoid)\b",
+    re.IGNORECASE,
+)
+_CHOICE = re.compile(r"\S (?:or|and/or) \S", re.IGNORECASE)
+
+
+def _of_whole_line(words: str) -> str:
+    """Return the remedy of a line that forbids an act or leaves a choice; empty for any other line."""
+    if _NEGATED.match(words):
+        return "this says what not to do: leave the line out"
+    return "choose one of the two, and name it alone" if _CHOICE.search(words) else ""
 
 
 def _remedy(whole: Understood) -> str:

@@ -8,8 +8,9 @@ from typing import Any
 
 from hearth.datasets.format.ids import current_id
 from hearth.datasets.format.splits import RULES
+from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.program_lines import header as plan_header
-from hearth.kb.language.program_lines import is_plan, is_unmarked
+from hearth.kb.language.program_lines import is_plan, is_unmarked, reading_of
 from hearth.pipelines.readers import natural_language_plans, reader_warnings
 from hearth.pipelines.readers.field_columns import Asked, FieldColumns, guessed, lacks
 from hearth.pipelines.readers.json_actions import is_action, step_of
@@ -305,7 +306,8 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
     )
     in_sentences = bool(text.strip()) and (is_mixed or is_plan(listed) or not any(map(STEP.match, listed)))
     places, order = None, []
-    if in_sentences and (steps is not None or not is_plan(listed) or is_unmarked(listed)):
+    is_code = steps is None and in_sentences and reading_of(listed)[1] is CODE
+    if in_sentences and not is_code and (steps is not None or not is_plan(listed) or is_unmarked(listed)):
         text, places = numbered(listed, words)
         order = out_of_order(listed)
     elif any(isinstance(step, Text) for step in listed):

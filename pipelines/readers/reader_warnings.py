@@ -20,7 +20,7 @@ def warned(record: Mapping[str, Any], more: Sequence[Sequence[Any]]) -> dict[str
 
 
 def rows_of(found: Any) -> list[WarningRow]:
-    """Return warnings as rows; anything else under their key is left out."""
+    """Return warnings as rows; leave out anything else under their key."""
     listed = found if isinstance(found, list) else []
     return [
         _row(*each) for each in listed if isinstance(each, list) and [type(part) for part in each] == [int, str, str]

@@ -88,12 +88,12 @@ def _may_be_chat(first: Sequence[str]) -> bool:
 
 
 def _is_chat(turns: Iterable[_Turn]) -> bool:
-    told = [turn for turn in turns if turn.role not in ("system", "above")]
-    messages = [turn.message() for turn in told]
-    if [turn.role for turn in told[:2]] != ["user", "assistant"] or holds_orders(messages):
+    spoken = [turn for turn in turns if turn.role not in ("system", "above")]
+    messages = [turn.message() for turn in spoken]
+    if [turn.role for turn in spoken[:2]] != ["user", "assistant"] or holds_orders(messages):
         return False
     asked = [str(each["content"]) for at, each in enumerate(messages) if each["role"] == "user" and at]
-    numbered = [turn for turn in told if turn.role == "assistant" and plan_line(turn.rows[0].text).numbered]
+    numbered = [turn for turn in spoken if turn.role == "assistant" and plan_line(turn.rows[0].text).numbered]
     return any(map(rejects, asked)) or len(numbered) > 1
 
 
@@ -103,7 +103,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 
 def items_in(text: str) -> list[Item]:
-    """Return the items of the chats in a text; empty where the text is no chat in which an answer is corrected."""
+    """Return the items of the chats in a text; empty for a text of another kind."""
     rows = text.split("\n")
     return [*_items(rows, "")] if _may_be_chat(rows) and _is_chat(_turns(rows)) else []
 

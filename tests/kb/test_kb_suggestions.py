@@ -73,7 +73,17 @@ def test_a_tool_is_no_thing_of_the_hint(knowledge, sentence, step):
     assert suggestion(knowledge, sentence) == f"did you mean `{step}`?"
 
 
-@pytest.mark.parametrize("sentence", ["Do not touch the stove", "Put it"])
+@pytest.mark.parametrize("sentence", ["Do not touch the stove", "Dont open the fridge", "Never open the door"])
+def test_a_line_that_forbids_an_act_is_said_to_do_so(knowledge, sentence):
+    assert suggestion(knowledge, sentence) == "this says what not to do: leave the line out"
+
+
+@pytest.mark.parametrize("sentence", ["Sit on the sofa or the bed", "Walk to the kitchen or bedroom"])
+def test_a_line_that_leaves_a_choice_is_said_to_do_so(knowledge, sentence):
+    assert suggestion(knowledge, sentence) == "choose one of the two, and name it alone"
+
+
+@pytest.mark.parametrize("sentence", ["Put it"])
 def test_what_is_no_name_is_not_said_to_be_one(knowledge, sentence):
     assert suggestion(knowledge, sentence) == "write one step a line, as in `Walk to kitchen`"
 

@@ -1,5 +1,7 @@
 """Plans as Python: loops over literals are unrolled; what decides while it runs is refused, with the whole plan."""
 
+import json
+
 import pytest
 from test_forms_of_text import programs
 
@@ -110,3 +112,11 @@ def test_two_functions_in_one_record_are_refused(knowledge):
     text = plan("sleep()", "") + "\n" + plan("grab('cup')", "", "fetch")
     found = parse_steps(text, 0, "", knowledge)
     assert (found.program.steps, [fault.line for fault in found.faults]) == ((), [5])
+
+
+@pytest.mark.parametrize("key", ["plan", "predicted", "answer"])
+def test_a_loop_in_a_string_of_json_is_read_as_in_a_file(write, knowledge, key):
+    code = "for i in range(2):\n    grab('cup')\n    put('cup', 'table')\n"
+    text = json.dumps({"title": "Tidy", key: code}) + "\n"
+    ((_, found, faults, _),) = programs(write, knowledge, text, "plans.jsonl")
+    assert (found, faults) == ([*CUPS, *CUPS], [])

@@ -26,7 +26,7 @@ def said(speakers, *turns):
     return "".join(f"{(user, assistant)[n % 2]}{turn}\n" for n, turn in enumerate(turns))
 
 
-def told(found):
+def steps_of(found):
     return [(step.action, *(ref.name for ref in step.objects)) for step in found.program.steps]
 
 
@@ -39,7 +39,7 @@ def from_file(tmp_path, text, name="chat.txt"):
 def test_the_last_answer_of_a_chat_counts(tmp_path, speakers):
     text = said(speakers, "Make a plan to watch TV.", "\n".join(TV), NO, "\n".join(LAMP))
     found, (checked,) = hearth.parse_steps(text), from_file(tmp_path, text)
-    assert told(found) == told(checked) == [("Walk", "lamp"), ("SwitchOn", "lamp")]
+    assert steps_of(found) == steps_of(checked) == [("Walk", "lamp"), ("SwitchOn", "lamp")]
     assert found.program.lines == checked.program.lines
     assert (found.program.title, found.warnings) == (checked.program.title, ())
 
@@ -49,7 +49,7 @@ def test_the_last_answer_of_a_chat_counts(tmp_path, speakers):
 def test_no_step_is_lost_above_thanks(tmp_path, speakers, last):
     text = said(speakers, "Make a plan to watch TV.", "\n".join(TV), last)
     found, (checked,) = hearth.parse_steps(text), from_file(tmp_path, text)
-    assert told(found) == told(checked) == [("Walk", "television"), ("SwitchOn", "television")]
+    assert steps_of(found) == steps_of(checked) == [("Walk", "television"), ("SwitchOn", "television")]
 
 
 @pytest.mark.parametrize("speakers", SPEAKERS)
@@ -58,7 +58,7 @@ def test_a_correction_without_an_answer_warns(tmp_path, speakers):
     found, (checked,) = hearth.parse_steps(text), from_file(tmp_path, text)
     line = text.split("\n").index(SPEAKERS[speakers][0] + NO) + 1
     for each in (found, checked):
-        assert told(each) == [("Walk", "television"), ("SwitchOn", "television")]
+        assert steps_of(each) == [("Walk", "television"), ("SwitchOn", "television")]
         assert [(one.line, "has no answer" in one.message) for one in each.warnings] == [(line, True)]
 
 
@@ -74,7 +74,7 @@ def test_tasks_of_a_chat_whose_answers_begin_with_a_number_are_programs(tmp_path
     text = said("on its line", "Make a plan to watch TV.", "\n".join(TV), "Now a plan for the lamp.", "\n".join(LAMP))
     assert [len(each.program.steps) for each in from_file(tmp_path, text)] == [2, 2]
     found = hearth.parse_steps(text)
-    assert told(found) == [("Walk", "television"), ("SwitchOn", "television")]
+    assert steps_of(found) == [("Walk", "television"), ("SwitchOn", "television")]
     assert [(one.line, "another chat" in one.message) for one in found.warnings] == [(4, True)]
 
 
