@@ -27,10 +27,14 @@ app = typer.Typer(
 )
 
 
+USUAL_SPLITS = {"owah": "test", "household": "valid_seen"}
+"""The splits of `tasks` where none is named and there is no `test-1`."""
+
+
 @app.command()
 def tasks(
     name: str,
-    split: str = "test-1",
+    split: str = "",
     *,
     out: Path | None = None,
     seed: int | None = None,
@@ -49,6 +53,7 @@ def tasks(
       hearth challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
       hearth challenge tasks household --split train --limit 5
     """
+    split = split or USUAL_SPLITS.get(name, "test-1")
     if name == challenge_household.HOUSEHOLD:
         challenge_household.print_tasks(split, out, seed or 0, limit, workers, as_json)
         return
