@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from hearth.agents.communication import Asking
-from hearth.agents.empowerment import Empowerment
+from hearth.agents.empowerment_helper import Empowerment
 from hearth.agents.expected_time_helper import ExpectedTime
 from hearth.agents.goal_space import GoalsIn
 from hearth.agents.helping_plans import Weights

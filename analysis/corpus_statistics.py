@@ -13,7 +13,7 @@ from hearth.datasets.format.ids import activity_id
 from hearth.datasets.format.row_conversion import steps_of
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.schemas.stage_rows import IngestedRow
 from hearth.storage.csv_files import CsvTable

@@ -22,7 +22,7 @@ from hearth.grounding.preconditions.precondition_inference import infer
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import ingest, validate
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.engine.workers import Workers
 from hearth.pipelines.readers import release
 from hearth.pipelines.readers.reader_items import Item

@@ -8,8 +8,8 @@ from hearth.commands import (
     challenge_checks,
     challenge_export,
     challenge_household,
+    challenge_infer_and_people,
     challenge_learning,
-    challenge_online,
     challenge_output,
     challenge_pictures,
     output,
@@ -166,7 +166,7 @@ def build(
       hearth challenge build household mine.jsonl --out data_out/household
       hearth query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
     """
-    from hearth.challenges.challenge_tables import publish
+    from hearth.challenges.challenge_dataset import publish
     from hearth.challenges.verification import read_whole
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
@@ -223,7 +223,7 @@ def table(
         return
     from hearth.analysis.challenge_table import TABLES, figure, methods, rows
     from hearth.challenges.task_files import suite
-    from hearth.commands.challenge_online import print_by_set
+    from hearth.commands.challenge_infer_and_people import print_by_set
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
     from hearth.storage.names import inside
@@ -256,7 +256,7 @@ for _command in (
     challenge_checks.board,
     challenge_checks.solvable,
     challenge_export.export,
-    challenge_online.infer,
-    challenge_online.people,
+    challenge_infer_and_people.infer,
+    challenge_infer_and_people.people,
 ):
     app.command()(_command)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from hearth.commands import challenge_online, output
+from hearth.commands import challenge_infer_and_people, output
 
 
 def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None:
@@ -83,7 +83,9 @@ def show(
         panels = panels_of(found, one, record, known)
         side_by_side_floor_plans.write(load_layout(one.home, known), out, panels, furniture(one, start))
     if goal_beliefs is not None:
-        challenge_online.draw_beliefs(goal_beliefs, one, record, found.header.lineup.helper, list(narrated(ticks)))
+        challenge_infer_and_people.draw_beliefs(
+            goal_beliefs, one, record, found.header.lineup.helper, list(narrated(ticks))
+        )
     rows = [dict(zip(("tick", "agent", "instruction", "failure"), row, strict=True)) for row in narrated(ticks)]
     if as_json:
         output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})

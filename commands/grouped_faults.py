@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Iterable
 from typing import TextIO
 
 from hearth.commands import output
-from hearth.kb.language.step_faults import TRANSLATE
+from hearth.kb.language.line_diagnostics import TRANSLATE
 from hearth.schemas.diagnostics import Diagnostic
 
 PLACES = 5

@@ -47,7 +47,7 @@ def query(
       hearth query data_out "SELECT * FROM originals" --out originals.csv
       hearth query data_out "DESCRIBE programs"
     """
-    from hearth.challenges.challenge_tables import ChallengeData
+    from hearth.challenges.challenge_dataset import ChallengeData
     from hearth.commands.bounded_process import bounded_memory, ended_within
     from hearth.datasets.dataset import Dataset
     from hearth.storage.duckdb_connections import memory_limit

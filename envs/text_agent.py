@@ -24,7 +24,7 @@ from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation.views import LastAction, Pose, View
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
-from hearth.simulation.world.nodes import with_states
+from hearth.simulation.world.node_states import with_states
 
 MOST_LISTED = 40
 """Instructions of one action that are numbered in a text; others can be written."""

@@ -5,8 +5,8 @@ from itertools import islice
 
 from hearth.grounding.binding import Binding, bind, bind_far
 from hearth.grounding.environments.default_state import need_somebody, prepared
-from hearth.grounding.environments.multi_agent import sample_together
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample
+from hearth.grounding.environments.sampling_for_several_characters import sample_together
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS

@@ -17,7 +17,7 @@ from hearth.pipelines.crowd.duplicate_records import Repeated
 from hearth.pipelines.engine.build_context import knowledge
 from hearth.pipelines.engine.salt_record import salt_changed
 from hearth.pipelines.engine.settings import DERIVED, Settings
-from hearth.pipelines.engine.sources import labelled, salt
+from hearth.pipelines.engine.source_labels import labelled, salt
 from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.pipelines.readers import (
     crowd,

@@ -11,7 +11,7 @@ from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.reading_modes import Fuzzy
-from hearth.pipelines.checks import free_text_steps, program_checks
+from hearth.pipelines.checks import free_text_steps, meaning_checks
 from hearth.pipelines.engine.build_context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import natural_language_plans, reader_warnings
@@ -63,10 +63,10 @@ def process_as(record: IngestedRow, reading: Reading) -> list[ValidatedRow | Rej
     titled = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
     )
-    start = program_checks.met_at_start(program, groundings, record["conditions"] or (), known)
-    found = [*program_checks.findings(titled, known), *program_checks.undeclared(titled, record, known), *start]
+    start = meaning_checks.met_at_start(program, groundings, record["conditions"] or (), known)
+    found = [*meaning_checks.findings(titled, known), *meaning_checks.undeclared(titled, record, known), *start]
     read = reader_warnings.diagnostics(record["warnings"], record["place"])
-    warnings = (*read, *warnings, *(program_checks.diagnostic(each, titled, record["place"]) for each in found))
+    warnings = (*read, *warnings, *(meaning_checks.diagnostic(each, titled, record["place"]) for each in found))
     row: ValidatedRow = {
         **named(record),
         "title": titled.title,
@@ -99,8 +99,8 @@ def checked(
         faults = action_grammar.affordances(program, known, place, source)
     if not faults:
         faults = tuple(
-            program_checks.diagnostic(each, program, place, source)
-            for each in program_checks.contradictions(program, known)
+            meaning_checks.diagnostic(each, program, place, source)
+            for each in meaning_checks.contradictions(program, known)
         )
     faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
     lines = tuple(expanded.original(line) for line in program.lines)
@@ -108,7 +108,7 @@ def checked(
     if faults:
         return program, faults, ()
     unexecuted = (
-        program_checks.diagnostic(each, program, place) for each in program_checks.never_executed(program, known)
+        meaning_checks.diagnostic(each, program, place) for each in meaning_checks.never_executed(program, known)
     )
     return program, (), (*_replaced(expanded, place), *unexecuted)
 
@@ -130,11 +130,11 @@ def checked_natural_language(
     if faults:
         return parse.program, faults, ()
     # Natural language loses instances: two lamps may look like one switched on twice, so this is only a warning.
-    found = (*program_checks.never_executed(parse.program, known), *program_checks.contradictions(parse.program, known))
+    found = (*meaning_checks.never_executed(parse.program, known), *meaning_checks.contradictions(parse.program, known))
     return (
         parse.program,
         (),
-        (*parse.warnings, *(program_checks.diagnostic(each, parse.program, place) for each in found)),
+        (*parse.warnings, *(meaning_checks.diagnostic(each, parse.program, place) for each in found)),
     )
 
 

@@ -13,7 +13,7 @@ from hearth.simulation.rules import Rules
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, lowest
-from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.node_states import states_of
 from hearth.simulation.world.world import World
 
 

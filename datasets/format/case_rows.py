@@ -29,7 +29,7 @@ from hearth.simulation.world.action_set_3_states import is_wide
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.derived_homes import changed
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.node_states import states_of
 from hearth.simulation.world.world import World
 from hearth.simulation.world.world_change import encode_whole
 

@@ -18,7 +18,7 @@ from hearth.schemas.vocabulary import STATES
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import extended
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.node_states import states_of
 from hearth.simulation.world.world import World
 
 WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})

@@ -9,7 +9,7 @@ from hearth.schemas.vocabulary import FIRST_ADDED_ID, OPPOSITE
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import Movable, extended
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.node_states import states_of
 
 
 class PartialEnvironment:

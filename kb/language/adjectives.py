@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import is_english
+from hearth.kb.language.english_lexicon import is_english
 
 SIZES = (
     "big bigger biggest large larger largest small smaller smallest little tiny huge long short tall wide narrow thick"

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.english_lexicon import noun_lemmas
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.pronouns import Mentioned
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import is_noun, noun_lemmas
+from hearth.kb.language.english_lexicon import is_noun, noun_lemmas
 
 _DETERMINERS = re.compile(
     r"(?:(?:the|a few|few|a|an|one|some|any|several|my|your|his|her|our|their|its|this|that|these|those"

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.line_diagnostics import LineFaults, of_language, phrase  # noqa: F401 - phrase was here in 0.2
 from hearth.kb.language.mentioned_things import SaidBefore
 from hearth.kb.language.named_sources import left_out
 from hearth.kb.language.nothing_to_do_sentences import stays
@@ -27,7 +28,6 @@ from hearth.kb.language.recognition_knowledge import is_recognizing, recognizing
 from hearth.kb.language.self_corrections import corrects_itself
 from hearth.kb.language.sentences import asked_in_part, asked_steps, depends, nearest_steps, plain_step
 from hearth.kb.language.single_clauses import Asked, unclear
-from hearth.kb.language.step_faults import LineFaults, of_language, phrase  # noqa: F401 - phrase was here in 0.2
 from hearth.kb.language.step_like_lines import is_like_step, is_order, sentences
 from hearth.kb.language.step_phrases import say
 from hearth.schemas.diagnostics import Diagnostic

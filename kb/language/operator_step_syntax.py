@@ -3,7 +3,7 @@
 import re
 
 from hearth.kb.language.action_keys import action_key, bare_key, holds_object, last_name, names_action
-from hearth.kb.language.lexicon import is_verb
+from hearth.kb.language.english_lexicon import is_verb
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.recognition_knowledge import recognition, recognized_cache
 from hearth.kb.language.steps_from_calls import composed_step, written

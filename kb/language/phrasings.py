@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import verb_lemmas
+from hearth.kb.language.english_lexicon import verb_lemmas
 from hearth.kb.language.noun_phrases import thing_of
 
 _GOING = "go walk move head come step navigate proceed continue return travel pop nip wander stroll"

@@ -7,7 +7,7 @@ from itertools import takewhile
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.english_lexicon import noun_lemmas
 
 _ALONE = r"(?=$| (?:on|in|into|onto|to|with|at|back|away|up|down|off|out|from|over|under|near|next)\b)"
 _NUMBER = r"(?:two|three|four|five|six|seven|eight|nine|ten|\d+)"

@@ -7,7 +7,7 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.carry_sentences import is_carrying
 from hearth.kb.language.counted_things import numbers
-from hearth.kb.language.lexicon import is_verb
+from hearth.kb.language.english_lexicon import is_verb
 from hearth.kb.language.nothing_to_do_sentences import STAYS, stays
 from hearth.kb.language.noun_phrases import thing_of, things_in
 from hearth.kb.language.pronouns import Mentioned, has_pronoun, referred

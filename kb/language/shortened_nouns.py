@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.english_lexicon import noun_lemmas
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.pronouns import Mentioned
 

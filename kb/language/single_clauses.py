@@ -9,7 +9,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.adjectives import without_adjective
 from hearth.kb.language.carry_sentences import carried, is_carrying
 from hearth.kb.language.counted_things import is_some, numbers, plurals, without_all
-from hearth.kb.language.lexicon import noun_lemmas
+from hearth.kb.language.english_lexicon import noun_lemmas
 from hearth.kb.language.missing_objects import gone_to
 from hearth.kb.language.noun_phrases import thing_of, things_in
 from hearth.kb.language.pronouns import (

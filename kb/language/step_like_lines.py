@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import is_noun, is_verb
+from hearth.kb.language.english_lexicon import is_noun, is_verb
 from hearth.kb.language.operator_step_syntax import operator_step
 from hearth.kb.language.plan_lines import CHAIN, PlanLine
 from hearth.kb.language.recognition_knowledge import recognition, recognized_cache

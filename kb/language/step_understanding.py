@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action
+from hearth.kb.language.english_lexicon import verb_lemmas
 from hearth.kb.language.idioms import is_exchange, is_idiom
-from hearth.kb.language.lexicon import verb_lemmas
 from hearth.kb.language.noun_phrases import is_taken_from, thing_of
 from hearth.kb.language.phrasings import phrasings
 from hearth.kb.language.reading_modes import Fuzzy

@@ -7,7 +7,7 @@ from itertools import islice, product
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge, grouped
-from hearth.kb.language.lexicon import is_english, is_noun, is_verb, noun_lemmas, verb_lemmas
+from hearth.kb.language.english_lexicon import is_english, is_noun, is_verb, noun_lemmas, verb_lemmas
 from hearth.kb.language.noun_phrases import bare_words, thing_of
 from hearth.kb.language.phrasings import PHRASED, phrasings
 from hearth.kb.language.step_phrases import Parse, first_words, parses

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import is_english, is_noun, is_verb
+from hearth.kb.language.english_lexicon import is_english, is_noun, is_verb
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.pronouns import UNREAD, Mentioned
 from hearth.kb.language.sentence_openings import verb_phrase

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import is_verb
+from hearth.kb.language.english_lexicon import is_verb
 from hearth.kb.language.recognition_knowledge import recognition
 from hearth.kb.language.refusals import Refusal
 

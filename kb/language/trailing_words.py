@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.adjectives import without_adjective
-from hearth.kb.language.lexicon import is_verb, verb_lemmas
+from hearth.kb.language.english_lexicon import is_verb, verb_lemmas
 from hearth.kb.language.noun_phrases import thing_of, without_source
 
 ADVERBS = (

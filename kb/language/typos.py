@@ -4,7 +4,7 @@ from functools import lru_cache
 from itertools import islice, product
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import inflections, is_english
+from hearth.kb.language.english_lexicon import inflections, is_english
 
 _SHORTEST = 4
 _USUAL = {"second", "seconds", "minute", "minutes", "hour", "hours", "until", "with", "from", "into", "onto", "then"}

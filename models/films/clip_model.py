@@ -20,7 +20,7 @@ from hearth.models.films.clip_data import Clips, Instruction, OfFilms
 from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
 from hearth.models.films.film_arrays import COLOURS
 from hearth.models.films.frame_data import Labels, Pictures, frames_of, pictures_of
-from hearth.models.films.instruction_scores import Reading
+from hearth.models.films.possible_instructions import Reading
 from hearth.models.interface import Settings, Training
 from hearth.models.text_examples import facts_of
 from hearth.models.training import Task, train

@@ -14,8 +14,8 @@ from hearth.models.films.film_prediction import cut
 from hearth.models.films.film_programs import FilmProgram, alone, described, followed
 from hearth.models.films.film_training_examples import film_probabilities
 from hearth.models.films.film_writer import TrainedFilmWriter
-from hearth.models.films.instruction_scores import Reading
 from hearth.models.films.mask_clip_model import TrainedSeenModel
+from hearth.models.films.possible_instructions import Reading
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
 from hearth.models.model_registry import restore

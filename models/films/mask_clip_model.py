@@ -18,10 +18,10 @@ from hearth.models.checkpoint_weights import filled
 from hearth.models.devices import device, moved, place_of
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clips, Instruction, OfFilms
-from hearth.models.films.instruction_scores import Reading, reading
 from hearth.models.films.mask_clip_network import FRAMES, HEADS, SeenBatch, SeenNetwork, loss_of
 from hearth.models.films.mask_clips import SeenClips, joined, offsets, seen_clips
 from hearth.models.films.object_class_properties import PLACES, ClassTable
+from hearth.models.films.possible_instructions import Reading, reading
 from hearth.models.films.predicted_masks import mask_predictor, predicted
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Settings, Training

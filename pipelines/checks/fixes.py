@@ -7,7 +7,7 @@ from difflib import unified_diff
 from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
-from hearth.pipelines.checks import free_text_steps, program_checks
+from hearth.pipelines.checks import free_text_steps, meaning_checks
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_programs, print_step
@@ -65,7 +65,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
                 yield fault.line - 1, 1, [line]
         if found or faults:
             continue
-        for finding in (*program_checks.contradictions(canonical, known), *program_checks.not_close(canonical, known)):
+        for finding in (*meaning_checks.contradictions(canonical, known), *meaning_checks.not_close(canonical, known)):
             at = canonical.line(finding.step) - 1
             if at < 0 or "|" in lines[at]:
                 continue

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hearth.kb import action_grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.checks import program_checks
+from hearth.pipelines.checks import meaning_checks
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_programs
@@ -65,8 +65,8 @@ def warnings_of(program: Program, knowledge: Knowledge, file: str, source: list[
     They are contradictions, actions that no simulation runs, objects out of reach, steps without an effect.
     """
     found = [
-        *program_checks.contradictions(program, knowledge),
-        *program_checks.never_executed(program, knowledge),
-        *program_checks.findings(program, knowledge),
+        *meaning_checks.contradictions(program, knowledge),
+        *meaning_checks.never_executed(program, knowledge),
+        *meaning_checks.findings(program, knowledge),
     ]
-    return [program_checks.diagnostic(each, program, file, source) for each in found]
+    return [meaning_checks.diagnostic(each, program, file, source) for each in found]

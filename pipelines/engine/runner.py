@@ -14,7 +14,7 @@ from hearth.pipelines.engine.build_context import set_used
 from hearth.pipelines.engine.engines import Engine
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.sources import source_digests
+from hearth.pipelines.engine.source_labels import source_digests
 from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.pipelines.engine.workers import Workers
 from hearth.schemas.diagnostics import HearthError

@@ -4,7 +4,7 @@ from typing import Any
 
 from hearth.kb.language.forms.orders import orders_in
 from hearth.kb.language.program_lines import is_plan
-from hearth.pipelines.readers.chat_titles import accepts, rejects, titled
+from hearth.pipelines.readers.chat_titles_from_requests import accepts, rejects, titled
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping
 from hearth.pipelines.readers.reader_warnings import warned
 from hearth.pipelines.readers.texts_with_positions import Text

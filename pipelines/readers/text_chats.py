@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from hearth.kb.language.plan_lines import RULE, plan_line
 from hearth.pipelines.readers import json_records
-from hearth.pipelines.readers.chat_titles import corrects, rejects
+from hearth.pipelines.readers.chat_titles_from_requests import corrects, rejects
 from hearth.pipelines.readers.model_outputs import holds_orders
 from hearth.pipelines.readers.reader_items import Item, lines
 from hearth.pipelines.readers.texts_with_positions import text_at

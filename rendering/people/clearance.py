@@ -12,8 +12,8 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import drawn_in
 from hearth.rendering.people.gait import SAMPLED
+from hearth.rendering.people.motion_along_routes import Place, eased
 from hearth.rendering.people.rotations import yawed
-from hearth.rendering.people.walking_routes import Place, eased
 from hearth.rendering.scene.solids import Solids
 
 SIDES = "rl"

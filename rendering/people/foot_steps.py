@@ -6,8 +6,8 @@ from math import hypot, pi, sin
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Foot
 from hearth.rendering.people.gait import in_world, local
+from hearth.rendering.people.motion_along_routes import Place, angle, between, eased
 from hearth.rendering.people.skeleton import feet_of
-from hearth.rendering.people.walking_routes import Place, angle, between, eased
 
 
 def planted(actor: Actor, feet: Actor) -> Actor:

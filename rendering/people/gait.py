@@ -14,8 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from hearth.rendering.arrays import Floats
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Foot, drawn_in
-from hearth.rendering.people.skeleton import STEP, effort_of, feet_of, sinking
-from hearth.rendering.people.walking_routes import (  # noqa: F401 - the first three were here in 0.2
+from hearth.rendering.people.motion_along_routes import (  # noqa: F401 - the first three were here in 0.2
     AROUND,
     ROUNDED,
     STARTING,
@@ -25,6 +24,7 @@ from hearth.rendering.people.walking_routes import (  # noqa: F401 - the first t
     between,
     eased,
 )
+from hearth.rendering.people.skeleton import STEP, effort_of, feet_of, sinking
 from hearth.schemas.graph import Spot
 
 STEP_TIME = 0.52

@@ -12,9 +12,9 @@ from math import pi, sin
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.bedding import Remade, drawn, edge, glided
 from hearth.rendering.people.body_pose import BodyPose, Foot, Hand
+from hearth.rendering.people.motion_along_routes import angle, between, eased
 from hearth.rendering.people.pose_blends import Segment, blended, changed, effort_between, least_seconds
 from hearth.rendering.people.skeleton import feet_of
-from hearth.rendering.people.walking_routes import angle, between, eased
 from hearth.schemas.graph import Point
 
 RELAX, SWING, LAY, COVERING, MAKING, REACH, BACK = 0.3, 1.8, 1.8, 1.4, 1.6, 0.6, 0.4

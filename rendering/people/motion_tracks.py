@@ -18,11 +18,11 @@ from hearth.rendering.people.foot_steps import planted, stepping
 from hearth.rendering.people.gait import Gait, movements
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.lying_down import lying_down, made_ready
+from hearth.rendering.people.motion_along_routes import Place, angle, between, eased
 from hearth.rendering.people.motion_timing import holds_of, paced
 from hearth.rendering.people.pose_blends import HEADS, Segment, blended, effort_between, with_hands
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, effort_of
 from hearth.rendering.people.step_hands_and_gaze import posed, reach_for
-from hearth.rendering.people.walking_routes import Place, angle, between, eased
 from hearth.rendering.scene.routes import WalkableFloor, led_on, path
 from hearth.rendering.scene.solids import Solids
 from hearth.schemas.graph import Point, Spot

@@ -8,7 +8,7 @@ from math import dist, pi
 
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.held_objects import held_things
-from hearth.rendering.people.walking_routes import eased
+from hearth.rendering.people.motion_along_routes import eased
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.object_boxes import Places
 from hearth.rendering.scene.scene import Scene

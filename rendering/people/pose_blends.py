@@ -11,8 +11,8 @@ import numpy as np
 
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import Between, BodyPose, Hand, Held
+from hearth.rendering.people.motion_along_routes import angle, between, eased
 from hearth.rendering.people.skeleton import effort_of
-from hearth.rendering.people.walking_routes import angle, between, eased
 from hearth.schemas.graph import Point
 
 HEADS, HANDS = 1.1, 1.7

@@ -14,7 +14,7 @@ from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.node_states import states_of
 from hearth.simulation.world.world import World
 
 DOORS_CATEGORY = "Doors"

@@ -20,7 +20,7 @@ from hearth.simulation.world.agent import Agent, change_characters
 from hearth.simulation.world.bits import cleared, indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.home_building import CHARACTER_PROPERTIES
-from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.node_states import states_of
 
 
 class Movable(NamedTuple):

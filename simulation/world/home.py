@@ -15,7 +15,7 @@ from hearth.simulation.world import home_building
 from hearth.simulation.world.affordance import allowed, of_kind
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home_building import Raw, Rows
-from hearth.simulation.world.nodes import with_states
+from hearth.simulation.world.node_states import with_states
 
 
 class Memo(dict[int, int]):

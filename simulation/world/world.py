@@ -16,7 +16,7 @@ from hearth.simulation.world.agent import Agent, replaced
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import NOTHING
-from hearth.simulation.world.nodes import with_states
+from hearth.simulation.world.node_states import with_states
 from hearth.simulation.world.state import WorldState
 from hearth.simulation.world.world_change import encode
 

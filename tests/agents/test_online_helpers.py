@@ -5,7 +5,7 @@ from online_tasks import COUNTS, goals_of, holding, play
 from small_tasks import start, target, wanted
 
 from hearth.agents.belief import Place
-from hearth.agents.empowerment import Empowerment
+from hearth.agents.empowerment_helper import Empowerment
 from hearth.agents.expected_time_helper import ExpectedTime
 from hearth.agents.goal_space import Edge
 from hearth.agents.human_like import HumanLike

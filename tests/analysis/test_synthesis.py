@@ -17,7 +17,7 @@ from hearth.grounding.environments.sampling import sample
 from hearth.kb import action_grammar as action_grammar
 from hearth.models.text_examples import corpus
 from hearth.pipelines.build import build
-from hearth.pipelines.checks.program_checks import contradictions
+from hearth.pipelines.checks.meaning_checks import contradictions
 from hearth.pipelines.readers.published_dataset import read, scan
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng

@@ -13,8 +13,8 @@ from hearth.agents.network_proposals import NetworkProposals
 from hearth.agents.predicate_count_changes import StateChanges
 from hearth.analysis.goal_belief_figure import drawn
 from hearth.analysis.online_inference import calibration, inference
+from hearth.challenges.challenge_dataset import ChallengeData, publish
 from hearth.challenges.challenge_definition import challenge
-from hearth.challenges.challenge_tables import ChallengeData, publish
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.helper_beliefs import Beliefs, Moment, beliefs
 from hearth.challenges.learning_to_propose import Wish, episode

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.challenges import result_files
-from hearth.challenges.challenge_tables import publish
+from hearth.challenges.challenge_dataset import publish
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, played
 from hearth.challenges.result_files import Header, first_line, line, read

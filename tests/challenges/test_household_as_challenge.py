@@ -10,9 +10,9 @@ import pytest
 from hearth.analysis import household_table
 from hearth.analysis.household_table import AGENTS as ROWS
 from hearth.analysis.household_table import ALL, household_rows, household_runs, household_suite
-from hearth.challenges import challenge_tables
+from hearth.challenges import challenge_dataset
+from hearth.challenges.challenge_dataset import ChallengeData, publish
 from hearth.challenges.challenge_definition import challenge
-from hearth.challenges.challenge_tables import ChallengeData, publish
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.household import household_task
 from hearth.challenges.household_as_challenge import SEVERAL, as_task
@@ -23,8 +23,8 @@ from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite, read_suite, suite, suite_data
 from hearth.challenges.verification import verify
 from hearth.commands import challenge_household
+from hearth.commands.challenge_infer_and_people import people
 from hearth.commands.challenge_learning import learn
-from hearth.commands.challenge_online import people
 from hearth.commands.challenge_output import _figures
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -172,14 +172,14 @@ def test_tables_have_the_tasks_of_runs_their_experts_and_their_episodes(some, re
 
 
 def test_a_limit_draws_tasks_of_every_split(tmp_path, monkeypatch):
-    monkeypatch.setattr(challenge_tables, "settings", lambda: {"splits": ["train", "test_seen"]})
+    monkeypatch.setattr(challenge_dataset, "settings", lambda: {"splits": ["train", "test_seen"]})
     counts = publish(tmp_path / "out", NAME, default, limit=1)
     assert (counts["tasks"], counts["demonstrations"], counts["episodes"]) == (2, 2, 0)
 
 
 def test_a_part_that_forbids_is_a_predicate_of_its_row(knowledge):
     task = as_task(household_task("household-train-00009", knowledge=knowledge))
-    row = challenge_tables._task(task)
+    row = challenge_dataset._task(task)
     assert row["goal"][-1] == {"predicate": "not ([Open](chest_of_drawers))", "count": 1}
 
 

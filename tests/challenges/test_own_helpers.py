@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.challenges.challenge_tables import _once, _trajectory
+from hearth.challenges.challenge_dataset import _once, _trajectory
 from hearth.challenges.episode_agents import Lineup, load
 from hearth.challenges.episodes import Job, again, played
 from hearth.challenges.result_files import read

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from hearth.agents.demonstration_goals import agreement
-from hearth.challenges.challenge_tables import TABLES, ChallengeData, publish
+from hearth.challenges.challenge_dataset import TABLES, ChallengeData, publish
 from hearth.challenges.demonstration_episodes import Wish, demonstrate
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.watch_stage import inferred

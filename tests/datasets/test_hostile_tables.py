@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from hearth.analysis.augmentation_results import figures
-from hearth.challenges.challenge_tables import ChallengeData
+from hearth.challenges.challenge_dataset import ChallengeData
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.diff import compare
 from hearth.datasets.export.formats import export

@@ -4,7 +4,7 @@ import pytest
 from golden_files import compare, short
 
 from hearth.grounding.environments.goal_environments import sample_for_goal
-from hearth.grounding.environments.multi_agent import sample_together
+from hearth.grounding.environments.sampling_for_several_characters import sample_together
 from hearth.homes import library
 from hearth.kb.action_grammar import check
 from hearth.schemas.failures import Failure

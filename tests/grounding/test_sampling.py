@@ -7,8 +7,8 @@ import orjson
 import pytest
 
 from hearth.grounding.environments.default_state import prepared
-from hearth.grounding.environments.multi_agent import sample_together
 from hearth.grounding.environments.sampling import Size, sample
+from hearth.grounding.environments.sampling_for_several_characters import sample_together
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.condition_checks import unmet
 from hearth.grounding.preconditions.conditions import Condition, Preconditions

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.kb.language.lexicon import foreign_language, is_english, is_noun, is_verb, verb_lemmas
+from hearth.kb.language.english_lexicon import foreign_language, is_english, is_noun, is_verb, verb_lemmas
 from hearth.kb.language.noun_phrases import thing_of
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.reading_modes import Fuzzy

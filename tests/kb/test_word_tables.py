@@ -7,7 +7,7 @@ import pytest
 from spellchecker import SpellChecker
 
 from hearth.kb.language import word_tables
-from hearth.kb.language.lexicon import inflections
+from hearth.kb.language.english_lexicon import inflections
 
 LEMMAS = word_tables._text("lemminflect", "lemma_lu.csv.gz").decode().splitlines()
 WORDS = sorted({word for row in LEMMAS if (word := row.split(",")[0]).islower()})

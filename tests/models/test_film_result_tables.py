@@ -11,7 +11,7 @@ from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.film_contents import Shown, by_class
 from hearth.models.films.film_result_tables import COLUMNS, THESIS, WAYS
 from hearth.models.films.film_writer import TrainedFilmWriter
-from hearth.models.films.instruction_scores import Reading
+from hearth.models.films.possible_instructions import Reading
 from hearth.models.films.step_order import StepOrder
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import DEFAULT

@@ -11,7 +11,7 @@ import pytest
 from hearth.models.films.clip_data import Instruction
 from hearth.models.films.film_programs import even_moves
 from hearth.models.films.film_smoothing import ClassWorth, named_in_films, posteriors
-from hearth.models.films.instruction_scores import Reading
+from hearth.models.films.possible_instructions import Reading
 from hearth.models.films.step_order import StepOrder
 
 WALK, GRAB, SIT = Instruction("Walk", ("bed",)), Instruction("Grab", ("cup",)), Instruction("Sit", ("bed",))

@@ -18,12 +18,12 @@ from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.film_input import read_masks
 from hearth.models.films.film_prediction import cut, show_film
-from hearth.models.films.instruction_scores import reading
 from hearth.models.films.mask_clip_model import SeenModel, TrainedSeenModel, tensors
 from hearth.models.films.mask_clip_network import loss_of
 from hearth.models.films.mask_clips import CONTEXT, joined, offsets, seen_clips
 from hearth.models.films.mask_features import CROP, seen_film
 from hearth.models.films.object_class_properties import ClassTable
+from hearth.models.films.possible_instructions import reading
 from hearth.models.films.step_order import START, StepOrder, programs_of
 from hearth.models.interface import Training
 from hearth.schemas.diagnostics import HearthError

@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers.recognition_by_content import recognise
 from hearth.schemas.diagnostics import HearthError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zipfile
 
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.storage.rejects import Reject
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hearth.models.films.film_arrays import film_array
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items
 from hearth.pipelines.readers import recognition_by_content
 from hearth.schemas.diagnostics import HearthError

@@ -1,6 +1,6 @@
 """Crowd batches with several assignments of a task: all answers are read, copies are not."""
 
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items
 
 HEADER = "AssignmentId,AcceptTime,HITId,WorkerId,AssignmentStatus,Input.scene,Answer.title,Answer.description"

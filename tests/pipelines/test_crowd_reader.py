@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from read_sources import HEADER, answer, batch, faults, read, rows
 
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items
 from hearth.pipelines.readers import crowd
 

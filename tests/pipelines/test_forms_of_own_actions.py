@@ -15,7 +15,7 @@ from hearth.cli import app
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.recognition_knowledge import recognition, recognizing
 from hearth.kb.loading.load import default, overlaid
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.schemas.syntax import print_lines
 

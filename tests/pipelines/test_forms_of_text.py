@@ -4,7 +4,7 @@ import pytest
 
 from hearth.kb.language.forms.form_registry import FORMS, form_of
 from hearth.kb.language.numbered_steps import parse_steps
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.validate import checked
 from hearth.schemas.syntax import print_lines

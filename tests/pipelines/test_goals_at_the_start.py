@@ -3,7 +3,7 @@
 import pytest
 
 from hearth.kb.loading.load import default
-from hearth.pipelines.checks.program_checks import met_at_start
+from hearth.pipelines.checks.meaning_checks import met_at_start
 from hearth.schemas.syntax import parse_program
 
 TELEVISION = {"name": "television", "instance": 1}

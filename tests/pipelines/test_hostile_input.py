@@ -15,7 +15,7 @@ from hearth.analysis import completeness_ratings
 from hearth.analysis.spreadsheet_cells import original_cell
 from hearth.analysis.synthesis import load
 from hearth.datasets.export.release_layout import stem
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers.crowd import PROGRAMS
 from hearth.pipelines.readers.recognition_by_content import recognise

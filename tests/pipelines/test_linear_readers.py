@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers import delimited
 from hearth.pipelines.readers.record_ends import RecordEnds

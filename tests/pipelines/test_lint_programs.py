@@ -4,7 +4,7 @@ import pytest
 
 from hearth.kb import action_grammar
 from hearth.kb.loading.load import default
-from hearth.pipelines.checks import program_checks
+from hearth.pipelines.checks import meaning_checks
 from hearth.pipelines.crowd import topics
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program, print_step
@@ -18,7 +18,7 @@ def program(text, title="", description=""):
 
 def test_switched_on_twice():
     steps = "[SwitchOn] <tv> (1)\n[SwitchOn] <tv> (2)\n[SwitchOn] <tv> (1)\n[SwitchOff] <tv> (1)\n[SwitchOn] <tv> (1)\n"
-    (found,) = program_checks.contradictions(program(steps), default())
+    (found,) = meaning_checks.contradictions(program(steps), default())
     assert (found.code, found.step, found.remove) == ("CONTRADICTION", 2, True)
 
 
@@ -33,14 +33,14 @@ def test_switched_on_twice():
     ],
 )
 def test_used_without_a_walk(knowledge, steps, missing):
-    found = list(program_checks.not_close(action_grammar.check(program(steps), knowledge)[0], knowledge))
+    found = list(meaning_checks.not_close(action_grammar.check(program(steps), knowledge)[0], knowledge))
     assert [(one.step, print_step(one.before[0])) for one in found] == missing
 
 
 def test_a_program_that_does_nothing():
-    found = program_checks.without_effect(program("[Walk] <bed> (1)\n[Find] <cup> (1)\n"), default())
+    found = meaning_checks.without_effect(program("[Walk] <bed> (1)\n[Find] <cup> (1)\n"), default())
     assert [one.code for one in found] == ["NO_EFFECT"]
-    assert not list(program_checks.without_effect(program("[Walk] <bed> (1)\n[Lie] <bed> (1)\n"), default()))
+    assert not list(meaning_checks.without_effect(program("[Walk] <bed> (1)\n[Lie] <bed> (1)\n"), default()))
 
 
 @pytest.mark.parametrize(
@@ -83,21 +83,21 @@ def test_texts_that_are_not_activities(text, kind):
 
 
 def test_going_is_an_effect_where_the_title_says_so():
-    assert not list(program_checks.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles"), default()))
+    assert not list(meaning_checks.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles"), default()))
 
 
 def test_lamps_and_associated_things_are_within_reach(knowledge):
     for steps in ("[Walk] <bedroom> (1)\n[SwitchOn] <light> (1)\n", "[Walk] <bathtub> (1)\n[SwitchOn] <faucet> (1)\n"):
-        assert not list(program_checks.not_close(action_grammar.check(program(steps), knowledge)[0], knowledge))
+        assert not list(meaning_checks.not_close(action_grammar.check(program(steps), knowledge)[0], knowledge))
 
 
 def test_what_was_declared(knowledge):
     given = program("[Walk] <kitchen> (1)\n[Walk] <table> (1)\n[Grab] <cup> (1)\n[Wash] <teeth> (1)\n")
     row = {"rooms": [{"name": "bedroom", "quantity": 1}], "props": [{"name": "cup", "quantity": 2}]}
-    messages = [one.message for one in program_checks.undeclared(given, row, knowledge)]
+    messages = [one.message for one in meaning_checks.undeclared(given, row, knowledge)]
     assert len(messages) == 3
     assert "table" in messages[0] and "cup" in messages[1] and "kitchen" in messages[2]
-    assert not list(program_checks.undeclared(given, {"rooms": [], "props": None}, knowledge))
+    assert not list(meaning_checks.undeclared(given, {"rooms": [], "props": None}, knowledge))
 
 
 def test_through_validate(write, built):

@@ -12,7 +12,7 @@ from oracles import mutated_input
 from typer.testing import CliRunner
 
 from hearth.cli import app
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

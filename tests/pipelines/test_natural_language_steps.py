@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hearth.kb.language import plan_lines
 from hearth.kb.language.numbered_steps import parse_steps
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.schemas.syntax import print_lines
 

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from hearth.cli import app
 from hearth.kb.language.plan_lines import plan_line
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items
 from hearth.pipelines.ingest import read as read_item
 from hearth.pipelines.readers.field_columns import guessed, read_columns, shown

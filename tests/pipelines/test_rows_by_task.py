@@ -9,7 +9,7 @@ import pytest
 from hearth.commands import inputs
 from hearth.kb.language.recognition_knowledge import recognizing
 from hearth.kb.loading.load import default
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items
 from hearth.pipelines.ingest import read as read_item
 from hearth.pipelines.readers import step_rows_by_task

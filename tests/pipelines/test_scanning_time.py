@@ -8,7 +8,7 @@ import zipfile
 
 import pytest
 
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items
 from hearth.pipelines.readers import scanning_time
 from hearth.schemas.failures import Code

@@ -8,7 +8,7 @@ import random
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 
 
 def published(one):

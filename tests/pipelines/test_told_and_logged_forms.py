@@ -5,7 +5,7 @@ import pytest
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.kb.language.program_names import action_of, words_of
 from hearth.kb.loading.load import default
-from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.engine.source_labels import labelled
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.validate import checked
 from hearth.schemas.syntax import print_lines

@@ -10,7 +10,7 @@ from hearth.pipelines import ingest
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.salt_record import salt_changed
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.sources import labelled, salt, source_digests
+from hearth.pipelines.engine.source_labels import labelled, salt, source_digests
 from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers.reader_items import worker_hash
 from hearth.storage.files import value_digest

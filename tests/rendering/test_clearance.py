@@ -9,8 +9,8 @@ from hearth.kb.loading.load import default
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, drawn_in
 from hearth.rendering.people.clearance import _soft, arms_on_the_way, at_rest, faults, in_world
+from hearth.rendering.people.motion_along_routes import Place
 from hearth.rendering.people.random_people import person
-from hearth.rendering.people.walking_routes import Place
 from hearth.rendering.scene.room_shell import hung_doors
 from hearth.rendering.scene.scene_preparation import prepared_scene
 from hearth.rendering.scene.solids import Solid, Solids, solids_of

@@ -10,9 +10,9 @@ import pytest
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.gait import CORNERING, LONGEST, Gait, Movement, movements, slowed, walking
+from hearth.rendering.people.motion_along_routes import Place
 from hearth.rendering.people.motion_tracks import RUNNING, WALKING
 from hearth.rendering.people.random_people import person
-from hearth.rendering.people.walking_routes import Place
 from hearth.schemas.graph import Node
 
 BACK_AGAIN = [(0.0, 0.0), (0.0, 2.0), (0.3, 2.0), (0.3, 0.0)]

@@ -9,10 +9,10 @@ from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Hand, Held
 from hearth.rendering.people.gait import SWUNG, turning, walking
 from hearth.rendering.people.held_objects import Hold
+from hearth.rendering.people.motion_along_routes import Place
 from hearth.rendering.people.motion_timing import FASTEST, THINGS, paced
 from hearth.rendering.people.pose_blends import Segment, blended
 from hearth.rendering.people.random_people import person
-from hearth.rendering.people.walking_routes import Place
 from hearth.schemas.graph import Node
 
 BROOM = Hold("handle", (0.0, 1.2, 0.0), 0.0, (-1.0, 0.0, 0.1), (0.1, 0.6, 0.2), True)

@@ -199,7 +199,7 @@ def plans() -> Iterator[Attack]:
 
 def archives() -> Iterator[Attack]:
     """Archives as sources of a build."""
-    from hearth.pipelines.engine.sources import labelled
+    from hearth.pipelines.engine.source_labels import labelled
     from hearth.pipelines.ingest import items, read
 
     good = "Sleep\nGo to bed.\n\n\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n"

@@ -134,7 +134,7 @@ def consumed(path: Path) -> Any:
     """Return the output of commands that read results without repeating them: figures, and rows of tables."""
     import pyarrow as pa
 
-    from hearth.challenges.challenge_tables import TABLES, _episode, _once, _trajectory
+    from hearth.challenges.challenge_dataset import TABLES, _episode, _once, _trajectory
     from hearth.challenges.metrics import summary
     from hearth.challenges.verification import read_whole
 

@@ -55,7 +55,7 @@ def opened(folder: Path) -> Any:
     from hearth.datasets.dataset_homes import own_homes
     from hearth.datasets.verify import verify
     from hearth.models.text_examples import facts_of
-    from hearth.pipelines.engine.sources import labelled
+    from hearth.pipelines.engine.source_labels import labelled
     from hearth.pipelines.ingest import items, read
 
     found: list[Any] = []

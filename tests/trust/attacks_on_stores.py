@@ -91,7 +91,7 @@ def served() -> tuple[TemporaryDirectory[str], Path]:
 
 def used(out: Path) -> Any:
     """All that is made of a server's folder: tables and page of its study, files for `build`, a person forgotten."""
-    from hearth.pipelines.engine.sources import labelled
+    from hearth.pipelines.engine.source_labels import labelled
     from hearth.pipelines.ingest import items, read
 
     try:

@@ -283,8 +283,8 @@ def served_films(ground: Ground, file: Any, program: str = "") -> Any:
 
 def _challenge(ground: Ground, target: str) -> Any:
     """A published challenge, one of whose tables is something else."""
-    from hearth.challenges.challenge_tables import TABLES as OF_CHALLENGES
-    from hearth.challenges.challenge_tables import ChallengeData
+    from hearth.challenges.challenge_dataset import TABLES as OF_CHALLENGES
+    from hearth.challenges.challenge_dataset import ChallengeData
 
     folder = ground.folder / "challenge"
     folder.mkdir()

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.checks import free_text_steps, program_checks
+from hearth.pipelines.checks import free_text_steps, meaning_checks
 from hearth.pipelines.checks.text_checks import check_program
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -48,7 +48,7 @@ def check_draft(draft: Draft, title: str, description: str, known: Knowledge) ->
     found += [_found(each, numbers, fault=each.code in REFUSED) for each in warnings]
     if not faults:
         scene = {"rooms": _rows(draft.rooms), "props": _rows(draft.props)}
-        undeclared = program_checks.undeclared(program, scene, known)
+        undeclared = meaning_checks.undeclared(program, scene, known)
         found += [Found(-1, False, str(each.code), each.message, each.remedy) for each in undeclared]
     return sorted((*found, *_unfinished(draft, dict(expanded.replaced))), key=lambda each: (each.step, not each.fault))
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.lexicon import foreign_language
+from hearth.kb.language.english_lexicon import foreign_language
 from hearth.kb.language.missing_objects import missing
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.refusals import Refusal
