@@ -92,7 +92,7 @@ def check_formula(
         faults.at(at, f"in `{formula}`: `{limit}` is not a number of things", f"one of {', '.join(LIMITS)}")
     for unbound in sorted(free(formula) - variables):
         faults.at(at, f"in `{formula}`: `{unbound}` is not an argument of {whose} and is not bound")
-    if searched + (nested := _nested(formula, derived, ())) > MOST_SEARCHED:
+    if searched + (nested := _nested(formula, derived, {})) > MOST_SEARCHED:
         found = f"{searched + nested} variables stand for any thing at once"
         faults.at(at, f"in `{formula}`: {found}", f"at most {MOST_SEARCHED}: `some` and `count` in fewer others")
 
@@ -109,13 +109,19 @@ def _asked(formula: Formula) -> Iterator[Literal[Term]]:
     return (part for part in _parts(formula) if isinstance(part, Literal))
 
 
-def _nested(formula: Formula, derived: Derived, within: tuple[str, ...]) -> int:
-    """Return how many variables a formula binds within one another, in the predicates that it uses, too."""
+def _nested(formula: Formula, derived: Derived, found: dict[str, int]) -> int:
+    """Return how many variables a formula binds within one another, in the predicates that it uses, too.
+
+    Each predicate is counted once, in `found`: definitions that use two others each would take exponential time.
+    """
     if isinstance(formula, Literal):
         name = formula.name
-        return _nested(derived[name][1], derived, (*within, name)) if name in derived and name not in within else 0
+        if name in derived and name not in found:
+            found[name] = 0  # a predicate that follows from itself is refused elsewhere
+            found[name] = _nested(derived[name][1], derived, found)
+        return found.get(name, 0)
     parts = formula.parts if isinstance(formula, And | Or) else (formula.part,)
-    inner = max((_nested(part, derived, within) for part in parts), default=0)
+    inner = max((_nested(part, derived, found) for part in parts), default=0)
     return inner + isinstance(formula, Some | Count)
 
 
