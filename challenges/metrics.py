@@ -208,7 +208,7 @@ CONFIDENT = 1.96
 
 
 def share_interval(share: float, number: int) -> tuple[float, float]:
-    """Return the 95 % interval of a share of so many (Wilson 1927); unlike the usual one, it is right near 0 and 1."""
+    """Return the 95 % Wilson interval of a share of `number` trials; the normal interval is wrong near 0 and 1."""
     square = CONFIDENT**2
     middle = (share + square / (2 * number)) / (1 + square / number)
     half = CONFIDENT / (1 + square / number) * math.sqrt(share * (1 - share) / number + square / (4 * number**2))

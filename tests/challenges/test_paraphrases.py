@@ -25,7 +25,7 @@ def in_order(goal):
 
 
 def outcome(goal, text, knowledge):
-    """Whether a text is read, and whether as its goal."""
+    """The outcome of reading a text: read or refused, and as its goal or as another."""
     names = (
         challenge("wah").grammar.names if any(name in goal for name in WAH) or "INSIDE(apple" in goal else frozenset()
     )
