@@ -109,7 +109,7 @@ class FilmMoments:
         return found.total * preference(cameras, frame.actors[agent])
 
     def values_at(self, cameras: Sequence[Camera], number: int) -> tuple[Worths, States]:
-        """(cameras,) the values at a moment, summed over the characters that act, and bits of those whose acts seem shown."""
+        """(cameras,) the values at a moment, summed over the characters that act, and bits of those that seem shown."""
         frame = self.moments[number].frame
         total, shown = np.zeros(len(cameras)), np.zeros(len(cameras), np.int64)
         for agent in self.acting(number):

@@ -62,9 +62,7 @@ def test_the_test_is_failed_by_saying_yes_to_everything_and_taken_three_times_at
 
 def test_a_test_that_is_loaded_or_sent_again_costs_one_try(server):
     client = server.person()
-    assert "Tries" not in client.get("/annotate/test?given=yyyyyy").text, (
-        "answers are shown to a person only after a try"
-    )
+    assert "Tries" not in client.get("/annotate/test?given=yyyyyy").text, "answers are shown only after a try"
     always = {**dict.fromkeys(RIGHT, "yes"), "taken": "0"}
     result = client.post("/annotate/test", data=always).headers["location"]
     for _ in range(3):
