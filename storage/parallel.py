@@ -148,7 +148,7 @@ LEAVES = 3.0
 
 def _leave(pool: ProcessPoolExecutor) -> None:
     """End the workers, those too that threads, programs or finalizers of others keep from ending."""
-    workers = list((pool._processes or {}).values())
+    workers, manager = list((pool._processes or {}).values()), pool._executor_manager_thread
     pool.shutdown(wait=False)
     left: dict[Any, Any] = {each.sentinel: each for each in workers}
     until = time.monotonic() + LEAVES
@@ -157,3 +157,5 @@ def _leave(pool: ProcessPoolExecutor) -> None:
             del left[each]
     for worker in left.values():
         worker.kill()
+    if manager is not None:  # at the end of the process, Python wakes it through a pipe that it may just be closing
+        manager.join(LEAVES)

@@ -39,7 +39,12 @@ def own_program(store: Store, person: str, text: str) -> Row | None:
 
 def seen(store: Store, person: str, text: str) -> Row:
     """Return a person's program, or the empty one that it would begin with; nothing is stored for a look at it."""
-    return own_program(store, person, text) or {
+    return own_program(store, person, text) or _empty(person, text)
+
+
+def _empty(person: str, text: str) -> Row:
+    """Return the program that a person begins with: an empty scene."""
+    return {
         "id": f"P{secrets.token_hex(5).upper()}",
         "session": person,
         "text": text,
@@ -56,7 +61,7 @@ def begin(store: Store, person: str, text: str) -> Row:
     found = own_program(store, person, text)
     if found is not None:
         return found
-    row = seen(store, person, text)
+    row = _empty(person, text)
     try:
         store.write(lambda connection: connection.execute(sql.insert(PROGRAMS).values(row)))
     except sql.exc.IntegrityError:  # begun in another tab at this moment
