@@ -148,7 +148,8 @@ LEAVES = 3.0
 
 def _leave(pool: ProcessPoolExecutor) -> None:
     """End the workers, those too that threads, programs or finalizers of others keep from ending."""
-    workers, manager = list((pool._processes or {}).values()), pool._executor_manager_thread
+    workers = list((pool._processes or {}).values())
+    manager: Any = pool._executor_manager_thread
     pool.shutdown(wait=False)
     left: dict[Any, Any] = {each.sentinel: each for each in workers}
     until = time.monotonic() + LEAVES
